@@ -1,0 +1,12 @@
+# Every outside package, found once. The installed package config repeats the
+# public ones (lowlapConfig.cmake.in).
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED)
+find_package(Ceres 2.1 REQUIRED)
+find_package(OpenCV 4.6 REQUIRED
+             COMPONENTS core imgproc imgcodecs features2d calib3d line_descriptor)
+find_package(flann REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(cereal REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(tl-expected REQUIRED)

@@ -1,0 +1,41 @@
+# lowlap_library(<name> SOURCES <files> [DEPENDS <targets>] [PRIVATE_DEPENDS <targets>])
+#
+# One static library per folder: target lowlap_<name>, alias lowlap::<name>.
+# A folder without sources becomes an interface library. Headers are included
+# as "lowlap/<name>/<header>.h" and are installed with that path.
+function(lowlap_library name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;PRIVATE_DEPENDS" ${ARGN})
+  set(target lowlap_${name})
+  if(ARG_SOURCES)
+    add_library(${target} STATIC ${ARG_SOURCES})
+    set(scope PUBLIC)
+    target_link_libraries(${target} PRIVATE ${ARG_PRIVATE_DEPENDS})
+    lowlap_compile_options(${target})
+  else()
+    add_library(${target} INTERFACE)
+    set(scope INTERFACE)
+  endif()
+  add_library(lowlap::${name} ALIAS ${target})
+  target_compile_features(${target} ${scope} cxx_std_17)
+  target_include_directories(${target} ${scope}
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/src>
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(${target} ${scope} ${ARG_DEPENDS})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${name}
+                        POSITION_INDEPENDENT_CODE ON)
+  set_property(GLOBAL APPEND PROPERTY LOWLAP_LIBRARIES ${target})
+
+  file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
+  string(REGEX REPLACE "^src/" "" folder "${folder}")
+  install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/"
+          DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/${folder}"
+          FILES_MATCHING PATTERN "*.h" PATTERN "internal" EXCLUDE)
+endfunction()
+
+# Warnings for our own code; errors only where the project's CI asks for it.
+function(lowlap_compile_options target)
+  target_compile_options(${target} PRIVATE
+    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor
+    $<$<BOOL:${LOWLAP_WARNINGS_AS_ERRORS}>:-Werror>)
+endfunction()

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <string>
+
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+
+namespace lowlap {
+
+/// Calls body(i) once for every i in [0, count), on the context's threads.
+///
+/// Items are handed out one at a time, so uneven work balances. Determinism is
+/// the caller's: write results to slot i and draw random numbers from a
+/// generator seeded by i, never from a shared one. `stage` names the progress
+/// messages (empty: none). Returns kCancelled if the progress sink stopped it;
+/// some items are then left undone. `body` must not throw.
+Status ParallelFor(const RunContext& context, const std::string& stage,
+                   std::size_t count,
+                   const std::function<void(std::size_t)>& body);
+
+}  // namespace lowlap

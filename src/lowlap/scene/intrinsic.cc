@@ -1,0 +1,217 @@
+#include "lowlap/scene/intrinsic.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+namespace lowlap {
+namespace {
+
+struct ModelEntry {
+  CameraModel model;
+  const char* name;
+  int distortion_count;
+};
+
+constexpr std::array<ModelEntry, 6> kModels = {{
+    {CameraModel::kPinhole, "pinhole", 0},
+    {CameraModel::kRadialK1, "pinhole_radial_k1", 1},
+    {CameraModel::kRadialK3, "pinhole_radial_k3", 3},
+    {CameraModel::kBrownT2, "pinhole_brown_t2", 5},
+    {CameraModel::kFisheye, "fisheye", 4},
+    {CameraModel::kSpherical, "spherical", 0},
+}};
+
+const ModelEntry& Entry(CameraModel model) {
+  return *std::find_if(kModels.begin(), kModels.end(),
+                       [&](const ModelEntry& e) { return e.model == model; });
+}
+
+Vec2 DistortFisheye(const std::vector<double>& k, const Vec2& p) {
+  const double r = p.norm();
+  if (r < 1e-12) return p;
+  const double theta = std::atan(r), t2 = theta * theta;
+  const double theta_d =
+      theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
+  return p * (theta_d / r);
+}
+
+// Newton on the 2D map with a numeric Jacobian; the models are smooth and close
+// to the identity where they are invertible.
+std::optional<Vec2> Undistort(CameraModel model,
+                              const std::vector<double>& coefficients,
+                              const Vec2& distorted) {
+  Vec2 p = distorted;
+  if (model == CameraModel::kFisheye) {
+    const double theta_d = distorted.norm();
+    if (theta_d < 1e-12) return p;
+    // Solve theta_d(theta) in one dimension, where tan does not interfere.
+    const std::vector<double>& k = coefficients;
+    double theta = theta_d;
+    for (int iteration = 0; iteration < 50; ++iteration) {
+      const double t2 = theta * theta;
+      const double value =
+          theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3])))) -
+          theta_d;
+      const double slope =
+          1 +
+          t2 * (3 * k[0] + t2 * (5 * k[1] + t2 * (7 * k[2] + t2 * 9 * k[3])));
+      if (!(slope > 0)) return std::nullopt;
+      const double step = value / slope;
+      theta -= step;
+      if (std::abs(step) < 1e-14) break;
+    }
+    if (!(theta > 0) || theta >= 0.5 * kPi) return std::nullopt;
+    return Vec2(distorted * (std::tan(theta) / theta_d));
+  }
+  for (int iteration = 0; iteration < 50; ++iteration) {
+    constexpr double kStep = 1e-7;
+    const Vec2 value = Distort(model, coefficients, p) - distorted;
+    Mat2 jacobian;
+    for (int axis = 0; axis < 2; ++axis) {
+      Vec2 forward = p, backward = p;
+      forward(axis) += kStep;
+      backward(axis) -= kStep;
+      jacobian.col(axis) = (Distort(model, coefficients, forward) -
+                            Distort(model, coefficients, backward)) /
+                           (2 * kStep);
+    }
+    // A folded map has a Jacobian of the other orientation.
+    if (!(jacobian.determinant() > 0)) return std::nullopt;
+    const Vec2 step = jacobian.inverse() * value;
+    p -= step;
+    if (step.norm() < 1e-14 * (1 + p.norm())) break;
+  }
+  if ((Distort(model, coefficients, p) - distorted).norm() > 1e-9) {
+    return std::nullopt;
+  }
+  return p;
+}
+
+}  // namespace
+
+const char* CameraModelName(CameraModel model) { return Entry(model).name; }
+
+std::optional<CameraModel> CameraModelFromName(const std::string& name) {
+  for (const ModelEntry& entry : kModels) {
+    if (name == entry.name) return entry.model;
+  }
+  return std::nullopt;
+}
+
+int DistortionCount(CameraModel model) { return Entry(model).distortion_count; }
+
+Vec2 Distort(CameraModel model, const std::vector<double>& k, const Vec2& p) {
+  const double r2 = p.squaredNorm();
+  switch (model) {
+    case CameraModel::kPinhole:
+    case CameraModel::kSpherical:
+      return p;
+    case CameraModel::kRadialK1:
+      return p * (1 + k[0] * r2);
+    case CameraModel::kRadialK3:
+      return p * (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[2])));
+    case CameraModel::kBrownT2: {
+      const double radial = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[2]));
+      const double t1 = k[3], t2 = k[4], xy = p.x() * p.y();
+      return {p.x() * radial + t2 * (r2 + 2 * p.x() * p.x()) + 2 * t1 * xy,
+              p.y() * radial + t1 * (r2 + 2 * p.y() * p.y()) + 2 * t2 * xy};
+    }
+    case CameraModel::kFisheye:
+      return DistortFisheye(k, p);
+  }
+  return p;
+}
+
+Vec2 Intrinsic::Project(const Vec3& x) const {
+  if (model == CameraModel::kSpherical) {
+    const double size = std::max(width_px, height_px);
+    const double lon = std::atan2(x.x(), x.z());
+    const double lat = std::atan2(-x.y(), std::hypot(x.x(), x.z()));
+    return {lon / (2 * kPi) * size + 0.5 * width_px,
+            -lat / (2 * kPi) * size + 0.5 * height_px};
+  }
+  const Vec2 d = Distort(model, distortion, x.head<2>() / x.z());
+  return Vec2(fx_px * d.x(), fy_px * d.y()) + principal_point_px;
+}
+
+std::optional<Vec3> Intrinsic::Bearing(const Vec2& pixel_px) const {
+  if (model == CameraModel::kSpherical) {
+    const double size = std::max(width_px, height_px);
+    const double lon = (pixel_px.x() - 0.5 * width_px) * (2 * kPi) / size;
+    const double lat = -(pixel_px.y() - 0.5 * height_px) * (2 * kPi) / size;
+    return Vec3(std::cos(lat) * std::sin(lon), -std::sin(lat),
+                std::cos(lat) * std::cos(lon));
+  }
+  const std::optional<Vec2> p = Normalize(pixel_px);
+  if (!p) return std::nullopt;
+  return Vec3(p->homogeneous().normalized());
+}
+
+std::optional<Vec2> Intrinsic::Normalize(const Vec2& pixel_px) const {
+  if (model == CameraModel::kSpherical) {
+    const std::optional<Vec3> ray = Bearing(pixel_px);
+    if (!ray || !(ray->z() > 0)) return std::nullopt;
+    return Vec2(ray->head<2>() / ray->z());
+  }
+  const Vec2 centred = pixel_px - principal_point_px;
+  const Vec2 distorted(centred.x() / fx_px, centred.y() / fy_px);
+  if (!HasDistortion()) return distorted;
+  return Undistort(model, distortion, distorted);
+}
+
+double Intrinsic::MeanFocalPx() const {
+  // A panorama has 2 pi radians over its width.
+  if (model == CameraModel::kSpherical) {
+    return std::max(width_px, height_px) / (2 * kPi);
+  }
+  return std::sqrt(fx_px * fy_px);
+}
+
+double Intrinsic::ImageDiagonal() const {
+  return std::hypot(static_cast<double>(width_px), height_px);
+}
+
+bool Intrinsic::HasDistortion() const {
+  if (model == CameraModel::kFisheye) return true;
+  return std::any_of(distortion.begin(), distortion.end(),
+                     [](double k) { return k != 0; });
+}
+
+Status Intrinsic::Validate() const {
+  const auto invalid = [](const std::string& message) {
+    return MakeError(ErrorCode::kInvalidScene, message);
+  };
+  if (width_px <= 0 || height_px <= 0) {
+    return invalid("image size must be positive");
+  }
+  if (static_cast<int>(distortion.size()) != DistortionCount(model)) {
+    return invalid(std::string(CameraModelName(model)) + " needs " +
+                   std::to_string(DistortionCount(model)) +
+                   " distortion coefficients, not " +
+                   std::to_string(distortion.size()));
+  }
+  for (const double k : distortion) {
+    if (!std::isfinite(k)) return invalid("distortion must be finite");
+  }
+  if (model == CameraModel::kSpherical) return {};
+  if (!(fx_px > 0) || !(fy_px > 0) || !std::isfinite(fx_px) ||
+      !std::isfinite(fy_px)) {
+    return invalid("focal length must be positive and finite");
+  }
+  if (!principal_point_px.allFinite()) {
+    return invalid("principal point must be finite");
+  }
+  return {};
+}
+
+bool operator==(const Intrinsic& a, const Intrinsic& b) {
+  return a.model == b.model && a.width_px == b.width_px &&
+         a.height_px == b.height_px && a.fx_px == b.fx_px &&
+         a.fy_px == b.fy_px && a.principal_point_px == b.principal_point_px &&
+         a.distortion == b.distortion;
+}
+
+}  // namespace lowlap

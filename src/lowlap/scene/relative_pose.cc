@@ -1,0 +1,19 @@
+#include "lowlap/scene/relative_pose.h"
+
+namespace lowlap {
+
+bool operator==(const RelativePose& a, const RelativePose& b) {
+  return a.views == b.views && a.rotation == b.rotation &&
+         a.direction == b.direction && a.point_inliers == b.point_inliers &&
+         a.line_inliers == b.line_inliers && a.log10_nfa == b.log10_nfa &&
+         a.point_threshold_px == b.point_threshold_px &&
+         a.covariance == b.covariance;
+}
+
+RigidTransform UnitTransform(const RelativePose& edge, ViewId from, ViewId to) {
+  const RigidTransform cam2_from_cam1 = edge.Cam2FromCam1();
+  return (edge.views == ViewPair{from, to}) ? cam2_from_cam1
+                                            : cam2_from_cam1.Inverse();
+}
+
+}  // namespace lowlap

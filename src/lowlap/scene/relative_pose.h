@@ -1,0 +1,37 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "lowlap/core/ids.h"
+#include "lowlap/geometry/rigid_transform.h"
+#include "lowlap/geometry/types.h"
+
+namespace lowlap {
+
+/// Rotation and unit direction of a pair of views (first < second):
+///   x_second = rotation x_first + lambda direction,  lambda > 0 unknown.
+struct RelativePose {
+  ViewPair views;
+  Mat3 rotation = Mat3::Identity();  // cam2_from_cam1
+  Vec3 direction = Vec3::UnitX();    // unit, in camera 2
+  std::vector<FeatureMatch> point_inliers;
+  std::vector<FeatureMatch> line_inliers;  // segment indices
+  double log10_nfa = 0;
+  /// The a-contrario threshold that separated the point inliers; 0 if unknown.
+  double point_threshold_px = 0;
+  /// Covariance of (rotation error in radians, in camera 2; direction error in
+  /// the two axes of TangentBasis(direction)). Absent if unknown.
+  std::optional<Eigen::Matrix<double, 5, 5>> covariance;
+
+  /// At unit baseline.
+  RigidTransform Cam2FromCam1() const { return {rotation, direction}; }
+
+  friend bool operator==(const RelativePose& a, const RelativePose& b);
+};
+
+/// `to_from_from` at unit baseline for an edge in either direction; `from` and
+/// `to` must be its two views.
+RigidTransform UnitTransform(const RelativePose& edge, ViewId from, ViewId to);
+
+}  // namespace lowlap
