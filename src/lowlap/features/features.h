@@ -1,0 +1,44 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/features/image.h"
+#include "lowlap/features/line_descriptor.h"
+#include "lowlap/features/line_detector.h"
+#include "lowlap/features/point_detector.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+struct FeatureOptions {
+  bool detect_points = true;
+  bool detect_lines = true;
+  PointOptions points;
+  LineOptions lines;
+
+  Status Validate() const;
+};
+
+/// The features of a view with what matching needs to know of them; all
+/// vectors of a kind have the same length and order.
+struct DetectedFeatures {
+  ViewFeatures features;
+  std::vector<Keypoint> keypoints;
+  std::vector<PointDescriptor> point_descriptors;
+  std::vector<LineDescriptor> line_descriptors;
+};
+
+Result<DetectedFeatures> DetectFeatures(const GrayImage& image,
+                                        const FeatureOptions& options);
+
+/// Reads the images of all views of the scene (Scene::ImagePath) and detects
+/// their features, one image per thread. An image whose size is not that of
+/// its view is kInvalidScene; the error of the lowest view id is returned.
+Result<std::map<ViewId, DetectedFeatures>> DetectFeatures(
+    const Scene& scene, const FeatureOptions& options,
+    const RunContext& context);
+
+}  // namespace lowlap

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lowlap/core/result.h"
+
+namespace lowlap {
+
+/// An 8-bit grey image, row by row from the top, without padding. The centre
+/// of the top-left pixel is (0, 0).
+struct GrayImage {
+  int width = 0;
+  int height = 0;
+  std::vector<std::uint8_t> pixels;  // width * height
+
+  /// Both sizes positive and as many pixels as they say.
+  Status Validate() const;
+};
+
+struct ImageSize {
+  int width_px = 0;
+  int height_px = 0;
+};
+
+/// Reads any image format of OpenCV, colour converted to grey. The pixels are
+/// as stored: an EXIF orientation is ignored, because intrinsics refer to the
+/// sensor. Errors: kNotFound, kParse (not an image), with the path.
+Result<GrayImage> ReadGrayImage(const std::string& path);
+
+/// The size of an image as ReadGrayImage would return it; JPEG and PNG files
+/// are not decoded for it. Errors as there.
+Result<ImageSize> ReadImageSize(const std::string& path);
+
+}  // namespace lowlap

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/features/image.h"
+#include "lowlap/scene/features.h"
+
+namespace lowlap {
+
+struct LineOptions {
+  /// Shorter segments are dropped; relative to (width + height) / 2.
+  double min_length_ratio = 0.015;
+  /// The pyramid is halved until the longer side is at most this.
+  int coarsest_side_px = 1000;
+  /// At most this many segments, the longest.
+  int max_segments = 5000;
+
+  Status Validate() const;
+};
+
+/// Straight segments over several scales: LSD (Grompone von Gioi et al. 2012,
+/// by OpenCV) on every level of a pyramid; segments of different levels that
+/// lie on one another, and collinear pieces of one broken segment, are merged;
+/// the support line of each is then fitted to the gradient at full resolution.
+///
+/// A segment runs such that the brighter side lies on its left as seen in the
+/// image (y down): the direction carries the polarity of the edge. Sorted from
+/// long to short. An image without edges has no segments.
+Result<std::vector<LineSegment>> DetectLines(const GrayImage& image,
+                                             const LineOptions& options);
+
+}  // namespace lowlap

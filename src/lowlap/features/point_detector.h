@@ -1,0 +1,50 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/features/image.h"
+#include "lowlap/geometry/types.h"
+
+namespace lowlap {
+
+/// Root-SIFT (Arandjelovic & Zisserman 2012): the square root of the
+/// L1-normalised SIFT descriptor, a unit vector, times 512, rounded and cut off
+/// at 255. Euclidean distances are exact in integers.
+using PointDescriptor = std::array<std::uint8_t, 128>;
+
+struct Keypoint {
+  Vec2 position_px = Vec2::Zero();  // centre of the top-left pixel: (0, 0)
+  double scale_px = 0;              // standard deviation of the blob
+  double angle_rad = 0;             // dominant gradient direction, x to y
+};
+
+struct PointFeatures {
+  std::vector<Keypoint> keypoints;
+  std::vector<PointDescriptor> descriptors;  // one per keypoint
+};
+
+struct PointOptions {
+  /// Keypoints kept per image, spread evenly. More of them help thin overlaps
+  /// and cost quadratic matching time.
+  int max_points = 12000;
+  /// Least contrast of a blob, as in Lowe 2004 (grey values in [0, 1],
+  /// divided by the number of scales per octave).
+  double contrast_threshold = 0.02;
+  /// Greatest ratio of principal curvatures.
+  double edge_threshold = 10.0;
+
+  Status Validate() const;
+};
+
+/// SIFT keypoints (Lowe 2004, by OpenCV) with root-SIFT descriptors, sorted by
+/// position; the same for any number of threads. When there are more than
+/// `max_points`, every cell of a grid keeps its strongest responses, so that
+/// no part of the image is starved. An image without texture, or too small for
+/// SIFT, has no keypoints.
+Result<PointFeatures> DetectPoints(const GrayImage& image,
+                                   const PointOptions& options);
+
+}  // namespace lowlap

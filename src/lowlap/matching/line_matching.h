@@ -1,0 +1,36 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/core/ids.h"
+#include "lowlap/core/result.h"
+#include "lowlap/features/line_descriptor.h"
+#include "lowlap/scene/features.h"
+
+namespace lowlap {
+
+struct LineMatchOptions {
+  /// Greatest Hamming distance of two descriptors of 256 bits.
+  int max_distance_bits = 64;
+  /// The distance must be below this times the second nearest.
+  double max_ratio = 0.9;
+  /// The longer segment is at most this many times the shorter one.
+  double max_length_ratio = 4.0;
+
+  Status Validate() const;
+};
+
+/// One image's segments as matching sees them.
+struct DescribedLines {
+  const std::vector<LineSegment>& segments;
+  const std::vector<LineDescriptor>& descriptors;
+};
+
+/// Segment matches by appearance (mutual nearest descriptors) that agree with
+/// their neighbours on how the image turns and on which side of each other the
+/// segments lie; sorted by the first index, every segment at most once.
+std::vector<FeatureMatch> MatchLines(const DescribedLines& first,
+                                     const DescribedLines& second,
+                                     const LineMatchOptions& options);
+
+}  // namespace lowlap

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "lowlap/core/ids.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/features/features.h"
+#include "lowlap/matching/line_matching.h"
+#include "lowlap/matching/point_matching.h"
+
+namespace lowlap {
+
+struct MatchOptions {
+  bool match_points = true;
+  bool match_lines = true;
+  PointMatchOptions points;
+  LineMatchOptions lines;
+
+  Status Validate() const;
+};
+
+/// Putative matches of a pair of views, before any geometry.
+struct PairMatches {
+  std::vector<FeatureMatch> points;
+  std::vector<FeatureMatch> lines;
+};
+
+/// Matches every pair, one pair per thread. A pair that names a view without
+/// features is kInvalidArgument.
+Result<std::map<ViewPair, PairMatches>> MatchFeatures(
+    const std::map<ViewId, DetectedFeatures>& features,
+    const std::vector<ViewPair>& pairs, const MatchOptions& options,
+    const RunContext& context);
+
+}  // namespace lowlap
