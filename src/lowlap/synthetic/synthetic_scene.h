@@ -1,0 +1,118 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// The worlds that can be simulated; all are metric (metres) and made of planar
+/// walls that carry points and lines.
+enum class SyntheticKind {
+  kRoom,      // a crooked box, seen from a loop of cameras inside it
+  kCorridor,  // 5 m of walls per section; cameras walk along it and turn
+  kRing,      // cameras on a circle look at boxes in its middle
+  // Degenerate worlds:
+  kPlanar,        // one wall and nothing else
+  kCollinear,     // the room, with all centres on one straight line
+  kPureRotation,  // the room, with views 0 and 1 at one centre
+};
+
+/// "room", "corridor", "ring", "planar", "collinear", "pure_rotation".
+const char* SyntheticKindName(SyntheticKind kind);
+std::optional<SyntheticKind> SyntheticKindFromName(const std::string& name);
+
+struct SyntheticOptions {
+  SyntheticKind kind = SyntheticKind::kRoom;
+  int num_views = 12;
+  /// Pairs of views with a relative pose: "chain", "cycle", "window:N" (at most
+  /// N views apart), or "all" (whatever shares at least 16 features). Of the
+  /// first three, pairs that see nothing in common are kept, without matches.
+  std::string pairs = "cycle";
+  /// kRoom only: look at the wall behind the camera's back instead of across
+  /// the room. Neighbours then share less, and rotate more than they move.
+  bool look_outwards = false;
+
+  int points_per_wall = 60;
+  int lines_per_wall = 40;
+  /// Share of the points (lines) that may be seen by three views or more. The
+  /// others are seen by the two views of one pair, drawn at random from those
+  /// they fit: at 0 no two pairs share a feature, but their lines mix on the
+  /// same walls.
+  double trifocal_point_share = 1.0;
+  double trifocal_line_share = 1.0;
+
+  /// Standard deviation of each coordinate of a point, and of a segment's end.
+  double noise_px = 0.0;
+  /// Share of the observed lines that fall into two segments, view by view.
+  double broken_line_share = 0.0;
+  /// Share of the tracks that are wrong: from view to view the match is
+  /// another point (line).
+  double wrong_point_share = 0.0;
+  double wrong_line_share = 0.0;
+  /// Wrong matches obey the epipolar geometry of their pair, as they do when
+  /// they come through a robust two-view step: a wrong depth. Otherwise they
+  /// are anywhere in the image.
+  bool wrong_fits_epipolar = true;
+  /// Share of the candidate pairs of CountCoplanarCandidates, over all
+  /// triplets, that are not coplanar. Lines are moved off their walls, towards
+  /// the cameras, until the share is reached; a world whose share is already
+  /// higher (neighbouring walls) stays as it is. 0: no line is moved.
+  double wrong_candidate_share = 0.0;
+
+  /// Errors of the relative poses, normal about each axis: 3 of the rotation,
+  /// 2 across the direction.
+  double rotation_noise_deg = 0.0;
+  double direction_noise_deg = 0.0;
+
+  int width_px = 1200;
+  int height_px = 900;
+  double focal_px = 900.0;
+  std::uint64_t seed = 0;
+
+  /// kInvalidArgument with the option's name and what it may be.
+  Status Validate() const;
+};
+
+/// The truth about a line track.
+struct SyntheticLine {
+  Vec3 start = Vec3::Zero();  // in world
+  Vec3 end = Vec3::Zero();
+  /// Walls the line lies on: none (off the walls), one, or two (an edge).
+  std::vector<int> planes;
+};
+
+/// What a scene file would hold after the two-view step (views, intrinsics,
+/// features, relative poses, tracks; nothing solved), and the truth beside it.
+struct SyntheticScene {
+  Scene scene;
+  std::map<ViewId, Pose> true_poses;
+  /// Distance of the two centres, lambda of the relative pose. 0 for a pure
+  /// rotation, whose stored direction is arbitrary.
+  std::map<ViewPair, double> true_baselines;
+  /// By track; a wrong track has no entry.
+  std::map<PointTrackId, Vec3> true_points;
+  std::map<LineTrackId, SyntheticLine> true_lines;
+  /// n . X + d = 0 with |n| = 1, by plane id.
+  std::vector<Vec4> planes;
+
+  /// log( lambda(middle, last) / lambda(first, middle) ); nullopt if one of the
+  /// two is not a pair of the scene, or has no baseline.
+  std::optional<double> TrueLogRatio(const ViewTriplet& triplet) const;
+};
+
+/// Simulates a scene. The same options give the same scene on every machine.
+/// Errors: those of Validate().
+Result<SyntheticScene> Simulate(const SyntheticOptions& options);
+
+/// The scene with the truth filled in as its solution: poses, scale ratios
+/// (without support), structure and line structure, with all observations of
+/// the right tracks.
+Scene TrueSolution(const SyntheticScene& synthetic);
+
+}  // namespace lowlap
