@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lowlap/evaluation/ground_truth.h"
+#include "lowlap/evaluation/statistics.h"
+#include "lowlap/geometry/similarity.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+struct ViewPoseError {
+  ViewId view = kInvalidId;
+  std::string name;           // image name
+  double position_error = 0;  // in the truth's unit
+  double rotation_error_deg = 0;
+};
+
+/// What the cameras common to solution and truth allow to say.
+enum class EvaluationScope {
+  kNothing,        // fewer than 2 cameras, or all in one place
+  kRotationsOnly,  // 2 cameras: a similarity fits their centres exactly
+  kFull,           // 3 and more
+};
+
+/// Poses of a solution against the truth. A solution is known up to a
+/// similarity, which is removed first:
+/// - positions: the similarity truth_from_solution that minimises the squared
+///   distances of the centres (AlignPoints), error |C_true - S C|;
+/// - rotations: the world rotation Q that minimises sum |R_true Q - R|_F^2 over
+///   the cameras, error = angle of R^T R_true Q. It comes from the rotations
+///   themselves, since centres on a line leave the turn about it open;
+///   `frame_disagreement_deg` is its angle to the rotation of the similarity.
+struct PoseEvaluation {
+  EvaluationScope scope = EvaluationScope::kNothing;
+  std::string note;    // why the scope is not kFull; else empty
+  int num_total = 0;   // views of the scene that have a true pose
+  int num_solved = 0;  // of these, with a solved pose
+  std::vector<std::string> unsolved;  // image names of the others
+  Similarity truth_from_solution;     // identity unless kFull
+  double frame_disagreement_deg = 0;  // 0 unless kFull
+  std::vector<ViewPoseError> views;   // the solved ones, by view id
+  ErrorStatistics position;           // empty unless kFull
+  ErrorStatistics rotation_deg;       // empty if kNothing
+};
+
+PoseEvaluation EvaluatePoses(const Scene& scene, const GroundTruth& truth);
+
+/// A table for people: one line per view, then the summary.
+std::string ToText(const PoseEvaluation& evaluation);
+/// A JSON object with the members' names (sizes and errors, no rotation data).
+std::string ToJson(const PoseEvaluation& evaluation);
+
+}  // namespace lowlap

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap::openmvg {
+
+/// OpenMVG's `sfm_data.xml` (cereal's XML archive). It has the items of
+/// sfm_data.json in the same nesting; errors are those of the JSON reader, with
+/// the place given as the path in the JSON form, and kParse with a byte offset
+/// for text that is not XML.
+Result<Scene> ReadSfmDataXml(const std::string& path);
+Result<Scene> ParseSfmDataXml(const std::string& text,
+                              const std::string& file = {});
+
+/// Writes PrepareForOpenMvg(scene) and returns its notes.
+Result<std::vector<std::string>> WriteSfmDataXml(const Scene& scene,
+                                                 const std::string& path);
+
+}  // namespace lowlap::openmvg
