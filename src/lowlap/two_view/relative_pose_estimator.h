@@ -1,0 +1,97 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/geometry/types.h"
+#include "lowlap/scene/normalized_features.h"
+#include "lowlap/scene/relative_pose.h"
+
+namespace lowlap {
+
+/// What is known of a pair of views before its geometry. The features are not
+/// owned and must outlive the call; they must not be null.
+struct TwoViewInput {
+  ViewPair views;
+  const NormalizedFeatures* features1 = nullptr;
+  const NormalizedFeatures* features2 = nullptr;
+  std::vector<FeatureMatch> point_matches;  // putative, with wrong ones
+  Vec2 image_size1_px = Vec2::Zero();       // width, height
+  Vec2 image_size2_px = Vec2::Zero();
+};
+
+struct TwoViewOptions {
+  /// Upper bound of the a-contrario threshold. It only has to be wide enough
+  /// for the worst calibration that is to be accepted.
+  double max_threshold_px = 16;
+  /// Upper bound of the samples drawn; the count adapts to the inlier rate.
+  int max_samples = 10000;
+  /// Probability with which a sample of inliers only is drawn at least once.
+  double confidence = 0.9999;
+
+  Status Validate() const;
+};
+
+/// What kind of scene the matches show.
+enum class TwoViewGeometry {
+  kGeneral,
+  /// The inliers lie on one plane, and the motion was told from its mirror
+  /// image by the few points that do not, or by visibility.
+  kPlanar,
+  /// The inliers lie on one plane and both motions that explain it fit equally
+  /// well: `pose` is one of them, `alternatives` holds the other.
+  kAmbiguousPlane,
+  /// Rotation without translation that the noise would let us see: the
+  /// rotation of `pose` is good, its direction means nothing.
+  kRotationOnly,
+};
+
+const char* TwoViewGeometryName(TwoViewGeometry geometry);
+
+struct TwoViewResult {
+  RelativePose pose;
+  TwoViewGeometry geometry = TwoViewGeometry::kGeneral;
+  /// Other motions that the points cannot exclude; line or triplet evidence
+  /// may. Empty unless kAmbiguousPlane.
+  std::vector<RelativePose> alternatives;
+
+  // Diagnostics.
+  int num_matches = 0;  // matches whose points could be normalised
+  int num_samples = 0;
+  /// log10 NFA of the translation itself: that the motion of the points
+  /// relative to a pure rotation points along the epipolar lines. >= 0 for
+  /// kRotationOnly.
+  double direction_log10_nfa = 0;
+  /// Inliers that lie on the dominant plane.
+  int num_plane_inliers = 0;
+
+  bool HasDirection() const {
+    return geometry != TwoViewGeometry::kRotationOnly;
+  }
+};
+
+/// Rotation and direction of the translation of a calibrated pair from point
+/// matches, by a-contrario RANSAC (Moisan, Stival 2004) over five-point
+/// samples.
+///
+/// Residual: the Sampson distance of x2^T [t]x R x1 = 0 in pixels. The
+/// threshold that separates inliers is the one of least NFA; there is none to
+/// set. Local optimisation and final refinement minimise a Cauchy loss whose
+/// scale follows the a-contrario threshold. The sign of t and the choice of R
+/// come from the visibility (positive depths) of all inliers; matches behind a
+/// camera are no inliers.
+///
+/// `pose` carries rotation, direction, point inliers in the order of
+/// `point_matches`, log10_nfa, point_threshold_px and covariance; its line
+/// inliers are left to the caller. The same input and seed give the same
+/// result.
+///
+/// Errors: kInsufficientData when fewer than 6 matches are usable or no pose
+/// has log10 NFA < 0 (the message says which); kInvalidArgument for matches
+/// that refer to features that do not exist, or empty images.
+Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
+                                           const TwoViewOptions& options,
+                                           std::uint64_t seed);
+
+}  // namespace lowlap
