@@ -1,0 +1,45 @@
+#pragma once
+
+#include "lowlap/core/result.h"
+
+namespace lowlap {
+
+/// How the ratio of a triplet is chosen among the candidates.
+enum class ScaleCriterion {
+  kAContrario,      // lowest number of false alarms; no threshold
+  kFixedThreshold,  // most inliers within threshold_px (RANSAC), to compare
+};
+
+/// The number of false alarms; see a_contrario_scale.h.
+enum class NfaForm {
+  kCalibrated,  // keeps the a-contrario promise; the default
+  kPaper,       // as printed in Salaün et al. 2017; not calibrated
+};
+
+/// The residual of a coplanar pair; see ratio_residuals.h.
+enum class CoplanarResidual {
+  kTransfer,  // crossing carried over to the outer views; the default
+  kPlane,     // d_co of the paper, in the middle view; blind to frontal planes
+};
+
+struct ScaleOptions {
+  bool use_points = true;
+  bool use_lines = true;
+  bool use_coplanar = true;
+
+  ScaleCriterion criterion = ScaleCriterion::kAContrario;
+  NfaForm nfa_form = NfaForm::kCalibrated;
+  CoplanarResidual coplanar_residual = CoplanarResidual::kTransfer;
+
+  /// Inlier threshold of kFixedThreshold.
+  double threshold_px = 3.0;
+  /// Nearest lines that each line is paired with.
+  int num_neighbors = 10;
+  /// Try the ratio of every candidate, whatever their number (the reference);
+  /// otherwise large triplets try a fixed subset first, see ratio_search.h.
+  bool exhaustive = false;
+
+  Status Validate() const;
+};
+
+}  // namespace lowlap

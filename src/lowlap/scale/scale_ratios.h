@@ -1,0 +1,25 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/scale/scale_options.h"
+#include "lowlap/scene/scale_ratio.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// Every path i-j-k of two relative poses, i < k, sorted.
+std::vector<ViewTriplet> FindTriplets(const Scene& scene);
+
+/// The ratio of every triplet of the scene, in the order of FindTriplets,
+/// including those that are not meaningful or have no candidates (see their
+/// verdict). The same for any number of threads.
+///
+/// Errors: invalid options, those of MakeTripletView, kCancelled.
+Result<std::vector<ScaleRatio>> EstimateScaleRatios(const Scene& scene,
+                                                    const ScaleOptions& options,
+                                                    const RunContext& context);
+
+}  // namespace lowlap

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "lowlap/core/ids.h"
+#include "lowlap/core/result.h"
+#include "lowlap/scale/coplanar_candidates.h"
+#include "lowlap/scale/scale_options.h"
+#include "lowlap/scale/triplet_geometry.h"
+#include "lowlap/scene/normalized_features.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// Everything that one triplet knows about its ratio, in the frame of the
+/// middle camera; the whole input of a ScaleEstimator.
+struct TripletView {
+  ViewTriplet views;
+  TripletGeometry geometry;
+  double image_area_px2 = 1;     // of the middle view
+  double image_diagonal_px = 1;  // of the middle view
+
+  std::vector<TrifocalPoint> points;
+  std::vector<TrifocalLine> lines;
+  std::vector<MatchedLine> lines_ij;
+  std::vector<MatchedLine> lines_jk;
+  CoplanarCandidates coplanar;
+};
+
+using NormalizedFeaturesByView = std::map<ViewId, NormalizedFeatures>;
+
+/// NormalizeFeatures for every view that has features and an intrinsic.
+NormalizedFeaturesByView NormalizeAllFeatures(const Scene& scene);
+
+/// Reads a triplet out of the scene: the inlier matches of its two relative
+/// poses, chained through the feature index in the middle view (every
+/// combination, where a feature is matched more than once), and the coplanar
+/// candidates. Only the kinds that `options` enables are filled.
+///
+/// Errors: kInvalidArgument if one of the two relative poses, or the middle
+/// view's intrinsic, is missing; kInvalidScene if a match refers to a feature
+/// that does not exist.
+Result<TripletView> MakeTripletView(const Scene& scene,
+                                    const NormalizedFeaturesByView& features,
+                                    const ViewTriplet& views,
+                                    const ScaleOptions& options);
+
+}  // namespace lowlap
