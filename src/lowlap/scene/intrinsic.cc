@@ -196,7 +196,13 @@ Status Intrinsic::Validate() const {
   for (const double k : distortion) {
     if (!std::isfinite(k)) return invalid("distortion must be finite");
   }
-  if (model == CameraModel::kSpherical) return {};
+  if (model == CameraModel::kSpherical) {
+    if (fx_px != 0 || fy_px != 0 || principal_point_px != Vec2::Zero()) {
+      return invalid(
+          "spherical has no focal length or principal point: leave them 0");
+    }
+    return {};
+  }
   if (!(fx_px > 0) || !(fy_px > 0) || !std::isfinite(fx_px) ||
       !std::isfinite(fy_px)) {
     return invalid("focal length must be positive and finite");

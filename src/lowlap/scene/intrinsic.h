@@ -18,7 +18,7 @@ enum class CameraModel {
   kRadialK3,   // k1 k2 k3
   kBrownT2,    // k1 k2 k3 t1 t2
   kFisheye,    // k1 k2 k3 k4 (equidistant)
-  kSpherical,  // equirectangular panorama; fx, fy, pp unused
+  kSpherical,  // equirectangular panorama; fx, fy, pp unused: 0
 };
 
 /// OpenMVG's name of a model ("pinhole_radial_k3", ...), and back.
@@ -57,7 +57,8 @@ struct Intrinsic {
   double ImageDiagonal() const;
   bool HasDistortion() const;
 
-  /// Sizes and focals positive and finite, the right number of coefficients.
+  /// Sizes and focals positive and finite (zero for kSpherical), the right
+  /// number of coefficients.
   Status Validate() const;
 
   friend bool operator==(const Intrinsic& a, const Intrinsic& b);

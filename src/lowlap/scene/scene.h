@@ -15,7 +15,7 @@
 
 namespace lowlap {
 
-/// Two lines of `line_structure` that lie in one plane.
+/// Two lines of `line_structure` that lie in one plane, first < second.
 struct CoplanarPair {
   LineTrackId first = kInvalidId;
   LineTrackId second = kInvalidId;

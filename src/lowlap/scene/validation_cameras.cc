@@ -1,0 +1,100 @@
+#include <set>
+#include <string>
+
+#include "lowlap/geometry/rotation.h"
+#include "lowlap/scene/internal/validation_parts.h"
+
+namespace lowlap::internal {
+namespace {
+
+// Well-formed UTF-8 (RFC 3629): no overlong forms, surrogates or values beyond
+// U+10FFFF.
+bool IsUtf8(const std::string& text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto byte = [&](std::size_t n) -> unsigned {
+      return i + n < text.size() ? static_cast<unsigned char>(text[i + n]) : 0;
+    };
+    const unsigned lead = byte(0);
+    std::size_t length = 1;
+    unsigned low = 0x80, high = 0xBF;  // range of the second byte
+    if (lead >= 0x80) {
+      if (lead < 0xC2 || lead > 0xF4) return false;
+      length = lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
+      if (lead == 0xE0) low = 0xA0;
+      if (lead == 0xED) high = 0x9F;
+      if (lead == 0xF0) low = 0x90;
+      if (lead == 0xF4) high = 0x8F;
+    }
+    for (std::size_t n = 1; n < length; ++n) {
+      if (byte(n) < low || byte(n) > high) return false;
+      low = 0x80;
+      high = 0xBF;
+    }
+    i += length;
+  }
+  return true;
+}
+
+Status ValidateView(const Scene& scene, ViewId id, const View& view) {
+  const auto invalid = [&](std::string message, const char* member) {
+    return Invalid(std::move(message), ItemPlace("views", id) + member);
+  };
+  if (id == kInvalidId) return invalid("this id is reserved", "");
+  if (!IsUtf8(view.local_path)) return invalid("not UTF-8", ".local_path");
+  if (!IsUtf8(view.filename)) return invalid("not UTF-8", ".filename");
+  if (view.width_px < 0) return invalid("must not be negative", ".width");
+  if (view.height_px < 0) return invalid("must not be negative", ".height");
+  if (view.intrinsic_id != kInvalidId &&
+      scene.intrinsics.count(view.intrinsic_id) == 0) {
+    return invalid("there is no intrinsic " + std::to_string(view.intrinsic_id),
+                   ".id_intrinsic");
+  }
+  if (view.center_prior) {
+    if (!view.center_prior->weight.allFinite()) {
+      return invalid("must be finite", ".center_weight");
+    }
+    if (!view.center_prior->center_in_world.allFinite()) {
+      return invalid("must be finite", ".center");
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Status ValidateCameras(const Scene& scene) {
+  if (!IsUtf8(scene.root_path)) return Invalid("not UTF-8", "$.root_path");
+  std::set<IntrinsicId> used_intrinsics;
+  std::set<PoseId> used_poses;
+  for (const auto& [id, view] : scene.views) {
+    if (Status status = ValidateView(scene, id, view); !status) return status;
+    used_intrinsics.insert(view.intrinsic_id);
+    used_poses.insert(view.pose_id);
+  }
+  for (const auto& [id, intrinsic] : scene.intrinsics) {
+    const std::string place = ItemPlace("intrinsics", id);
+    if (id == kInvalidId) return Invalid("this id is reserved", place);
+    if (used_intrinsics.count(id) == 0) {
+      return Invalid("no view uses this intrinsic", place);
+    }
+    if (const Status status = intrinsic.Validate(); !status) {
+      return Invalid(status.error().message, place);
+    }
+  }
+  for (const auto& [id, pose] : scene.poses) {
+    const std::string place = ItemPlace("extrinsics", id);
+    if (id == kInvalidId) return Invalid("this id is reserved", place);
+    if (used_poses.count(id) == 0) {
+      return Invalid("no view uses this pose", place);
+    }
+    if (!(RotationDefect(pose.rotation) <= kTolerance)) {
+      return Invalid("is not a rotation matrix", place + ".rotation");
+    }
+    if (!pose.center.allFinite()) {
+      return Invalid("must be finite", place + ".center");
+    }
+  }
+  return {};
+}
+
+}  // namespace lowlap::internal

@@ -1,0 +1,200 @@
+#include <algorithm>
+#include <cmath>
+
+#include "lowlap/geometry/rotation.h"
+#include "lowlap/scene/internal/validation_parts.h"
+
+namespace lowlap::internal {
+namespace {
+
+// Where the first non-finite feature of a view stands in its flat arrays.
+Status ValidateViewFeatures(const ViewFeatures& features,
+                            const std::string& place) {
+  for (std::size_t n = 0; n < features.points_px.size(); ++n) {
+    if (!features.points_px[n].allFinite()) {
+      return Invalid("point " + std::to_string(n) + " must be finite",
+                     place + ".points" + IndexPlace(2 * n));
+    }
+  }
+  for (std::size_t n = 0; n < features.segments.size(); ++n) {
+    const LineSegment& segment = features.segments[n];
+    const std::string segment_place = ".segments" + IndexPlace(5 * n);
+    if (!segment.start_px.allFinite() || !segment.end_px.allFinite()) {
+      return Invalid("segment " + std::to_string(n) + " must be finite",
+                     place + segment_place);
+    }
+    if (!(segment.stddev_px >= 0) || !std::isfinite(segment.stddev_px)) {
+      return Invalid("the standard deviation of segment " + std::to_string(n) +
+                         " must be finite and not negative",
+                     place + ".segments" + IndexPlace(5 * n + 4));
+    }
+  }
+  return {};
+}
+
+Status ValidateMatches(const std::vector<FeatureMatch>& matches,
+                       std::size_t first_count, std::size_t second_count,
+                       const std::string& place) {
+  for (std::size_t n = 0; n < matches.size(); ++n) {
+    if (matches[n].first >= first_count) {
+      return Invalid("the first view has only " + std::to_string(first_count) +
+                         " features of this kind",
+                     place + IndexPlace(2 * n));
+    }
+    if (matches[n].second >= second_count) {
+      return Invalid("the second view has only " +
+                         std::to_string(second_count) +
+                         " features of this kind",
+                     place + IndexPlace(2 * n + 1));
+    }
+  }
+  return {};
+}
+
+Status ValidateRelativePose(const Scene& scene, const RelativePose& edge,
+                            const std::string& place) {
+  for (const ViewId view : {edge.views.first, edge.views.second}) {
+    if (scene.views.count(view) == 0) {
+      return Invalid(UnknownView(view), place + ".views");
+    }
+  }
+  if (!(edge.views.first < edge.views.second)) {
+    return Invalid("the first view must have the smaller id", place + ".views");
+  }
+  if (!(RotationDefect(edge.rotation) <= kTolerance)) {
+    return Invalid("is not a rotation matrix", place + ".rotation");
+  }
+  if (!IsUnit(edge.direction)) {
+    return Invalid("is not a unit vector", place + ".direction");
+  }
+  if (!std::isfinite(edge.log10_nfa)) {
+    return Invalid("must be finite", place + ".log10_nfa");
+  }
+  if (!(edge.point_threshold_px >= 0) ||
+      !std::isfinite(edge.point_threshold_px)) {
+    return Invalid("must be finite and not negative",
+                   place + ".point_threshold_px");
+  }
+  if (edge.covariance) {
+    const auto& covariance = *edge.covariance;
+    const double asymmetry =
+        (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
+    if (!covariance.allFinite() || covariance.diagonal().minCoeff() < 0 ||
+        !(asymmetry <= kTolerance * covariance.cwiseAbs().maxCoeff())) {
+      return Invalid(
+          "must be finite and symmetric, without a negative variance",
+          place + ".covariance");
+    }
+  }
+  const FeatureCounts first = CountFeatures(scene, edge.views.first);
+  const FeatureCounts second = CountFeatures(scene, edge.views.second);
+  if (Status status = ValidateMatches(edge.point_inliers, first.points,
+                                      second.points, place + ".point_inliers");
+      !status) {
+    return status;
+  }
+  return ValidateMatches(edge.line_inliers, first.segments, second.segments,
+                         place + ".line_inliers");
+}
+
+}  // namespace
+
+Status ValidateFeatures(const Scene& scene) {
+  for (const auto& [view, features] : scene.features) {
+    const std::string place =
+        OwnItemPlace("features", "view", std::to_string(view));
+    if (scene.views.count(view) == 0) return Invalid(UnknownView(view), place);
+    if (Status status = ValidateViewFeatures(features, place); !status) {
+      return status;
+    }
+  }
+  return {};
+}
+
+Status ValidateRelativePoses(const Scene& scene) {
+  for (const auto& [views, edge] : scene.relative_poses) {
+    const std::string place = OwnItemPlace(
+        "relative_poses", "views",
+        std::to_string(views.first) + "," + std::to_string(views.second));
+    if (views != edge.views) {
+      return Invalid("is stored under other views than its own",
+                     place + ".views");
+    }
+    if (Status status = ValidateRelativePose(scene, edge, place); !status) {
+      return status;
+    }
+  }
+  return {};
+}
+
+Status ValidateTrack(const Scene& scene, const Track& track, FeatureKind kind,
+                     const std::string& place) {
+  const auto invalid = [&](std::string message, std::size_t flat_index) {
+    return Invalid(std::move(message),
+                   place + ".observations" + IndexPlace(flat_index));
+  };
+  if (track.size() < 2) {
+    return Invalid("needs at least two observations", place + ".observations");
+  }
+  bool ascending = true;
+  for (std::size_t n = 0; n < track.size(); ++n) {
+    const FeatureRef& ref = track[n];
+    const FeatureCounts counts = CountFeatures(scene, ref.view);
+    const std::size_t count =
+        kind == FeatureKind::kPoint ? counts.points : counts.segments;
+    if (ref.feature >= count) {
+      if (scene.views.count(ref.view) == 0) {
+        return invalid(UnknownView(ref.view), 2 * n);
+      }
+      return invalid("view " + std::to_string(ref.view) + " has only " +
+                         std::to_string(count) + " features of this kind",
+                     2 * n + 1);
+    }
+    if (n == 0 || track[n - 1].view < ref.view) continue;
+    if (ref.view < track[n - 1].view) {
+      return invalid("observations must be sorted by view", 2 * n);
+    }
+    if (kind == FeatureKind::kPoint) {
+      return invalid(
+          "view " + std::to_string(ref.view) + " appears twice in one track",
+          2 * n);
+    }
+    ascending = ascending && track[n - 1].feature < ref.feature;
+  }
+  if (!ascending) {
+    Track sorted = track;
+    std::sort(sorted.begin(), sorted.end());
+    const auto repeated = std::adjacent_find(sorted.begin(), sorted.end());
+    if (repeated != sorted.end()) {
+      return Invalid("segment " + std::to_string(repeated->feature) +
+                         " of view " + std::to_string(repeated->view) +
+                         " is repeated",
+                     place + ".observations");
+    }
+  }
+  return {};
+}
+
+Status ValidateTracks(const Scene& scene) {
+  const auto validate = [&](const auto& tracks, const char* section,
+                            FeatureKind kind) -> Status {
+    for (const auto& [id, track] : tracks) {
+      // The place is spelt out only on failure: scenes have many tracks.
+      if (Status status = ValidateTrack(scene, track, kind, {}); !status) {
+        Error error = status.error();
+        error.place =
+            OwnItemPlace(section, "id", std::to_string(id)) + error.place;
+        return tl::unexpected<Error>(std::move(error));
+      }
+    }
+    return {};
+  };
+  if (Status status =
+          validate(scene.point_tracks, "point_tracks", FeatureKind::kPoint);
+      !status) {
+    return status;
+  }
+  return validate(scene.line_tracks, "line_tracks", FeatureKind::kSegment);
+}
+
+}  // namespace lowlap::internal
