@@ -1,0 +1,34 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <vector>
+
+#include "lowlap/core/result.h"
+
+namespace lowlap {
+
+/// One measured difference x_second - x_first on a graph.
+struct DifferenceEdge {
+  std::size_t first = 0;
+  std::size_t second = 0;
+};
+
+/// argmin over x of sum_e w_e |x_second(e) - x_first(e) - m_e|^2.
+///
+/// The weighted graph Laplacian that rotation averaging (tangent vectors) and
+/// scale averaging (log lengths) share. `measurements` is E x D, the result
+/// N x D. Gauge: the first node of every connected component is 0. Edges of
+/// weight 0 do not connect. Sparse LDL^T; kNumerical if it fails.
+Result<Eigen::MatrixXd> SolveDifferences(
+    std::size_t num_nodes, const std::vector<DifferenceEdge>& edges,
+    const Eigen::VectorXd& weights, const Eigen::MatrixXd& measurements);
+
+/// The spanning forest that prefers edges of low cost (Kruskal; ties by index):
+/// indices of its edges in the order in which a walk from the first node of
+/// every component meets them, so that each edge has one visited end.
+std::vector<std::size_t> MinimumSpanningForest(
+    std::size_t num_nodes, const std::vector<DifferenceEdge>& edges,
+    const std::vector<double>& costs);
+
+}  // namespace lowlap

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lowlap/core/ids.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// Views whose mutual positions the directions of relative poses fix, up to one
+/// scale and translation.
+struct RigidGroup {
+  std::vector<ViewId> views;    // sorted
+  std::vector<ViewPair> edges;  // sorted
+};
+
+/// A view in which two or more rigid groups meet. Directions say nothing about
+/// the groups' relative scale there: only ratios across the view do.
+struct Hinge {
+  ViewId view = kInvalidId;
+  std::vector<std::size_t> groups;  // indices into RigidityReport::groups
+};
+
+struct RigidityReport {
+  std::vector<RigidGroup> groups;  // most views first
+  std::vector<Hinge> hinges;       // by view id
+  /// Views of one connected component of the view graph, most views first.
+  std::vector<std::vector<ViewId>> connected_components;
+  /// Views without any relative pose.
+  std::vector<ViewId> isolated_views;
+};
+
+/// Which parts of the view graph share a scale by directions alone, before
+/// anything is solved (parallel rigidity).
+///
+/// Edges belong to one group iff their lengths are proportional in every
+/// solution of C_j - C_i = s_ij d_ij. The test is generic: the null space of
+/// the cycle equations for random centres in a plane, since photographs are
+/// mostly taken at one height, where a 4-cycle is not rigid. Triangles are
+/// merged first, so the null space is computed only for what they leave.
+/// Cost: cubic in the number of triangle groups.
+RigidityReport AnalyzeRigidity(const Scene& scene);
+
+}  // namespace lowlap

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "lowlap/averaging/translation_problem.h"
+
+namespace lowlap {
+
+/// The paper's composition: edge lengths multiplied up along the spanning
+/// forest of the most meaningful ratios, centres laid end to end along a
+/// spanning tree of those edges; nothing is averaged (Salaün, Marlet, Monasse
+/// 2017, section 5).
+class ScaleChainAverager : public TranslationAverager {
+ public:
+  std::string Name() const override { return "chain"; }
+  Result<TranslationSolution> Solve(const TranslationProblem& problem,
+                                    const RunContext& context) const override;
+};
+
+}  // namespace lowlap

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/geometry/types.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// A measured direction between two camera centres, with unknown length:
+///   C_second - C_first = length direction_in_world,  length > 0.
+struct DirectionEdge {
+  std::size_t first = 0;  // indices into TranslationProblem::views
+  std::size_t second = 0;
+  Vec3 direction_in_world = Vec3::UnitX();
+  double stddev_rad = 0.01;
+};
+
+/// A measured ratio of two edge lengths:
+///   log length(target) - log length(reference) = log_ratio.
+struct RatioMeasurement {
+  std::size_t reference = 0;  // indices into TranslationProblem::edges
+  std::size_t target = 0;
+  double log_ratio = 0;
+  double stddev = 0.05;
+  double log10_nfa = 0;
+};
+
+/// What every averaging strategy gets; what it does not need it ignores.
+struct TranslationProblem {
+  std::vector<ViewId> views;
+  std::vector<Mat3> cam_from_world;  // rotations, one per view
+  std::vector<DirectionEdge> edges;
+  std::vector<RatioMeasurement> ratios;  // meaningful ones only
+};
+
+/// Centres up to one similarity (scale and translation) per component.
+struct TranslationSolution {
+  /// Per view: its component, or -1 if the strategy cannot place it. Component
+  /// 0 has the most views; components do not share a scale.
+  std::vector<int> component;
+  std::vector<Vec3> center_in_world;
+  int num_components = 0;
+  int num_iterations = 0;
+};
+
+/// A translation averaging strategy.
+class TranslationAverager {
+ public:
+  virtual ~TranslationAverager() = default;
+  virtual std::string Name() const = 0;
+  virtual Result<TranslationSolution> Solve(
+      const TranslationProblem& problem, const RunContext& context) const = 0;
+};
+
+/// The problem of a scene whose rotations are known: every relative pose whose
+/// two views are in `cam_from_world` gives an edge, every meaningful scale
+/// ratio between such edges a ratio. Scale ratios and edges named in
+/// `excluded_edges` are left out.
+TranslationProblem MakeTranslationProblem(
+    const Scene& scene, const std::map<ViewId, Mat3>& cam_from_world,
+    const std::vector<ViewPair>& excluded_edges);
+
+/// Indices in range, numbers finite, deviations positive.
+Status ValidateProblem(const TranslationProblem& problem);
+
+}  // namespace lowlap
