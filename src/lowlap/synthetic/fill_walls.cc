@@ -1,0 +1,78 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "lowlap/core/random.h"
+#include "lowlap/geometry/rotation.h"
+#include "lowlap/synthetic/internal/world.h"
+
+namespace lowlap::internal {
+namespace {
+
+constexpr std::uint64_t kPointStream = 1'000'000;
+constexpr std::uint64_t kLineStream = 2'000'000;
+constexpr std::uint64_t kOffWallStream = 3'000'000;
+
+// The four sides of a poster, door or window: mostly upright, some turned.
+void AddRectangle(const Wall& wall, int index, int num_sides, Random* random,
+                  World* world) {
+  const double length_u = wall.u.norm(), length_v = wall.v.norm();
+  const double largest = 0.45 * std::min(length_u, length_v);
+  const double half_width = 0.5 * random->Uniform(0.25, 1.0) * largest;
+  const double half_height = 0.5 * random->Uniform(0.25, 1.0) * largest;
+  const double turn =
+      RadFromDeg(random->Uniform() < 0.6 ? random->Gaussian(1.0)
+                                         : random->Uniform(-45.0, 45.0));
+  const Vec3 axis_u = wall.u / length_u;
+  const Vec3 axis_v = wall.inward.cross(axis_u);
+  const Vec3 a = std::cos(turn) * axis_u + std::sin(turn) * axis_v;
+  const Vec3 b = wall.inward.cross(a);
+  const double margin = std::hypot(half_width, half_height);
+  const double inset_u = std::min(0.5, margin / length_u);
+  const double inset_v = std::min(0.5, margin / length_v);
+  const double along_u = random->Uniform(inset_u, 1 - inset_u);
+  const double along_v = random->Uniform(inset_v, 1 - inset_v);
+  const Vec3 center = wall.At(along_u, along_v);
+  const Vec3 corners[4] = {center - half_width * a - half_height * b,
+                           center + half_width * a - half_height * b,
+                           center + half_width * a + half_height * b,
+                           center - half_width * a + half_height * b};
+  for (int side = 0; side < num_sides; ++side) {
+    world->lines.push_back(
+        {corners[side], corners[(side + 1) % 4], index, {index}});
+  }
+}
+
+// Moves the two ends off the wall by different amounts.
+void MoveOff(const Wall& wall, Random* random, WorldLine* line) {
+  line->start += wall.clearance * random->Uniform(0.15, 1.0) * wall.inward;
+  line->end += wall.clearance * random->Uniform(0.15, 1.0) * wall.inward;
+  line->planes.clear();
+}
+
+}  // namespace
+
+void FillWalls(const SyntheticOptions& options, double off_wall, World* world) {
+  const int num_walls = static_cast<int>(world->walls.size());
+  for (int index = 0; index < num_walls; ++index) {
+    const Wall& wall = world->walls[index];
+    Random points(options.seed, kPointStream + index);
+    for (int i = 0; i < options.points_per_wall; ++i) {
+      const double a = points.Uniform(), b = points.Uniform();
+      world->points.push_back({wall.At(a, b), index});
+    }
+    Random lines(options.seed, kLineStream + index);
+    for (int left = options.lines_per_wall; left > 0; left -= 4) {
+      AddRectangle(wall, index, std::min(left, 4), &lines, world);
+    }
+  }
+  for (std::size_t i = 0; i < world->lines.size(); ++i) {
+    WorldLine& line = world->lines[i];
+    Random random(options.seed, kOffWallStream + i);
+    if (random.Uniform() < off_wall) {
+      MoveOff(world->walls[line.wall], &random, &line);
+    }
+  }
+}
+
+}  // namespace lowlap::internal

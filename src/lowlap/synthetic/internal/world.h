@@ -1,0 +1,57 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/scene/view.h"
+#include "lowlap/synthetic/synthetic_scene.h"
+
+namespace lowlap::internal {
+
+/// A parallelogram that carries features: origin + a u + b v with a, b in
+/// [0, 1] and u, v its sides. Cameras see its inner side.
+struct Wall {
+  Vec3 origin = Vec3::Zero();
+  Vec3 u = Vec3::UnitX();
+  Vec3 v = Vec3::UnitY();
+  Vec3 inward = Vec3::UnitZ();  // unit normal, towards the cameras
+  double clearance = 1.0;       // how far a line may be moved off, in metres
+
+  Vec3 At(double a, double b) const { return origin + a * u + b * v; }
+};
+
+struct WorldPoint {
+  Vec3 position = Vec3::Zero();
+  int wall = 0;
+};
+
+struct WorldLine {
+  Vec3 start = Vec3::Zero();
+  Vec3 end = Vec3::Zero();
+  int wall = 0;             // decides which cameras face it
+  std::vector<int> planes;  // as SyntheticLine::planes
+};
+
+/// What there is to see, and from where.
+struct World {
+  std::vector<Vec4> planes;
+  std::vector<Wall> walls;
+  std::vector<WorldPoint> points;
+  std::vector<WorldLine> lines;
+  std::vector<Pose> poses;  // by view
+  double max_range = 1e9;   // metres; what is farther is not seen
+
+  /// Adds a wall whose inner side is that of `seen_from`, and its plane, whose
+  /// id is the wall's index; returns the index.
+  int AddWall(const Vec3& origin, const Vec3& u, const Vec3& v,
+              const Vec3& seen_from, double clearance);
+};
+
+/// Walls, edges and cameras of the options' kind.
+World BuildLayout(const SyntheticOptions& options);
+
+/// Points and lines on every wall. A share `off_wall` of the lines is moved off
+/// towards the cameras; for one seed, a greater share moves the same lines and
+/// more.
+void FillWalls(const SyntheticOptions& options, double off_wall, World* world);
+
+}  // namespace lowlap::internal

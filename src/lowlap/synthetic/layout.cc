@@ -1,0 +1,251 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "lowlap/core/random.h"
+#include "lowlap/geometry/rotation.h"
+#include "lowlap/synthetic/internal/world.h"
+
+namespace lowlap::internal {
+namespace {
+
+// World: x and z horizontal, y down, as in a camera. Several random draws in
+// one call are in braces, which fix their order.
+constexpr std::uint64_t kLayoutStream = 1;
+
+Pose LookAt(const Vec3& center, const Vec3& target, double roll_rad) {
+  const Vec3 forward = (target - center).normalized();
+  const Vec3 right = Vec3::UnitY().cross(forward).normalized();
+  const Vec3 down = forward.cross(right);
+  Mat3 upright;
+  upright.row(0) = right.transpose();
+  upright.row(1) = down.transpose();
+  upright.row(2) = forward.transpose();
+  Pose pose;
+  pose.rotation = RotationFromAngleAxis(Vec3(0, 0, roll_rad)) * upright;
+  pose.center = center;
+  return pose;
+}
+
+double Roll(Random* random) { return random->Gaussian(RadFromDeg(2.0)); }
+
+void AddEdge(const Vec3& start, const Vec3& end, int wall_a, int wall_b,
+             World* world) {
+  world->lines.push_back({start, end, wall_a, {wall_a, wall_b}});
+}
+
+// A box of about 6 x 2.7 x 4.5 m whose walls meet at 80 to 100 degrees and
+// whose ceiling slopes, with its twelve edges.
+void AddRoom(Random* random, World* world) {
+  std::array<Vec3, 4> floor = {Vec3(-3.0, 1.4, -2.25), Vec3(3.0, 1.4, -2.25),
+                               Vec3(3.0, 1.4, 2.25), Vec3(-3.0, 1.4, 2.25)};
+  for (Vec3& corner : floor) {
+    corner.x() += random->Uniform(-0.2, 0.2);
+    corner.z() += random->Uniform(-0.2, 0.2);
+  }
+  const double slope_x = random->Uniform(-0.05, 0.05);
+  const double slope_z = random->Uniform(-0.05, 0.05);
+  std::array<Vec3, 4> ceiling = floor;
+  for (Vec3& corner : ceiling) {
+    corner.y() = -1.3 + slope_x * corner.x() + slope_z * corner.z();
+  }
+  const Vec3 middle(0, 0, 0);
+  std::array<int, 4> side;
+  for (int i = 0; i < 4; ++i) {
+    const int next = (i + 1) % 4;
+    // The lower of the two corners bounds the parallelogram.
+    const double height = std::min(floor[i].y() - ceiling[i].y(),
+                                   floor[next].y() - ceiling[next].y());
+    side[i] = world->AddWall(floor[i], floor[next] - floor[i],
+                             Vec3(0, -height, 0), middle, 1.2);
+  }
+  const int floor_wall = world->AddWall(floor[0], floor[1] - floor[0],
+                                        floor[3] - floor[0], middle, 0.8);
+  const int ceiling_wall = world->AddWall(ceiling[0], ceiling[1] - ceiling[0],
+                                          ceiling[3] - ceiling[0], middle, 0.6);
+  for (int i = 0; i < 4; ++i) {
+    const int next = (i + 1) % 4;
+    AddEdge(floor[i], floor[next], side[i], floor_wall, world);
+    AddEdge(ceiling[i], ceiling[next], side[i], ceiling_wall, world);
+    AddEdge(floor[i], ceiling[i], side[i], side[(i + 3) % 4], world);
+  }
+}
+
+void AddRoomCameras(const SyntheticOptions& options, Random* random,
+                    World* world) {
+  const int n = options.num_views;
+  for (int i = 0; i < n; ++i) {
+    const double angle = 2 * kPi * (i + random->Uniform(-0.15, 0.15)) / n;
+    const Vec3 outward(std::cos(angle), 0, std::sin(angle));
+    const double radius = random->Uniform(0.9, 1.1);
+    const Vec3 center(1.7 * radius * outward.x(), random->Uniform(-0.3, 0.3),
+                      1.2 * radius * outward.z());
+    const Vec3 forward = options.look_outwards ? outward : Vec3(-outward);
+    const Vec3 aim =
+        center + 3 * forward + Vec3(0, random->Uniform(-0.2, 0.2), 0);
+    world->poses.push_back(LookAt(center, aim, Roll(random)));
+  }
+}
+
+// One straight path along the room, all cameras looking at one long wall.
+void AddCollinearCameras(const SyntheticOptions& options, Random* random,
+                         World* world) {
+  const int n = options.num_views;
+  const double step = 4.0 / std::max(1, n - 1);
+  for (int i = 0; i < n; ++i) {
+    const double x = -2.0 + step * (i + random->Uniform(-0.25, 0.25));
+    const Vec3 center = Vec3(0, 0.1, -1.4) + x * Vec3(1, 0.05, 0.1);
+    const Vec3 aim(0.6 * x, random->Uniform(-0.1, 0.1), 2.25);
+    world->poses.push_back(LookAt(center, aim, Roll(random)));
+  }
+}
+
+// Sections of 5 m, 2.4 m wide and 2.6 m high; the direction changes slightly
+// from section to section, so that no two walls share a plane.
+void AddCorridor(const SyntheticOptions& options, Random* random,
+                 World* world) {
+  constexpr double kSection = 5.0, kHalfWidth = 1.2, kStep = 0.8;
+  const int sections =
+      static_cast<int>(std::ceil((kStep * options.num_views + 10) / kSection));
+  Vec3 start(0, 0, 0);
+  double heading = 0;
+  std::vector<Vec3> axis = {start};
+  for (int s = 0; s < sections; ++s) {
+    heading = RadFromDeg(random->Uniform(-4.0, 4.0));
+    axis.push_back(axis.back() +
+                   kSection * Vec3(std::sin(heading), 0, std::cos(heading)));
+  }
+  for (int s = 0; s < sections; ++s) {
+    const Vec3 a = axis[s], along = axis[s + 1] - axis[s];
+    const Vec3 right = Vec3::UnitY().cross(along).normalized() * kHalfWidth;
+    const Vec3 up(0, -2.6, 0), floor(0, 1.4, 0);
+    const Vec3 inside = a + 0.5 * along;
+    const int left_wall =
+        world->AddWall(a - right + floor, along, up, inside, 0.7);
+    const int right_wall =
+        world->AddWall(a + right + floor, along, up, inside, 0.7);
+    const int floor_wall =
+        world->AddWall(a - right + floor, along, 2 * right, inside, 0.7);
+    const int ceiling_wall =
+        world->AddWall(a - right + floor + up, along, 2 * right, inside, 0.5);
+    const Vec3 left_low = a - right + floor, right_low = a + right + floor;
+    AddEdge(left_low, left_low + along, left_wall, floor_wall, world);
+    AddEdge(right_low, right_low + along, right_wall, floor_wall, world);
+    AddEdge(left_low + up, left_low + up + along, left_wall, ceiling_wall,
+            world);
+    AddEdge(right_low + up, right_low + up + along, right_wall, ceiling_wall,
+            world);
+  }
+  for (int i = 0; i < options.num_views; ++i) {
+    const double distance = kStep * (i + random->Uniform(-0.2, 0.2)) + 0.4;
+    const int s =
+        std::clamp(static_cast<int>(distance / kSection), 0, sections - 1);
+    const Vec3 along = (axis[s + 1] - axis[s]) / kSection;
+    const Vec3 right = Vec3::UnitY().cross(along);
+    const double sideways = random->Uniform(-0.5, 0.5);
+    const double below = random->Uniform(-0.2, 0.2);
+    const Vec3 center = axis[s] + (distance - kSection * s) * along +
+                        sideways * right + Vec3(0, below, 0);
+    // Slowly from the left wall to the right and back.
+    const double yaw = RadFromDeg(30.0) * std::sin(0.4 * i);
+    const Vec3 aim =
+        center + 3 * (std::cos(yaw) * along + std::sin(yaw) * right);
+    world->poses.push_back(LookAt(center, aim, Roll(random)));
+  }
+  world->max_range = 12.0;
+}
+
+// Seven boxes on a floor, their tops and sides; a camera sees the sides that
+// face it. One box hiding another is not simulated.
+void AddRing(const SyntheticOptions& options, Random* random, World* world) {
+  constexpr int kBoxes = 7;
+  for (int box = 0; box < kBoxes; ++box) {
+    const double around = 2 * kPi * box / kBoxes;
+    const double out = box == 0 ? 0.0 : 1.6;
+    const Vec3 base{out * std::cos(around) + random->Uniform(-0.1, 0.1), 1.0,
+                    out * std::sin(around) + random->Uniform(-0.1, 0.1)};
+    const double turn = random->Uniform(0, kPi);
+    const Vec3 u =
+        random->Uniform(0.7, 1.1) * Vec3(std::cos(turn), 0, std::sin(turn));
+    const Vec3 v =
+        random->Uniform(0.7, 1.1) * Vec3(-std::sin(turn), 0, std::cos(turn));
+    const Vec3 up(0, -random->Uniform(0.6, 1.6), 0);
+    const Vec3 corner = base - 0.5 * u - 0.5 * v;
+    const Vec3 beyond = 10 * (u + v);
+    const double clearance = 0.6;
+    world->AddWall(corner, u, up, corner - beyond, clearance);
+    world->AddWall(corner, v, up, corner - beyond, clearance);
+    world->AddWall(corner + v, u, up, corner + beyond, clearance);
+    world->AddWall(corner + u, v, up, corner + beyond, clearance);
+    world->AddWall(corner + up, u, v, corner + 10 * up, clearance);
+  }
+  world->AddWall(Vec3(-3, 1, -3), Vec3(6, 0, 0), Vec3(0, 0, 6), Vec3(0, -5, 0),
+                 0.8);
+  const int n = options.num_views;
+  for (int i = 0; i < n; ++i) {
+    const double angle = 2 * kPi * (i + random->Uniform(-0.15, 0.15)) / n;
+    const double radius = random->Uniform(4.6, 5.4);
+    const Vec3 center(radius * std::cos(angle), random->Uniform(-1.8, -1.2),
+                      radius * std::sin(angle));
+    const Vec3 aim{random->Uniform(-0.2, 0.2), 0.4, random->Uniform(-0.2, 0.2)};
+    world->poses.push_back(LookAt(center, aim, Roll(random)));
+  }
+}
+
+void AddPlanar(const SyntheticOptions& options, Random* random, World* world) {
+  const int n = options.num_views;
+  const double step = 0.7, length = step * n + 6;
+  world->AddWall(Vec3(-3, 2, 4), Vec3(length, 0, 0.1 * length),
+                 Vec3(0.1, -4, 0), Vec3(0, 0, 0), 1.2);
+  for (int i = 0; i < n; ++i) {
+    const double x = step * (i + random->Uniform(-0.2, 0.2));
+    const Vec3 center{x, random->Uniform(-0.3, 0.3),
+                      0.1 * x + random->Uniform(-0.5, 0.5)};
+    const Vec3 aim(x + random->Uniform(-1.0, 1.0), 0, 0.1 * x + 4);
+    world->poses.push_back(LookAt(center, aim, Roll(random)));
+  }
+}
+
+}  // namespace
+
+int World::AddWall(const Vec3& origin, const Vec3& u, const Vec3& v,
+                   const Vec3& seen_from, double clearance) {
+  Vec3 normal = u.cross(v).normalized();
+  if (normal.dot(seen_from - origin) < 0) normal = -normal;
+  planes.emplace_back(normal.x(), normal.y(), normal.z(), -normal.dot(origin));
+  walls.push_back({origin, u, v, normal, clearance});
+  return static_cast<int>(walls.size()) - 1;
+}
+
+World BuildLayout(const SyntheticOptions& options) {
+  World world;
+  Random random(options.seed, kLayoutStream);
+  switch (options.kind) {
+    case SyntheticKind::kRoom:
+      AddRoom(&random, &world);
+      AddRoomCameras(options, &random, &world);
+      break;
+    case SyntheticKind::kPureRotation:
+      AddRoom(&random, &world);
+      AddRoomCameras(options, &random, &world);
+      world.poses[1].center = world.poses[0].center;
+      break;
+    case SyntheticKind::kCollinear:
+      AddRoom(&random, &world);
+      AddCollinearCameras(options, &random, &world);
+      break;
+    case SyntheticKind::kCorridor:
+      AddCorridor(options, &random, &world);
+      break;
+    case SyntheticKind::kRing:
+      AddRing(options, &random, &world);
+      break;
+    case SyntheticKind::kPlanar:
+      AddPlanar(options, &random, &world);
+      break;
+  }
+  return world;
+}
+
+}  // namespace lowlap::internal

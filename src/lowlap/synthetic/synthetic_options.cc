@@ -1,0 +1,94 @@
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "lowlap/synthetic/internal/pair_graph.h"
+#include "lowlap/synthetic/synthetic_scene.h"
+
+namespace lowlap {
+namespace {
+
+constexpr std::array<std::pair<SyntheticKind, const char*>, 6> kNames = {{
+    {SyntheticKind::kRoom, "room"},
+    {SyntheticKind::kCorridor, "corridor"},
+    {SyntheticKind::kRing, "ring"},
+    {SyntheticKind::kPlanar, "planar"},
+    {SyntheticKind::kCollinear, "collinear"},
+    {SyntheticKind::kPureRotation, "pure_rotation"},
+}};
+
+// Beyond this the pairs of a room, where everybody sees everything, explode.
+constexpr int kMaxViewsForAllPairs = 500;
+constexpr int kMaxViews = 100'000;
+constexpr int kMaxFeaturesPerWall = 1'000'000;
+
+Status Invalid(const std::string& message) {
+  return MakeError(ErrorCode::kInvalidArgument, message);
+}
+
+}  // namespace
+
+const char* SyntheticKindName(SyntheticKind kind) {
+  for (const auto& [known, name] : kNames) {
+    if (known == kind) return name;
+  }
+  return "";
+}
+
+std::optional<SyntheticKind> SyntheticKindFromName(const std::string& name) {
+  for (const auto& [kind, known] : kNames) {
+    if (name == known) return kind;
+  }
+  return std::nullopt;
+}
+
+Status SyntheticOptions::Validate() const {
+  if (num_views < 2 || num_views > kMaxViews) {
+    return Invalid("num_views must be in [2, " + std::to_string(kMaxViews) +
+                   "]");
+  }
+  const Result<internal::PairRule> rule = internal::PairRule::Parse(pairs);
+  if (!rule) return tl::make_unexpected(rule.error());
+  if (rule->all && num_views > kMaxViewsForAllPairs) {
+    return Invalid("pairs 'all' needs num_views <= " +
+                   std::to_string(kMaxViewsForAllPairs));
+  }
+  const std::pair<const char*, int> counts[] = {
+      {"points_per_wall", points_per_wall}, {"lines_per_wall", lines_per_wall}};
+  for (const auto& [name, value] : counts) {
+    if (value < 0 || value > kMaxFeaturesPerWall) {
+      return Invalid(std::string(name) + " must be in [0, " +
+                     std::to_string(kMaxFeaturesPerWall) + "]");
+    }
+  }
+  const std::pair<const char*, double> shares[] = {
+      {"trifocal_point_share", trifocal_point_share},
+      {"trifocal_line_share", trifocal_line_share},
+      {"broken_line_share", broken_line_share},
+      {"wrong_point_share", wrong_point_share},
+      {"wrong_line_share", wrong_line_share},
+      {"wrong_candidate_share", wrong_candidate_share}};
+  for (const auto& [name, value] : shares) {
+    if (!(value >= 0 && value <= 1)) {
+      return Invalid(std::string(name) + " must be in [0, 1]");
+    }
+  }
+  const std::pair<const char*, double> noises[] = {
+      {"noise_px", noise_px},
+      {"rotation_noise_deg", rotation_noise_deg},
+      {"direction_noise_deg", direction_noise_deg}};
+  for (const auto& [name, value] : noises) {
+    if (!(value >= 0) || !std::isfinite(value)) {
+      return Invalid(std::string(name) + " must be finite and not negative");
+    }
+  }
+  if (width_px < 16 || height_px < 16) {
+    return Invalid("width_px and height_px must be at least 16");
+  }
+  if (!(focal_px > 0) || !std::isfinite(focal_px)) {
+    return Invalid("focal_px must be finite and positive");
+  }
+  return {};
+}
+
+}  // namespace lowlap
