@@ -17,7 +17,8 @@ struct PreparedScene {
 /// - views, intrinsics, poses, structure and control points only;
 /// - no intrinsic and no pose that no view uses (OpenMVG refuses the whole
 /// file);
-/// - one focal length, the mean of fx and fy (OpenMVG has no second one; the
+/// - one focal length, the geometric mean of fx and fy (OpenMVG has no second
+/// one; the
 ///   loss is noted with its size in per cent);
 /// - no observation from a view without a pose or an intrinsic, and no landmark
 ///   with fewer than two observations left (OpenMVG's exporters assume both).

@@ -14,13 +14,14 @@ namespace lowlap::openmvg {
 /// root path, views, intrinsics, extrinsics, structure and control points.
 ///
 /// Every length is checked against the bytes that are left before anything is
-/// allocated. Errors: kParse with the byte offset as `place` for anything
-/// truncated or malformed (including duplicate ids, null pointers and numbers
-/// that are not finite), kUnsupported for an unknown version or camera model.
-/// Bytes after the last item are ignored, as OpenMVG does.
+/// allocated. Errors, with the byte offset as `place`: kParse for anything
+/// truncated or malformed (null pointers and numbers that are not finite among
+/// it), kInvalidScene for repeated ids, kUnsupported for an unknown version or
+/// camera model; then those of ValidateScene. Bytes after the last item are
+/// ignored, as OpenMVG does.
 Result<Scene> ReadSfmDataBin(const std::string& path);
 
-/// The same from memory; `file` is used in messages only.
+/// The same from memory, without ValidateScene; `file` is for messages only.
 Result<Scene> ParseSfmDataBin(std::string_view bytes,
                               const std::string& file = {});
 

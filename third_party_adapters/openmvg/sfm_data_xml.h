@@ -20,4 +20,8 @@ Result<Scene> ParseSfmDataXml(const std::string& text,
 Result<std::vector<std::string>> WriteSfmDataXml(const Scene& scene,
                                                  const std::string& path);
 
+/// The text of a scene as it is (without what OpenMVG does not know), all
+/// numbers with 17 digits. kInvalidScene if ValidateScene refuses it.
+Result<std::string> FormatSfmDataXml(const Scene& scene);
+
 }  // namespace lowlap::openmvg

@@ -19,8 +19,8 @@ struct ViewPoseError {
 
 /// What the cameras common to solution and truth allow to say.
 enum class EvaluationScope {
-  kNothing,        // fewer than 2 cameras, or all in one place
-  kRotationsOnly,  // 2 cameras: a similarity fits their centres exactly
+  kNothing,        // fewer than 2 cameras
+  kRotationsOnly,  // 2 cameras, or all in one place: a similarity fits exactly
   kFull,           // 3 and more
 };
 

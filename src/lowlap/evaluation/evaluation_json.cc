@@ -1,0 +1,99 @@
+#include <nlohmann/json.hpp>
+
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/evaluation/relative_errors.h"
+
+namespace lowlap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ToJsonValue(const ErrorStatistics& statistics) {
+  return {{"count", statistics.count},
+          {"mean", statistics.mean},
+          {"median", statistics.median},
+          {"max", statistics.max},
+          {"rmse", statistics.rmse}};
+}
+
+const char* ScopeName(EvaluationScope scope) {
+  switch (scope) {
+    case EvaluationScope::kNothing:
+      return "nothing";
+    case EvaluationScope::kRotationsOnly:
+      return "rotations_only";
+    case EvaluationScope::kFull:
+      return "full";
+  }
+  return "";
+}
+
+std::string Dump(const Json& json) {
+  // File names may hold any bytes; what is not UTF-8 is replaced.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+std::string ToJson(const PoseEvaluation& evaluation) {
+  Json views = Json::array();
+  for (const ViewPoseError& error : evaluation.views) {
+    Json view = {{"view", error.view}, {"name", error.name}};
+    if (evaluation.scope == EvaluationScope::kFull) {
+      view["position_error"] = error.position_error;
+    }
+    if (evaluation.scope != EvaluationScope::kNothing) {
+      view["rotation_error_deg"] = error.rotation_error_deg;
+    }
+    views.push_back(std::move(view));
+  }
+  Json json = {{"scope", ScopeName(evaluation.scope)},
+               {"note", evaluation.note},
+               {"num_total", evaluation.num_total},
+               {"num_solved", evaluation.num_solved},
+               {"unsolved", evaluation.unsolved}};
+  if (evaluation.scope == EvaluationScope::kFull) {
+    json["position"] = ToJsonValue(evaluation.position);
+    json["scale"] = evaluation.truth_from_solution.scale;
+    json["frame_disagreement_deg"] = evaluation.frame_disagreement_deg;
+  }
+  if (evaluation.scope != EvaluationScope::kNothing) {
+    json["rotation_deg"] = ToJsonValue(evaluation.rotation_deg);
+  }
+  json["views"] = std::move(views);
+  return Dump(json);
+}
+
+std::string ToJson(const RelativePoseEvaluation& evaluation) {
+  Json pairs = Json::array();
+  for (const RelativePoseError& error : evaluation.pairs) {
+    Json pair = {{"views", {error.views.first, error.views.second}},
+                 {"rotation_error_deg", error.rotation_error_deg}};
+    if (error.direction_error_deg) {
+      pair["direction_error_deg"] = *error.direction_error_deg;
+    }
+    pairs.push_back(std::move(pair));
+  }
+  return Dump({{"num_without_truth", evaluation.num_without_truth},
+               {"rotation_deg", ToJsonValue(evaluation.rotation_deg)},
+               {"direction_deg", ToJsonValue(evaluation.direction_deg)},
+               {"pairs", std::move(pairs)}});
+}
+
+std::string ToJson(const ScaleRatioEvaluation& evaluation) {
+  Json ratios = Json::array();
+  for (const ScaleRatioError& error : evaluation.ratios) {
+    ratios.push_back(
+        {{"views", {error.views.first, error.views.middle, error.views.last}},
+         {"verdict", RatioVerdictName(error.verdict)},
+         {"true_log_ratio", error.true_log_ratio},
+         {"log_error", error.log_error},
+         {"stddev", error.stddev}});
+  }
+  return Dump({{"num_no_candidates", evaluation.num_no_candidates},
+               {"num_without_truth", evaluation.num_without_truth},
+               {"abs_log_error", ToJsonValue(evaluation.abs_log_error)},
+               {"ratios", std::move(ratios)}});
+}
+
+}  // namespace lowlap

@@ -1,0 +1,108 @@
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "lowlap/core/atomic_file.h"
+#include "lowlap/io/scene_json.h"
+#include "third_party_adapters/openmvg/prepare.h"
+#include "third_party_adapters/openmvg/sfm_data_xml.h"
+
+namespace lowlap::openmvg {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// One element; `name` is its tag.
+void AppendElement(const std::string& name, const Json& value, int level,
+                   std::string& xml) {
+  const std::string indent(static_cast<std::size_t>(level), '\t');
+  xml += indent + "<" + name;
+  if (value.is_array()) xml += " size=\"dynamic\"";
+  if (value.is_structured()) {
+    if (value.empty()) {
+      xml += "/>\n";
+      return;
+    }
+    xml += ">\n";
+    int index = 0;
+    for (const auto& [key, child] : value.items()) {
+      const std::string child_name =
+          value.is_array() ? "value" + std::to_string(index++) : key;
+      AppendElement(child_name, child, level + 1, xml);
+    }
+    xml += indent + "</" + name + ">\n";
+    return;
+  }
+  if (value.is_string()) {
+    const std::string& text = value.get_ref<const std::string&>();
+    const auto is_space = [](char c) { return c == ' ' || c == '\t'; };
+    if (!text.empty() && (is_space(text.front()) || is_space(text.back()))) {
+      xml += " xml:space=\"preserve\"";
+    }
+    xml += '>';
+    for (const char c : text) {
+      switch (c) {
+        case '&':
+          xml += "&amp;";
+          break;
+        case '<':
+          xml += "&lt;";
+          break;
+        case '>':
+          xml += "&gt;";
+          break;
+        case '"':
+          xml += "&quot;";
+          break;
+        case '\'':
+          xml += "&apos;";
+          break;
+        default:
+          xml += c;
+      }
+    }
+  } else if (value.is_number_float()) {
+    char digits[32];
+    std::snprintf(digits, sizeof(digits), "%.17g", value.get<double>());
+    xml += '>';
+    xml += digits;
+  } else {
+    xml += '>' + value.dump();
+  }
+  xml += "</" + name + ">\n";
+}
+
+}  // namespace
+
+Result<std::string> FormatSfmDataXml(const Scene& scene) {
+  const Result<std::string> text = FormatSceneJson(scene);
+  if (!text) return text;
+  Json json = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  if (json.is_discarded()) {
+    return MakeError(ErrorCode::kInvalidScene, "the scene has no text form");
+  }
+  json.erase("lowlap");
+  std::string xml = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n";
+  AppendElement("cereal", json, 0, xml);
+  xml += '\n';
+  return xml;
+}
+
+Result<std::vector<std::string>> WriteSfmDataXml(const Scene& scene,
+                                                 const std::string& path) {
+  PreparedScene prepared = PrepareForOpenMvg(scene);
+  Result<std::string> xml = FormatSfmDataXml(prepared.scene);
+  if (!xml) {
+    xml.error().file = path;
+    return tl::unexpected<Error>(std::move(xml.error()));
+  }
+  const Status status =
+      WriteFileAtomically(path, [&xml](std::ostream& stream) -> Status {
+        stream << *xml;
+        return {};
+      });
+  if (!status) return tl::unexpected<Error>(status.error());
+  return std::move(prepared.notes);
+}
+
+}  // namespace lowlap::openmvg
