@@ -1,0 +1,222 @@
+#include <map>
+
+#include "lowlap/io/internal/scene_json_sections.h"
+
+namespace lowlap::internal {
+namespace {
+
+constexpr std::uint32_t kVersion = 1;
+
+// Calls `add(a, b)` for the pairs of a flat array of ids.
+template <class Add>
+void ReadIdPairs(const JsonValue& flat, const Add& add) {
+  flat.FlatSize(2);
+  std::uint32_t first = 0;
+  bool is_second = false;
+  for (const JsonValue element : flat.Elements()) {
+    if (is_second) {
+      add(first, element.Id());
+    } else {
+      first = element.Id();
+    }
+    is_second = !is_second;
+  }
+}
+
+template <int kCount, class Add>
+void ReadReals(const JsonValue& flat, const Add& add) {
+  flat.FlatSize(kCount);
+  double numbers[kCount];
+  int n = 0;
+  for (const JsonValue element : flat.Elements()) {
+    numbers[n++] = element.Real();
+    if (n < kCount) continue;
+    add(numbers);
+    n = 0;
+  }
+}
+
+std::vector<FeatureMatch> ReadMatches(const JsonValue& flat) {
+  std::vector<FeatureMatch> matches;
+  matches.reserve(flat.FlatSize(2) / 2);
+  ReadIdPairs(flat, [&](std::uint32_t first, std::uint32_t second) {
+    matches.push_back({first, second});
+  });
+  return matches;
+}
+
+Track ReadTrack(const JsonValue& flat) {
+  Track track;
+  track.reserve(flat.FlatSize(2) / 2);
+  ReadIdPairs(flat, [&](std::uint32_t view, std::uint32_t feature) {
+    track.push_back({view, feature});
+  });
+  return track;
+}
+
+ViewFeatures ReadFeatures(const JsonValue& record) {
+  record.AllowOnly({"view", "points", "segments"});
+  ViewFeatures features;
+  const JsonValue points = record.At("points");
+  features.points_px.reserve(points.FlatSize(2) / 2);
+  ReadReals<2>(points, [&](const double* v) {
+    features.points_px.emplace_back(v[0], v[1]);
+  });
+  const JsonValue segments = record.At("segments");
+  features.segments.reserve(segments.FlatSize(5) / 5);
+  ReadReals<5>(segments, [&](const double* v) {
+    features.segments.push_back({{v[0], v[1]}, {v[2], v[3]}, v[4]});
+  });
+  return features;
+}
+
+ViewPair ReadViewPair(const JsonValue& value) {
+  ViewPair views;
+  if (value.FlatSize(1) != 2) value.Fail("must be two view ids");
+  ReadIdPairs(value, [&](ViewId first, ViewId second) {
+    views = {first, second};
+  });
+  return views;
+}
+
+RelativePose ReadRelativePose(const JsonValue& record) {
+  record.AllowOnly({"views", "rotation", "direction", "point_inliers",
+                    "line_inliers", "log10_nfa", "point_threshold_px",
+                    "covariance"});
+  RelativePose edge;
+  edge.views = ReadViewPair(record.At("views"));
+  edge.rotation = record.At("rotation").Matrix<3, 3>();
+  edge.direction = record.At("direction").Vector<3>();
+  edge.log10_nfa = record.At("log10_nfa").Real();
+  edge.point_threshold_px = record.At("point_threshold_px").Real();
+  if (const auto covariance = record.Find("covariance")) {
+    edge.covariance = covariance->Matrix<5, 5>();
+  }
+  edge.point_inliers = ReadMatches(record.At("point_inliers"));
+  edge.line_inliers = ReadMatches(record.At("line_inliers"));
+  return edge;
+}
+
+KindSupport ReadSupport(const JsonValue& record) {
+  record.AllowOnly({"candidates", "inliers", "log10_nfa", "threshold_px"});
+  return {record.At("candidates").Count(), record.At("inliers").Count(),
+          record.At("log10_nfa").Real(), record.At("threshold_px").Real()};
+}
+
+RatioVerdict ReadVerdict(const JsonValue& value) {
+  for (const RatioVerdict verdict :
+       {RatioVerdict::kMeaningful, RatioVerdict::kNotMeaningful,
+        RatioVerdict::kNoCandidates}) {
+    if (value.String() == RatioVerdictName(verdict)) return verdict;
+  }
+  value.Fail("verdict \"" + value.String() + "\" is not known");
+}
+
+ScaleRatio ReadScaleRatio(const JsonValue& record) {
+  record.AllowOnly({"views", "verdict", "log_ratio", "log_ratio_stddev",
+                    "log10_nfa", "points", "lines", "coplanar",
+                    "num_rejected_negative", "coplanar_inliers"});
+  ScaleRatio ratio;
+  const JsonValue views = record.At("views");
+  if (views.FlatSize(1) != 3) views.Fail("must be three view ids");
+  auto view = views.Elements().begin();
+  ratio.views.first = (*view).Id();
+  ratio.views.middle = (*++view).Id();
+  ratio.views.last = (*++view).Id();
+  ratio.verdict = ReadVerdict(record.At("verdict"));
+  ratio.log_ratio = record.At("log_ratio").Real();
+  ratio.log_ratio_stddev = record.At("log_ratio_stddev").Real();
+  ratio.log10_nfa = record.At("log10_nfa").Real();
+  ratio.points = ReadSupport(record.At("points"));
+  ratio.lines = ReadSupport(record.At("lines"));
+  ratio.coplanar = ReadSupport(record.At("coplanar"));
+  ratio.num_rejected_negative = record.At("num_rejected_negative").Count();
+  ReadIdPairs(record.At("coplanar_inliers"),
+              [&](FeatureIndex in_first, FeatureIndex in_last) {
+                ratio.coplanar_inliers.push_back({in_first, in_last});
+              });
+  return ratio;
+}
+
+LineLandmark ReadLine(const JsonValue& record) {
+  record.AllowOnly(
+      {"id", "direction", "moment", "start", "end", "observations"});
+  LineLandmark landmark;
+  landmark.line.direction = record.At("direction").Vector<3>();
+  landmark.line.moment = record.At("moment").Vector<3>();
+  landmark.start = record.At("start").Vector<3>();
+  landmark.end = record.At("end").Vector<3>();
+  landmark.observations = ReadTrack(record.At("observations"));
+  return landmark;
+}
+
+void ReadTracks(const JsonValue& list, std::map<std::uint32_t, Track>& tracks) {
+  for (const JsonValue record : list.Elements()) {
+    record.AllowOnly({"id", "observations"});
+    const JsonValue id = record.At("id");
+    if (!tracks.emplace(id.Id(), ReadTrack(record.At("observations"))).second) {
+      id.Fail("id " + std::to_string(id.Id()) + " is repeated",
+              ErrorCode::kInvalidScene);
+    }
+  }
+}
+
+}  // namespace
+
+void ReadOwnSections(const JsonValue& own, Scene& scene) {
+  const JsonValue version = own.At("version");
+  if (version.Id() != kVersion) {
+    version.Fail("version " + std::to_string(version.Id()) + " is not " +
+                     std::to_string(kVersion),
+                 ErrorCode::kUnsupported);
+  }
+  own.AllowOnly({"version", "features", "relative_poses", "point_tracks",
+                 "line_tracks", "scale_ratios", "line_structure",
+                 "coplanar_pairs"});
+  // A section that is missing is empty.
+  if (const auto list = own.Find("features")) {
+    for (const JsonValue record : list->Elements()) {
+      const JsonValue view = record.At("view");
+      if (!scene.features.emplace(view.Id(), ReadFeatures(record)).second) {
+        view.Fail("view " + std::to_string(view.Id()) + " is repeated",
+                  ErrorCode::kInvalidScene);
+      }
+    }
+  }
+  if (const auto list = own.Find("relative_poses")) {
+    for (const JsonValue record : list->Elements()) {
+      RelativePose edge = ReadRelativePose(record);
+      const ViewPair views = edge.views;
+      if (!scene.relative_poses.emplace(views, std::move(edge)).second) {
+        record.Fail("the pair of views is repeated", ErrorCode::kInvalidScene);
+      }
+    }
+  }
+  if (const auto list = own.Find("point_tracks")) {
+    ReadTracks(*list, scene.point_tracks);
+  }
+  if (const auto list = own.Find("line_tracks")) {
+    ReadTracks(*list, scene.line_tracks);
+  }
+  if (const auto list = own.Find("scale_ratios")) {
+    for (const JsonValue record : list->Elements()) {
+      scene.scale_ratios.push_back(ReadScaleRatio(record));
+    }
+  }
+  if (const auto list = own.Find("line_structure")) {
+    for (const JsonValue record : list->Elements()) {
+      const JsonValue id = record.At("id");
+      if (!scene.line_structure.emplace(id.Id(), ReadLine(record)).second) {
+        id.Fail("id " + std::to_string(id.Id()) + " is repeated",
+                ErrorCode::kInvalidScene);
+      }
+    }
+  }
+  if (const auto pairs = own.Find("coplanar_pairs")) {
+    ReadIdPairs(*pairs, [&](LineTrackId first, LineTrackId second) {
+      scene.coplanar_pairs.push_back({first, second});
+    });
+  }
+}
+
+}  // namespace lowlap::internal

@@ -1,0 +1,184 @@
+#include "lowlap/io/internal/json_text.h"
+#include "lowlap/io/internal/scene_json_sections.h"
+
+namespace lowlap::internal {
+namespace {
+
+template <class... Ids>
+void AppendIds(std::string& text, Ids... ids) {
+  for (const std::uint32_t id : {static_cast<std::uint32_t>(ids)...}) {
+    AppendComma(text);
+    AppendInteger(id, text);
+  }
+}
+
+void AppendCount(std::string_view name, int count, std::string& text) {
+  AppendKey(name, text);
+  AppendInteger(static_cast<std::uint32_t>(count), text);
+}
+
+void AppendNamedReal(std::string_view name, double value, std::string& text) {
+  AppendKey(name, text);
+  AppendReal(value, text);
+}
+
+void AppendTrackMember(const Track& track, std::string& text) {
+  AppendKey("observations", text);
+  text += "[";
+  for (const FeatureRef& ref : track) AppendIds(text, ref.view, ref.feature);
+  text += "]";
+}
+
+void AppendMatches(std::string_view name,
+                   const std::vector<FeatureMatch>& matches,
+                   std::string& text) {
+  AppendKey(name, text);
+  text += "[";
+  for (const FeatureMatch& match : matches) {
+    AppendIds(text, match.first, match.second);
+  }
+  text += "]";
+}
+
+void AppendFeatures(ViewId view, const ViewFeatures& features,
+                    std::string& text) {
+  const auto append_pixel = [&](const Vec2& pixel) {
+    for (const double coordinate : {pixel.x(), pixel.y()}) {
+      AppendComma(text);
+      AppendReal(coordinate, text);
+    }
+  };
+  text += "{";
+  AppendKey("view", text);
+  AppendInteger(view, text);
+  AppendKey("points", text);
+  text += "[";
+  for (const Vec2& point : features.points_px) append_pixel(point);
+  text += "]";
+  AppendKey("segments", text);
+  text += "[";
+  for (const LineSegment& segment : features.segments) {
+    append_pixel(segment.start_px);
+    append_pixel(segment.end_px);
+    AppendComma(text);
+    AppendReal(segment.stddev_px, text);
+  }
+  text += "]}";
+}
+
+void AppendRelativePose(const RelativePose& edge, std::string& text) {
+  text += "{";
+  AppendKey("views", text);
+  text += "[";
+  AppendIds(text, edge.views.first, edge.views.second);
+  text += "]";
+  AppendKey("rotation", text);
+  AppendMatrix(edge.rotation, text);
+  AppendKey("direction", text);
+  AppendVector(edge.direction, text);
+  AppendNamedReal("log10_nfa", edge.log10_nfa, text);
+  AppendNamedReal("point_threshold_px", edge.point_threshold_px, text);
+  if (edge.covariance) {
+    AppendKey("covariance", text);
+    AppendMatrix(*edge.covariance, text);
+  }
+  AppendMatches("point_inliers", edge.point_inliers, text);
+  AppendMatches("line_inliers", edge.line_inliers, text);
+  text += "}";
+}
+
+void AppendTrack(std::uint32_t id, const Track& track, std::string& text) {
+  text += "{";
+  AppendKey("id", text);
+  AppendInteger(id, text);
+  AppendTrackMember(track, text);
+  text += "}";
+}
+
+void AppendSupport(std::string_view name, const KindSupport& support,
+                   std::string& text) {
+  AppendKey(name, text);
+  text += "{";
+  AppendCount("candidates", support.candidates, text);
+  AppendCount("inliers", support.inliers, text);
+  AppendNamedReal("log10_nfa", support.log10_nfa, text);
+  AppendNamedReal("threshold_px", support.threshold_px, text);
+  text += "}";
+}
+
+void AppendScaleRatio(const ScaleRatio& ratio, std::string& text) {
+  text += "{";
+  AppendKey("views", text);
+  text += "[";
+  AppendIds(text, ratio.views.first, ratio.views.middle, ratio.views.last);
+  text += "]";
+  AppendKey("verdict", text);
+  AppendString(RatioVerdictName(ratio.verdict), text);
+  AppendNamedReal("log_ratio", ratio.log_ratio, text);
+  AppendNamedReal("log_ratio_stddev", ratio.log_ratio_stddev, text);
+  AppendNamedReal("log10_nfa", ratio.log10_nfa, text);
+  AppendSupport("points", ratio.points, text);
+  AppendSupport("lines", ratio.lines, text);
+  AppendSupport("coplanar", ratio.coplanar, text);
+  AppendCount("num_rejected_negative", ratio.num_rejected_negative, text);
+  AppendKey("coplanar_inliers", text);
+  text += "[";
+  for (const CoplanarInlier& inlier : ratio.coplanar_inliers) {
+    AppendIds(text, inlier.line_in_first, inlier.line_in_last);
+  }
+  text += "]}";
+}
+
+void AppendLine(LineTrackId id, const LineLandmark& landmark,
+                std::string& text) {
+  text += "{";
+  AppendKey("id", text);
+  AppendInteger(id, text);
+  AppendKey("direction", text);
+  AppendVector(landmark.line.direction, text);
+  AppendKey("moment", text);
+  AppendVector(landmark.line.moment, text);
+  AppendKey("start", text);
+  AppendVector(landmark.start, text);
+  AppendKey("end", text);
+  AppendVector(landmark.end, text);
+  AppendTrackMember(landmark.observations, text);
+  text += "}";
+}
+
+}  // namespace
+
+void AppendOwnSections(const Scene& scene, std::string& text) {
+  const auto append_features = [](const auto& entry, std::string& out) {
+    AppendFeatures(entry.first, entry.second, out);
+  };
+  const auto append_relative_pose = [](const auto& entry, std::string& out) {
+    AppendRelativePose(entry.second, out);
+  };
+  const auto append_track = [](const auto& entry, std::string& out) {
+    AppendTrack(entry.first, entry.second, out);
+  };
+  const auto append_line = [](const auto& entry, std::string& out) {
+    AppendLine(entry.first, entry.second, out);
+  };
+  text += "\"version\": 1,\n";
+  AppendSection("features", scene.features, append_features, text);
+  text += ",\n";
+  AppendSection("relative_poses", scene.relative_poses, append_relative_pose,
+                text);
+  text += ",\n";
+  AppendSection("point_tracks", scene.point_tracks, append_track, text);
+  text += ",\n";
+  AppendSection("line_tracks", scene.line_tracks, append_track, text);
+  text += ",\n";
+  AppendSection("scale_ratios", scene.scale_ratios, AppendScaleRatio, text);
+  text += ",\n";
+  AppendSection("line_structure", scene.line_structure, append_line, text);
+  text += ",\n\"coplanar_pairs\": [";
+  for (const CoplanarPair& pair : scene.coplanar_pairs) {
+    AppendIds(text, pair.first, pair.second);
+  }
+  text += "]";
+}
+
+}  // namespace lowlap::internal

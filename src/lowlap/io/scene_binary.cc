@@ -1,0 +1,174 @@
+#include "lowlap/io/scene_binary.h"
+
+#include <array>
+#include <ostream>
+#include <string_view>
+
+#include "lowlap/core/atomic_file.h"
+#include "lowlap/io/internal/byte_archive.h"
+#include "lowlap/io/internal/crc32.h"
+#include "lowlap/io/internal/scene_records.h"
+#include "lowlap/io/internal/transfer.h"
+#include "lowlap/scene/validation.h"
+
+namespace lowlap {
+namespace {
+
+using internal::ByteReader;
+using internal::ByteWriter;
+
+// Like PNG's, the first byte is not text and the last ones show a file that was
+// sent as text.
+constexpr std::string_view kMagic("\x89LOWLAP\n", 8);
+constexpr std::uint32_t kVersion = 1;
+
+// In the order of the file; all are always there.
+constexpr std::array<std::string_view, 13> kSections = {
+    "ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT",
+    "RELP", "PTRK", "LTRK", "RATI", "LINE", "COPL"};
+
+template <class Archive, class SceneType>
+void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
+  if (tag == "ROOT") {
+    archive.Text(scene.root_path);
+  } else if (tag == "VIEW") {
+    TransferMap(archive, scene.views, internal::kTransferView);
+  } else if (tag == "INTR") {
+    TransferMap(archive, scene.intrinsics, internal::kTransferIntrinsic);
+  } else if (tag == "POSE") {
+    TransferMap(archive, scene.poses, internal::kTransferPose);
+  } else if (tag == "STRU") {
+    TransferMap(archive, scene.structure, internal::kTransferLandmark);
+  } else if (tag == "CTRL") {
+    TransferMap(archive, scene.control_points, internal::kTransferLandmark);
+  } else if (tag == "FEAT") {
+    TransferMap(archive, scene.features, internal::kTransferFeatures);
+  } else if (tag == "RELP") {
+    TransferRelativePoses(archive, scene.relative_poses);
+  } else if (tag == "PTRK") {
+    TransferMap(archive, scene.point_tracks, internal::kTransferTrack);
+  } else if (tag == "LTRK") {
+    TransferMap(archive, scene.line_tracks, internal::kTransferTrack);
+  } else if (tag == "RATI") {
+    TransferVector(archive, scene.scale_ratios, internal::kScaleRatioMinBytes,
+                   internal::kTransferScaleRatio);
+  } else if (tag == "LINE") {
+    TransferMap(archive, scene.line_structure, internal::kTransferLine);
+  } else if (tag == "COPL") {
+    TransferVector(archive, scene.coplanar_pairs, 8, internal::kTransferMatch);
+  }
+}
+
+void ReadSection(std::string_view tag, ByteReader& file, std::size_t size,
+                 Scene& scene) {
+  const std::string_view stored_tag = file.Take(tag.size());
+  const std::string name(tag);
+  if (stored_tag != tag) file.Fail("section " + name + " is missing");
+  std::uint32_t checksum = 0;
+  std::uint64_t length = 0;
+  file.Integer(checksum);
+  file.Integer(length);
+  if (length > file.BytesLeft()) {
+    file.Fail("section " + name + " ends early");
+  }
+  const std::size_t offset = size - file.BytesLeft();
+  const std::string_view payload = file.Take(length);
+  if (internal::Crc32(payload) != checksum) {
+    file.Fail("section " + name + " is damaged: its checksum is wrong");
+  }
+  ByteReader section(payload, "section " + name + ", ", offset);
+  TransferSection(tag, section, scene);
+  if (section.BytesLeft() > 0) section.Fail("the section is too long");
+}
+
+Scene ReadSections(const std::string& bytes) {
+  ByteReader file(bytes, {}, 0);
+  if (file.BytesLeft() < kMagic.size() || file.Take(kMagic.size()) != kMagic) {
+    file.Fail("this is not a .lowlap file");
+  }
+  std::uint32_t version = 0, section_count = 0;
+  file.Integer(version);
+  if (version != kVersion) {
+    throw internal::Failure{Error{ErrorCode::kUnsupported,
+                                  "version " + std::to_string(version) +
+                                      " is not " + std::to_string(kVersion),
+                                  {},
+                                  "byte " + std::to_string(kMagic.size())}};
+  }
+  file.Integer(section_count);
+  if (section_count != kSections.size()) {
+    file.Fail("the number of sections is wrong");
+  }
+  Scene scene;
+  for (const std::string_view tag : kSections) {
+    ReadSection(tag, file, bytes.size(), scene);
+  }
+  if (file.BytesLeft() > 0) file.Fail("something follows the last section");
+  return scene;
+}
+
+template <class Unsigned>
+std::string Encoded(Unsigned value) {
+  std::string bytes;
+  ByteWriter(bytes).Integer(value);
+  return bytes;
+}
+
+}  // namespace
+
+Result<Scene> ParseSceneBinary(const std::string& bytes,
+                               const std::string& file) {
+  Result<Scene> scene;
+  try {
+    scene = ReadSections(bytes);
+  } catch (internal::Failure& failure) {
+    scene = tl::unexpected<Error>(std::move(failure.error));
+  }
+  if (scene) {
+    if (Status valid = ValidateScene(*scene); !valid) {
+      scene = tl::unexpected<Error>(std::move(valid).error());
+    }
+  }
+  if (!scene) scene.error().file = file;
+  return scene;
+}
+
+Result<Scene> ReadSceneBinary(const std::string& path) {
+  const Result<std::string> bytes = ReadWholeFile(path);
+  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  return ParseSceneBinary(*bytes, path);
+}
+
+Result<std::string> FormatSceneBinary(const Scene& scene) {
+  if (Status valid = ValidateScene(scene); !valid) {
+    return tl::unexpected<Error>(std::move(valid).error());
+  }
+  std::string bytes(kMagic);
+  bytes += Encoded(kVersion);
+  bytes += Encoded(static_cast<std::uint32_t>(kSections.size()));
+  std::string payload;
+  for (const std::string_view tag : kSections) {
+    payload.clear();
+    ByteWriter writer(payload);
+    TransferSection(tag, writer, scene);
+    bytes += tag;
+    bytes += Encoded(internal::Crc32(payload));
+    bytes += Encoded(static_cast<std::uint64_t>(payload.size()));
+    bytes += payload;
+  }
+  return bytes;
+}
+
+Status WriteSceneBinary(const Scene& scene, const std::string& path) {
+  Result<std::string> bytes = FormatSceneBinary(scene);
+  if (!bytes) {
+    bytes.error().file = path;
+    return tl::unexpected<Error>(std::move(bytes).error());
+  }
+  return WriteFileAtomically(path, [&](std::ostream& stream) -> Status {
+    stream.write(bytes->data(), static_cast<std::streamsize>(bytes->size()));
+    return {};
+  });
+}
+
+}  // namespace lowlap
