@@ -2,9 +2,11 @@
 
 #include <unistd.h>
 
+#include <array>
+#include <atomic>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <system_error>
 
 namespace lowlap {
@@ -12,8 +14,11 @@ namespace fs = std::filesystem;
 
 Status WriteFileAtomically(const std::string& path,
                            const std::function<Status(std::ostream&)>& write) {
-  const std::string temporary =
-      path + ".tmp" + std::to_string(static_cast<long>(::getpid()));
+  // Its own for every call: threads may write the same path.
+  static std::atomic<unsigned> call{0};
+  const std::string temporary = path + ".tmp" +
+                                std::to_string(static_cast<long>(::getpid())) +
+                                "-" + std::to_string(call.fetch_add(1));
   const auto fail = [&](Error error) -> Status {
     std::error_code ignored;
     fs::remove(temporary, ignored);
@@ -47,10 +52,17 @@ Result<std::string> ReadWholeFile(const std::string& path) {
   }
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return MakeError(ErrorCode::kIo, "cannot be opened", path);
-  std::ostringstream content;
-  content << stream.rdbuf();
+  // The size is a hint: a pipe has none.
+  std::string content;
+  const std::uintmax_t size_hint = fs::file_size(path, error);
+  if (!error) content.reserve(size_hint);
+  std::array<char, 1 << 16> buffer;
+  do {
+    stream.read(buffer.data(), buffer.size());
+    content.append(buffer.data(), static_cast<std::size_t>(stream.gcount()));
+  } while (stream);
   if (stream.bad()) return MakeError(ErrorCode::kIo, "cannot be read", path);
-  return std::move(content).str();
+  return content;
 }
 
 }  // namespace lowlap
