@@ -17,7 +17,7 @@ constexpr std::uint64_t kOffWallStream = 3'000'000;
 void AddRectangle(const Wall& wall, int index, int num_sides, Random* random,
                   World* world) {
   const double length_u = wall.u.norm(), length_v = wall.v.norm();
-  const double largest = 0.45 * std::min(length_u, length_v);
+  const double largest = 0.3 * std::min(length_u, length_v);
   const double half_width = 0.5 * random->Uniform(0.25, 1.0) * largest;
   const double half_height = 0.5 * random->Uniform(0.25, 1.0) * largest;
   const double turn =
@@ -39,7 +39,7 @@ void AddRectangle(const Wall& wall, int index, int num_sides, Random* random,
                            center - half_width * a + half_height * b};
   for (int side = 0; side < num_sides; ++side) {
     world->lines.push_back(
-        {corners[side], corners[(side + 1) % 4], index, {index}});
+        {corners[side], corners[(side + 1) % 4], index, {wall.plane}});
   }
 }
 

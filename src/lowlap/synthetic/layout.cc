@@ -28,11 +28,21 @@ Pose LookAt(const Vec3& center, const Vec3& target, double roll_rad) {
   return pose;
 }
 
+// Cameras on a loop are at most 30 degrees apart: few of them cover a part of
+// it.
+double LoopStep(int num_views) {
+  return std::min(2 * kPi / num_views, RadFromDeg(30.0));
+}
+
 double Roll(Random* random) { return random->Gaussian(RadFromDeg(2.0)); }
 
 void AddEdge(const Vec3& start, const Vec3& end, int wall_a, int wall_b,
              World* world) {
-  world->lines.push_back({start, end, wall_a, {wall_a, wall_b}});
+  world->lines.push_back(
+      {start,
+       end,
+       wall_a,
+       {world->walls[wall_a].plane, world->walls[wall_b].plane}});
 }
 
 // A box of about 6 x 2.7 x 4.5 m whose walls meet at 80 to 100 degrees and
@@ -75,10 +85,11 @@ void AddRoom(Random* random, World* world) {
 void AddRoomCameras(const SyntheticOptions& options, Random* random,
                     World* world) {
   const int n = options.num_views;
+  const double size = options.look_outwards ? 0.4 : 1.0;
   for (int i = 0; i < n; ++i) {
-    const double angle = 2 * kPi * (i + random->Uniform(-0.15, 0.15)) / n;
+    const double angle = LoopStep(n) * (i + random->Uniform(-0.15, 0.15));
     const Vec3 outward(std::cos(angle), 0, std::sin(angle));
-    const double radius = random->Uniform(0.9, 1.1);
+    const double radius = size * random->Uniform(0.9, 1.1);
     const Vec3 center(1.7 * radius * outward.x(), random->Uniform(-0.3, 0.3),
                       1.2 * radius * outward.z());
     const Vec3 forward = options.look_outwards ? outward : Vec3(-outward);
@@ -153,7 +164,7 @@ void AddCorridor(const SyntheticOptions& options, Random* random,
         center + 3 * (std::cos(yaw) * along + std::sin(yaw) * right);
     world->poses.push_back(LookAt(center, aim, Roll(random)));
   }
-  world->max_range = 12.0;
+  world->max_range = 8.0;
 }
 
 // Seven boxes on a floor, their tops and sides; a camera sees the sides that
@@ -184,7 +195,7 @@ void AddRing(const SyntheticOptions& options, Random* random, World* world) {
                  0.8);
   const int n = options.num_views;
   for (int i = 0; i < n; ++i) {
-    const double angle = 2 * kPi * (i + random->Uniform(-0.15, 0.15)) / n;
+    const double angle = LoopStep(n) * (i + random->Uniform(-0.15, 0.15));
     const double radius = random->Uniform(4.6, 5.4);
     const Vec3 center(radius * std::cos(angle), random->Uniform(-1.8, -1.2),
                       radius * std::sin(angle));
@@ -193,16 +204,26 @@ void AddRing(const SyntheticOptions& options, Random* random, World* world) {
   }
 }
 
+// A wall 4 m in front of the cameras, in sections of 4 m.
 void AddPlanar(const SyntheticOptions& options, Random* random, World* world) {
+  constexpr double kSection = 4.0, kStep = 0.7;
+  const Vec3 along = Vec3(1, 0, 0.1).normalized();
   const int n = options.num_views;
-  const double step = 0.7, length = step * n + 6;
-  world->AddWall(Vec3(-3, 2, 4), Vec3(length, 0, 0.1 * length),
-                 Vec3(0.1, -4, 0), Vec3(0, 0, 0), 1.2);
+  const int sections = static_cast<int>(std::ceil((kStep * n + 6) / kSection));
+  int plane = -1;
+  for (int s = 0; s < sections; ++s) {
+    const Vec3 origin = Vec3(-3, 2, 4) + kSection * s * along;
+    const int wall = world->AddWall(origin, kSection * along, Vec3(0.1, -4, 0),
+                                    Vec3(0, 0, 0), 1.2, plane);
+    plane = world->walls[wall].plane;
+  }
   for (int i = 0; i < n; ++i) {
-    const double x = step * (i + random->Uniform(-0.2, 0.2));
-    const Vec3 center{x, random->Uniform(-0.3, 0.3),
-                      0.1 * x + random->Uniform(-0.5, 0.5)};
-    const Vec3 aim(x + random->Uniform(-1.0, 1.0), 0, 0.1 * x + 4);
+    const double distance = kStep * (i + random->Uniform(-0.2, 0.2));
+    const double below = random->Uniform(-0.3, 0.3);
+    const double nearer = random->Uniform(-0.5, 0.5);
+    const Vec3 center = distance * along + Vec3(0, below, nearer);
+    const double sideways = random->Uniform(-1.0, 1.0);
+    const Vec3 aim = (distance + sideways) * along + Vec3(0, 0, 4);
     world->poses.push_back(LookAt(center, aim, Roll(random)));
   }
 }
@@ -210,11 +231,15 @@ void AddPlanar(const SyntheticOptions& options, Random* random, World* world) {
 }  // namespace
 
 int World::AddWall(const Vec3& origin, const Vec3& u, const Vec3& v,
-                   const Vec3& seen_from, double clearance) {
+                   const Vec3& seen_from, double clearance, int plane) {
   Vec3 normal = u.cross(v).normalized();
   if (normal.dot(seen_from - origin) < 0) normal = -normal;
-  planes.emplace_back(normal.x(), normal.y(), normal.z(), -normal.dot(origin));
-  walls.push_back({origin, u, v, normal, clearance});
+  if (plane < 0) {
+    plane = static_cast<int>(planes.size());
+    planes.emplace_back(normal.x(), normal.y(), normal.z(),
+                        -normal.dot(origin));
+  }
+  walls.push_back({origin, u, v, normal, plane, clearance});
   return static_cast<int>(walls.size()) - 1;
 }
 

@@ -14,7 +14,7 @@ namespace lowlap {
 /// The worlds that can be simulated; all are metric (metres) and made of planar
 /// walls that carry points and lines.
 enum class SyntheticKind {
-  kRoom,      // a crooked box, seen from a loop of cameras inside it
+  kRoom,      // a crooked box of 6 x 4.5 x 2.7 m, cameras on a loop inside it
   kCorridor,  // 5 m of walls per section; cameras walk along it and turn
   kRing,      // cameras on a circle look at boxes in its middle
   // Degenerate worlds:
@@ -29,17 +29,20 @@ std::optional<SyntheticKind> SyntheticKindFromName(const std::string& name);
 
 struct SyntheticOptions {
   SyntheticKind kind = SyntheticKind::kRoom;
+  /// Views of a room or a ring are spread over its loop, but at most 30 degrees
+  /// apart: with less than 12 the loop stays open.
   int num_views = 12;
   /// Pairs of views with a relative pose: "chain", "cycle", "window:N" (at most
   /// N views apart), or "all" (whatever shares at least 16 features). Of the
   /// first three, pairs that see nothing in common are kept, without matches.
   std::string pairs = "cycle";
-  /// kRoom only: look at the wall behind the camera's back instead of across
-  /// the room. Neighbours then share less, and rotate more than they move.
+  /// kRoom and kPureRotation: a small loop, looking outwards, instead of a wide
+  /// one, looking across. Neighbours then share less, and turn more than they
+  /// move.
   bool look_outwards = false;
 
-  int points_per_wall = 60;
-  int lines_per_wall = 40;
+  int points_per_wall = 100;
+  int lines_per_wall = 160;
   /// Share of the points (lines) that may be seen by three views or more. The
   /// others are seen by the two views of one pair, drawn at random from those
   /// they fit: at 0 no two pairs share a feature, but their lines mix on the

@@ -14,6 +14,7 @@ struct Wall {
   Vec3 u = Vec3::UnitX();
   Vec3 v = Vec3::UnitY();
   Vec3 inward = Vec3::UnitZ();  // unit normal, towards the cameras
+  int plane = 0;                // sections of one wall share it
   double clearance = 1.0;       // how far a line may be moved off, in metres
 
   Vec3 At(double a, double b) const { return origin + a * u + b * v; }
@@ -40,10 +41,10 @@ struct World {
   std::vector<Pose> poses;  // by view
   double max_range = 1e9;   // metres; what is farther is not seen
 
-  /// Adds a wall whose inner side is that of `seen_from`, and its plane, whose
-  /// id is the wall's index; returns the index.
+  /// Adds a wall whose inner side is that of `seen_from`, on a plane of its own
+  /// unless `plane` names one that exists; returns its index.
   int AddWall(const Vec3& origin, const Vec3& u, const Vec3& v,
-              const Vec3& seen_from, double clearance);
+              const Vec3& seen_from, double clearance, int plane = -1);
 };
 
 /// Walls, edges and cameras of the options' kind.
