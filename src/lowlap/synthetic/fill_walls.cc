@@ -69,7 +69,8 @@ void FillWalls(const SyntheticOptions& options, double off_wall, World* world) {
   for (std::size_t i = 0; i < world->lines.size(); ++i) {
     WorldLine& line = world->lines[i];
     Random random(options.seed, kOffWallStream + i);
-    if (random.Uniform() < off_wall) {
+    // An edge would stay on its other wall.
+    if (random.Uniform() < off_wall && line.planes.size() == 1) {
       MoveOff(world->walls[line.wall], &random, &line);
     }
   }
