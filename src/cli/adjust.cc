@@ -1,0 +1,113 @@
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "cli/command.h"
+#include "cli/solve_flags.h"
+#include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/adjustment/structure_builder.h"
+#include "lowlap/pipeline/output_folder.h"
+#include "lowlap/pipeline/summary_json.h"
+#include "third_party_adapters/scene_formats.h"
+
+namespace lowlap::cli {
+namespace {
+
+struct Flags {
+  CommonFlags common;
+  std::string scene;
+  std::string output;
+  std::vector<std::string> features = {"points", "lines", "coplanar"};
+  bool retriangulate = false;
+  std::string ground_truth;
+};
+
+int Adjust(const Flags& flags) {
+  const RunContext context = MakeContext(flags.common);
+  AdjustmentOptions options;
+  if (const Status set = SetAdjustedFeatures(flags.features, &options); !set) {
+    return Fail(set.error());
+  }
+  auto scene = ReadScene(flags.scene);
+  if (!scene) return Fail(scene.error());
+  if (scene->poses.empty()) {
+    return Fail({ErrorCode::kInvalidScene,
+                 "holds no poses to adjust; 'lowlap solve' finds them",
+                 flags.scene,
+                 {}});
+  }
+  const auto truth = LoadGroundTruth(flags.ground_truth, *scene);
+  if (!truth) return Fail(truth.error());
+  RunSummary summary;
+  summary.command = "adjust";
+  if (*truth) {
+    summary.evaluation_before_adjustment = EvaluatePoses(*scene, **truth);
+  }
+  StageLog stages;
+  SolveResult result;
+  if (flags.retriangulate ||
+      (scene->structure.empty() && scene->line_structure.empty())) {
+    const StageLog::Scope scope(&stages, "structure");
+    auto structure = BuildStructure(&*scene, StructureOptions{}, context);
+    if (!structure) return Fail(structure.error());
+    result.structure = std::move(*structure);
+  }
+  {
+    const StageLog::Scope scope(&stages, "adjustment");
+    auto adjustment = AdjustScene(&*scene, options, context);
+    if (!adjustment) return Fail(adjustment.error());
+    result.adjustment = std::move(*adjustment);
+  }
+  if (*truth) summary.evaluation = EvaluatePoses(*scene, **truth);
+  result.ratios = SummarizeRatios(scene->scale_ratios);
+  result.poses.num_views = static_cast<int>(scene->views.size());
+  for (const auto& entry : scene->views) {
+    if (scene->FindPose(entry.first) != nullptr) {
+      ++result.poses.num_placed;
+    } else {
+      result.poses.unplaced.push_back(entry.first);
+    }
+  }
+  summary.solve = std::move(result);
+  summary.stages = stages.stages();
+  Status written = PrepareOutputFolder(flags.output);
+  if (written) {
+    written = WriteOutputs(*scene, ToJson(summary, *scene), flags.output);
+  }
+  if (!written) return Fail(written.error());
+  const AdjustmentSummary& adjustment = *summary.solve->adjustment;
+  std::printf("cost %.6g -> %.6g in %d iterations, %d outlier rounds\n",
+              adjustment.initial_cost, adjustment.final_cost,
+              adjustment.iterations, adjustment.outlier_rounds);
+  if (summary.evaluation) {
+    std::printf("\n%s\n", ToText(*summary.evaluation).c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddAdjust(CLI::App* program, Action* action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = program->add_subcommand(
+      "adjust",
+      "Bundle adjustment of a solved scene, over points, lines and "
+      "coplanar line pairs");
+  command->add_option("scene", flags->scene, "Solved scene file")->required();
+  command->add_option("-o,--output", flags->output, "Folder for the results")
+      ->required();
+  command
+      ->add_option("--adjust-features", flags->features,
+                   "Kinds to adjust, separated by commas: points, lines, "
+                   "coplanar")
+      ->delimiter(',');
+  command->add_flag("--retriangulate", flags->retriangulate,
+                    "Build the structure anew from the tracks first");
+  command->add_option("--gt", flags->ground_truth,
+                      "Folder of true cameras to evaluate against");
+  AddCommonFlags(command, &flags->common);
+  command->callback(
+      [flags, action] { *action = [flags] { return Adjust(*flags); }; });
+}
+
+}  // namespace lowlap::cli

@@ -1,0 +1,133 @@
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+#include <ostream>
+
+#include "cli/command.h"
+#include "cli/scene_input.h"
+#include "lowlap/averaging/rigidity.h"
+#include "lowlap/core/atomic_file.h"
+#include "lowlap/pipeline/summary_json.h"
+#include "third_party_adapters/scene_formats.h"
+
+namespace lowlap::cli {
+namespace {
+
+struct Flags {
+  CommonFlags common;
+  SceneInputFlags input;
+  std::string json;
+};
+
+std::string Names(const Scene& scene, const std::vector<ViewId>& views) {
+  std::string text;
+  for (const ViewId view : views) {
+    text += (text.empty() ? "" : " ") + scene.views.at(view).filename;
+  }
+  return text;
+}
+
+void PrintContent(const Scene& scene) {
+  std::size_t points = 0, segments = 0, meaningful = 0;
+  for (const auto& [view, features] : scene.features) {
+    points += features.points_px.size();
+    segments += features.segments.size();
+  }
+  for (const ScaleRatio& ratio : scene.scale_ratios) {
+    meaningful += ratio.verdict == RatioVerdict::kMeaningful ? 1 : 0;
+  }
+  std::printf("views %zu, intrinsics %zu, poses %zu\n", scene.views.size(),
+              scene.intrinsics.size(), scene.poses.size());
+  std::printf("features: %zu points, %zu segments\n", points, segments);
+  std::printf("relative poses %zu, tracks: %zu points, %zu lines\n",
+              scene.relative_poses.size(), scene.point_tracks.size(),
+              scene.line_tracks.size());
+  std::printf("scale ratios %zu, meaningful %zu\n", scene.scale_ratios.size(),
+              meaningful);
+  std::printf("structure: %zu points, %zu lines, %zu coplanar pairs\n",
+              scene.structure.size(), scene.line_structure.size(),
+              scene.coplanar_pairs.size());
+}
+
+void PrintRigidity(const RigidityReport& report, const Scene& scene) {
+  if (!report.isolated_views.empty()) {
+    std::printf("views without a relative pose: %s\n",
+                Names(scene, report.isolated_views).c_str());
+  }
+  if (report.connected_components.size() > 1) {
+    std::printf("the view graph falls into %zu parts without a link:\n",
+                report.connected_components.size());
+    for (const auto& component : report.connected_components) {
+      std::printf("  %s\n", Names(scene, component).c_str());
+    }
+  }
+  if (report.groups.empty()) return;
+  if (report.groups.size() == 1) {
+    std::printf("rigid: directions alone fix one common scale for all views\n");
+    return;
+  }
+  std::printf(
+      "%zu groups of views, each with a scale of its own (directions "
+      "alone do not join them):\n",
+      report.groups.size());
+  for (std::size_t g = 0; g < report.groups.size(); ++g) {
+    std::printf("  group %zu: %s\n", g + 1,
+                Names(scene, report.groups[g].views).c_str());
+  }
+  std::printf(
+      "groups that share only one camera; their common scale can come "
+      "only from scale ratios across it:\n");
+  for (const Hinge& hinge : report.hinges) {
+    std::string groups;
+    for (const std::size_t g : hinge.groups) {
+      groups += (groups.empty() ? "" : ", ") + std::to_string(g + 1);
+    }
+    std::printf("  %s joins groups %s\n",
+                scene.views.at(hinge.view).filename.c_str(), groups.c_str());
+  }
+}
+
+int Inspect(const Flags& flags) {
+  const RunContext context = MakeContext(flags.common);
+  StageLog stages;
+  Scene scene;
+  if (flags.input.matches_dir.empty()) {
+    auto read = ReadScene(flags.input.scene);
+    if (!read) return Fail(read.error());
+    scene = std::move(*read);
+  } else {
+    auto loaded = LoadMeasuredScene(flags.input, context, &stages);
+    if (!loaded) return Fail(loaded.error());
+    scene = std::move(loaded->scene);
+  }
+  const RigidityReport report = AnalyzeRigidity(scene);
+  if (!flags.json.empty()) {
+    const Status written =
+        WriteFileAtomically(flags.json, [&](std::ostream& out) -> Status {
+          out << ToJson(report) << '\n';
+          return {};
+        });
+    if (!written) return Fail(written.error());
+  }
+  PrintContent(scene);
+  if (!scene.relative_poses.empty()) PrintRigidity(report, scene);
+  return 0;
+}
+
+}  // namespace
+
+void AddInspect(CLI::App* program, Action* action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = program->add_subcommand(
+      "inspect",
+      "Say what a scene holds, and which views can share a scale, "
+      "before anything is solved");
+  AddSceneInputFlags(command, &flags->input);
+  command->add_option("--json", flags->json,
+                      "Also write groups and hinges as JSON");
+  AddCommonFlags(command, &flags->common);
+  command->callback(
+      [flags, action] { *action = [flags] { return Inspect(*flags); }; });
+}
+
+}  // namespace lowlap::cli

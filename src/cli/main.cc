@@ -1,0 +1,38 @@
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <exception>
+
+#include "cli/command.h"
+
+int main(int argc, char** argv) {
+  CLI::App program{
+      "lowlap calibrates photographs that hardly overlap: it finds the "
+      "relative "
+      "scale of\nneighbouring relative poses from coplanar lines and from "
+      "trifocal points and lines,\ncomposes camera poses, and refines them by "
+      "bundle adjustment."};
+  program.set_version_flag("--version", LOWLAP_VERSION);
+  program.require_subcommand(1);
+  program.footer("'lowlap COMMAND --help' explains a command.");
+
+  lowlap::cli::Action action;
+  lowlap::cli::AddRun(&program, &action);
+  lowlap::cli::AddSolve(&program, &action);
+  lowlap::cli::AddScales(&program, &action);
+  lowlap::cli::AddAdjust(&program, &action);
+  lowlap::cli::AddEvaluate(&program, &action);
+  lowlap::cli::AddInspect(&program, &action);
+  lowlap::cli::AddConvert(&program, &action);
+  lowlap::cli::AddValidate(&program, &action);
+  lowlap::cli::AddSimulate(&program, &action);
+
+  CLI11_PARSE(program, argc, argv);
+  try {
+    return action();
+  } catch (const std::exception& exception) {
+    // The library reports errors as values; this is memory running out and the
+    // like.
+    std::fprintf(stderr, "error: %s\n", exception.what());
+    return 1;
+  }
+}

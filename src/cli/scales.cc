@@ -1,0 +1,91 @@
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <ostream>
+
+#include "cli/command.h"
+#include "cli/scene_input.h"
+#include "cli/solve_flags.h"
+#include "lowlap/core/atomic_file.h"
+#include "lowlap/evaluation/relative_errors.h"
+#include "lowlap/pipeline/summary_json.h"
+#include "lowlap/scale/scale_ratios.h"
+
+namespace lowlap::cli {
+namespace {
+
+struct Flags {
+  CommonFlags common;
+  SceneInputFlags input;
+  ScaleFlags scale;
+  std::string json;
+  std::string ground_truth;
+};
+
+void PrintTable(const std::vector<ScaleRatio>& ratios) {
+  std::printf("%-17s %9s %9s %9s %13s %13s %13s  %s\n", "views", "ratio",
+              "+- log", "log10 NFA", "points", "lines", "coplanar", "verdict");
+  for (const ScaleRatio& r : ratios) {
+    const auto support = [](const KindSupport& kind) {
+      return std::to_string(kind.inliers) + "/" +
+             std::to_string(kind.candidates);
+    };
+    const std::string views = std::to_string(r.views.first) + "-" +
+                              std::to_string(r.views.middle) + "-" +
+                              std::to_string(r.views.last);
+    std::printf("%-17s %9.4f %9.4f %9.1f %13s %13s %13s  %s\n", views.c_str(),
+                std::exp(r.log_ratio), r.log_ratio_stddev, r.log10_nfa,
+                support(r.points).c_str(), support(r.lines).c_str(),
+                support(r.coplanar).c_str(), RatioVerdictName(r.verdict));
+  }
+}
+
+int Scales(const Flags& flags) {
+  const RunContext context = MakeContext(flags.common);
+  const auto options = MakeScaleOptions(flags.scale);
+  if (!options) return Fail(options.error());
+  StageLog stages;
+  auto loaded = LoadMeasuredScene(flags.input, context, &stages);
+  if (!loaded) return Fail(loaded.error());
+  const auto truth = LoadGroundTruth(flags.ground_truth, loaded->scene);
+  if (!truth) return Fail(truth.error());
+  const auto ratios = EstimateScaleRatios(loaded->scene, *options, context);
+  if (!ratios) return Fail(ratios.error());
+  if (!flags.json.empty()) {
+    const Status written =
+        WriteFileAtomically(flags.json, [&](std::ostream& out) -> Status {
+          out << ToJson(*ratios) << '\n';
+          return {};
+        });
+    if (!written) return Fail(written.error());
+  }
+  PrintTable(*ratios);
+  if (*truth) {
+    loaded->scene.scale_ratios = *ratios;
+    std::printf("\n%s\n",
+                ToText(EvaluateRelativePoses(loaded->scene, **truth)).c_str());
+    std::printf("\n%s\n",
+                ToText(EvaluateScaleRatios(loaded->scene, **truth)).c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddScales(CLI::App* program, Action* action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = program->add_subcommand(
+      "scales",
+      "Show the relative scale of every two relative poses that "
+      "share a view");
+  AddSceneInputFlags(command, &flags->input);
+  AddScaleFlags(command, &flags->scale);
+  command->add_option("--json", flags->json, "Also write the table as JSON");
+  command->add_option("--gt", flags->ground_truth,
+                      "Folder of true cameras to compare with");
+  AddCommonFlags(command, &flags->common);
+  command->callback(
+      [flags, action] { *action = [flags] { return Scales(*flags); }; });
+}
+
+}  // namespace lowlap::cli

@@ -1,0 +1,97 @@
+#include "cli/scene_input.h"
+
+#include <utility>
+
+#include "lowlap/pipeline/image_collection.h"
+#include "third_party_adapters/openmvg/import.h"
+#include "third_party_adapters/scene_formats.h"
+
+namespace lowlap::cli {
+namespace {
+
+Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
+                                  const RunContext& context, StageLog* stages) {
+  LoadedScene loaded;
+  std::map<ViewPair, PairMatches> matches;
+  {
+    const StageLog::Scope scope(stages, "import");
+    openmvg::ImportOptions options;
+    options.match_file = flags.match_file;
+    auto project =
+        openmvg::ImportProject(flags.scene, flags.matches_dir, options);
+    if (!project) return tl::unexpected<Error>(project.error());
+    context.Log(LogLevel::kInfo, "matches from " + project->match_file);
+    if (project->num_dropped_pairs > 0) {
+      context.Log(LogLevel::kInfo,
+                  std::to_string(project->num_dropped_pairs) +
+                      " pairs name views that the listing does not have");
+    }
+    const auto excluded = FindViews(project->scene, flags.exclude);
+    if (!excluded) return tl::unexpected<Error>(excluded.error());
+    loaded.scene = WithoutViews(project->scene, *excluded);
+    for (auto& [views, points] : project->matches) {
+      if (loaded.scene.views.count(views.first) > 0 &&
+          loaded.scene.views.count(views.second) > 0) {
+        matches[views].points = std::move(points);
+      }
+    }
+  }
+  const StageLog::Scope scope(stages, "relative poses");
+  auto pairs = EstimateRelativePoses(&loaded.scene, matches,
+                                     RelativePoseOptions{}, context);
+  if (!pairs) return tl::unexpected<Error>(pairs.error());
+  loaded.pairs = std::move(*pairs);
+  return loaded;
+}
+
+Result<LoadedScene> ReadOwnScene(const SceneInputFlags& flags,
+                                 StageLog* stages) {
+  const StageLog::Scope scope(stages, "read");
+  auto scene = ReadScene(flags.scene);
+  if (!scene) return tl::unexpected<Error>(scene.error());
+  const auto excluded = FindViews(*scene, flags.exclude);
+  if (!excluded) return tl::unexpected<Error>(excluded.error());
+  return LoadedScene{
+      excluded->empty() ? std::move(*scene) : WithoutViews(*scene, *excluded),
+      {}};
+}
+
+}  // namespace
+
+void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
+  command
+      ->add_option("scene,-i,--input_file", flags->scene,
+                   "Scene file (.json, .lowlap), or an OpenMVG sfm_data file "
+                   "together with -m")
+      ->required();
+  command->add_option("-m,--matchdir", flags->matches_dir,
+                      "OpenMVG matches folder (.feat and matches.* files)");
+  command->add_option("-M,--match_file", flags->match_file,
+                      "Match file in that folder; default as in OpenMVG");
+  command
+      ->add_option("--exclude", flags->exclude,
+                   "Views to leave out (file names or ids), separated by "
+                   "commas")
+      ->delimiter(',');
+}
+
+Result<LoadedScene> LoadMeasuredScene(const SceneInputFlags& flags,
+                                      const RunContext& context,
+                                      StageLog* stages) {
+  auto loaded = flags.matches_dir.empty()
+                    ? ReadOwnScene(flags, stages)
+                    : ImportOpenMvg(flags, context, stages);
+  if (!loaded) return loaded;
+  if (loaded->scene.relative_poses.empty()) {
+    return MakeError(
+        ErrorCode::kInvalidScene,
+        flags.matches_dir.empty()
+            ? "holds no relative poses; for an OpenMVG listing give the "
+              "matches folder with -m"
+            : "no pair of views has a relative pose",
+        flags.scene);
+  }
+  return loaded;
+}
+
+}  // namespace lowlap::cli

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/pipeline/relative_poses.h"
+#include "lowlap/pipeline/stage_log.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap::cli {
+
+/// A scene to work on: a scene file of ours, or an OpenMVG listing with its
+/// matches folder. OpenMVG's flag names are understood.
+struct SceneInputFlags {
+  std::string scene;
+  std::string matches_dir;
+  std::string match_file;
+  std::vector<std::string> exclude;
+};
+
+void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags);
+
+struct LoadedScene {
+  Scene scene;
+  std::vector<PairReport> pairs;  // if the relative poses were estimated
+};
+
+/// Reads the scene without the excluded views. From an OpenMVG project the
+/// relative poses are estimated. kInvalidScene if there are none in the end.
+Result<LoadedScene> LoadMeasuredScene(const SceneInputFlags& flags,
+                                      const RunContext& context,
+                                      StageLog* stages);
+
+}  // namespace lowlap::cli

@@ -1,0 +1,52 @@
+#include <memory>
+#include <utility>
+
+#include "cli/command.h"
+#include "cli/scene_input.h"
+#include "cli/solve_flags.h"
+
+namespace lowlap::cli {
+namespace {
+
+struct Flags {
+  CommonFlags common;
+  SceneInputFlags input;
+  std::string output;
+  SolveFlags solve;
+};
+
+int Solve(const Flags& flags) {
+  const RunContext context = MakeContext(flags.common);
+  if (const auto options = MakeSolveOptions(flags.solve); !options) {
+    return Fail(options.error());
+  }
+  StageLog stages;
+  RunSummary summary;
+  summary.command = "solve";
+  auto loaded = LoadMeasuredScene(flags.input, context, &stages);
+  if (!loaded) return Fail(loaded.error());
+  summary.pairs = std::move(loaded->pairs);
+  return SolveAndWrite(std::move(loaded->scene), flags.solve,
+                       std::move(summary), &stages, context, flags.output);
+}
+
+}  // namespace
+
+void AddSolve(CLI::App* program, Action* action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = program->add_subcommand(
+      "solve",
+      "Solve a scene description (ours, or an OpenMVG project): scale "
+      "ratios, poses, bundle adjustment");
+  AddSceneInputFlags(command, &flags->input);
+  command
+      ->add_option("-o,--output,--outdir", flags->output,
+                   "Folder for the results")
+      ->required();
+  AddSolveFlags(command, &flags->solve);
+  AddCommonFlags(command, &flags->common);
+  command->callback(
+      [flags, action] { *action = [flags] { return Solve(*flags); }; });
+}
+
+}  // namespace lowlap::cli

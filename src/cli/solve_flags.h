@@ -1,0 +1,53 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/pipeline/solve_scene.h"
+#include "lowlap/pipeline/summary_json.h"
+
+namespace lowlap::cli {
+
+/// Flags of the scale step, shared by run, solve and scales.
+struct ScaleFlags {
+  std::vector<std::string> features = {"points", "lines", "coplanar"};
+  std::string criterion = "ac";
+  std::string nfa = "calibrated";
+  double threshold_px = 3.0;
+};
+
+void AddScaleFlags(CLI::App* command, ScaleFlags* flags);
+Result<ScaleOptions> MakeScaleOptions(const ScaleFlags& flags);
+
+/// Flags of everything after the measurements, shared by run and solve.
+struct SolveFlags {
+  ScaleFlags scale;
+  std::string strategy = "graph";
+  std::vector<std::string> adjust_features = {"points", "lines", "coplanar"};
+  bool no_adjust = false;
+  std::string ground_truth;
+};
+
+void AddSolveFlags(CLI::App* command, SolveFlags* flags);
+Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
+
+/// Sets the enabled kinds of `options` (points, lines, coplanar pairs);
+/// coplanar pairs need lines.
+Status SetAdjustedFeatures(const std::vector<std::string>& features,
+                           AdjustmentOptions* options);
+
+/// The true poses of a Strecha folder; empty if `folder` is.
+Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& folder,
+                                                   const Scene& scene);
+
+/// Solves a measured scene, writes the output folder, prints what a person
+/// wants to know, and returns the exit code.
+int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
+                  StageLog* stages, const RunContext& context,
+                  const std::string& output);
+
+}  // namespace lowlap::cli

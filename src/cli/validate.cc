@@ -1,0 +1,29 @@
+#include <cstdio>
+#include <memory>
+
+#include "cli/command.h"
+#include "lowlap/scene/validation.h"
+#include "third_party_adapters/scene_formats.h"
+
+namespace lowlap::cli {
+
+void AddValidate(CLI::App* program, Action* action) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command = program->add_subcommand(
+      "validate", "Check a scene file; names the first thing that is wrong");
+  command->add_option("scene", *path, "Scene file")->required();
+  command->callback([path, action] {
+    *action = [path] {
+      const auto scene = ReadScene(*path);
+      if (!scene) return Fail(scene.error());
+      if (Status valid = ValidateScene(*scene); !valid) {
+        valid.error().file = *path;
+        return Fail(valid.error());
+      }
+      std::printf("%s: valid, %zu views\n", path->c_str(), scene->views.size());
+      return 0;
+    };
+  });
+}
+
+}  // namespace lowlap::cli

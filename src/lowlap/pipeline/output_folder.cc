@@ -1,0 +1,43 @@
+#include "lowlap/pipeline/output_folder.h"
+
+#include <filesystem>
+#include <ostream>
+#include <system_error>
+
+#include "lowlap/core/atomic_file.h"
+#include "lowlap/io/ply.h"
+#include "lowlap/io/scene_binary.h"
+#include "lowlap/io/scene_json.h"
+
+namespace lowlap {
+namespace fs = std::filesystem;
+
+Status PrepareOutputFolder(const std::string& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder)) {
+    return MakeError(ErrorCode::kIo,
+                     "cannot be made a folder" +
+                         (error ? ": " + error.message() : std::string()),
+                     folder);
+  }
+  return {};
+}
+
+Status WriteOutputs(const Scene& scene, const std::string& summary_json,
+                    const std::string& folder) {
+  const auto path = [&](const char* name) {
+    return (fs::path(folder) / name).string();
+  };
+  Status status = WriteSceneJson(scene, path("sfm_data.json"));
+  if (status) status = WriteSceneBinary(scene, path("scene.lowlap"));
+  if (status) status = WritePly(scene, path("cloud.ply"));
+  if (!status) return status;
+  return WriteFileAtomically(path("summary.json"),
+                             [&](std::ostream& stream) -> Status {
+                               stream << summary_json << '\n';
+                               return {};
+                             });
+}
+
+}  // namespace lowlap

@@ -1,0 +1,72 @@
+#include "lowlap/pipeline/solve_scene.h"
+
+#include <utility>
+
+#include "lowlap/scale/scale_ratios.h"
+
+namespace lowlap {
+
+Status SolveOptions::Validate() const {
+  for (const Status& valid : {scale.Validate(), poses.Validate(),
+                              structure.Validate(), adjustment.Validate()}) {
+    if (!valid) return valid;
+  }
+  return {};
+}
+
+RatioSummary SummarizeRatios(const std::vector<ScaleRatio>& ratios) {
+  RatioSummary summary;
+  for (const ScaleRatio& ratio : ratios) {
+    ++summary.num_triplets;
+    switch (ratio.verdict) {
+      case RatioVerdict::kMeaningful:
+        ++summary.num_meaningful;
+        break;
+      case RatioVerdict::kNotMeaningful:
+        ++summary.num_not_meaningful;
+        break;
+      case RatioVerdict::kNoCandidates:
+        ++summary.num_without_candidates;
+        break;
+    }
+    summary.num_rejected_negative += ratio.num_rejected_negative;
+  }
+  return summary;
+}
+
+Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
+                               const RunContext& context, StageLog* stages) {
+  if (const Status valid = options.Validate(); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  SolveResult result;
+  {
+    const StageLog::Scope scope(stages, "scale ratios");
+    auto ratios = EstimateScaleRatios(*scene, options.scale, context);
+    if (!ratios) return tl::unexpected<Error>(ratios.error());
+    scene->scale_ratios = std::move(*ratios);
+    result.ratios = SummarizeRatios(scene->scale_ratios);
+  }
+  {
+    const StageLog::Scope scope(stages, "poses");
+    auto poses = SolveScenePoses(scene, options.poses, context);
+    if (!poses) return tl::unexpected<Error>(poses.error());
+    result.poses = std::move(*poses);
+    result.poses_before_adjustment = scene->poses;
+  }
+  {
+    const StageLog::Scope scope(stages, "structure");
+    auto structure = BuildStructure(scene, options.structure, context);
+    if (!structure) return tl::unexpected<Error>(structure.error());
+    result.structure = std::move(*structure);
+  }
+  if (options.adjust) {
+    const StageLog::Scope scope(stages, "adjustment");
+    auto adjustment = AdjustScene(scene, options.adjustment, context);
+    if (!adjustment) return tl::unexpected<Error>(adjustment.error());
+    result.adjustment = std::move(*adjustment);
+  }
+  return result;
+}
+
+}  // namespace lowlap

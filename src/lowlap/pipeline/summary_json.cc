@@ -1,0 +1,160 @@
+#include "lowlap/pipeline/summary_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace lowlap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ViewList(const std::vector<ViewId>& views) { return Json(views); }
+
+Json PairJson(const ViewPair& views) {
+  return Json::array({views.first, views.second});
+}
+
+Json KindJson(const KindSupport& kind) {
+  return {{"candidates", kind.candidates},
+          {"inliers", kind.inliers},
+          {"log10_nfa", kind.log10_nfa},
+          {"threshold_px", kind.threshold_px}};
+}
+
+Json RatioJson(const ScaleRatio& ratio) {
+  return {{"views", {ratio.views.first, ratio.views.middle, ratio.views.last}},
+          {"verdict", RatioVerdictName(ratio.verdict)},
+          {"log_ratio", ratio.log_ratio},
+          {"ratio", std::exp(ratio.log_ratio)},
+          {"log_ratio_stddev", ratio.log_ratio_stddev},
+          {"log10_nfa", ratio.log10_nfa},
+          {"points", KindJson(ratio.points)},
+          {"lines", KindJson(ratio.lines)},
+          {"coplanar", KindJson(ratio.coplanar)},
+          {"rejected_negative", ratio.num_rejected_negative}};
+}
+
+Json AdjustedKindJson(const KindAdjustment& kind) {
+  return {{"landmarks", kind.landmarks},
+          {"observations_used", kind.observations_used},
+          {"observations_dropped", kind.observations_dropped},
+          {"initial_rmse_px", kind.initial_rmse_px},
+          {"final_rmse_px", kind.final_rmse_px},
+          {"threshold_px", kind.threshold_px}};
+}
+
+Json TriangulationJson(const TriangulationSummary& kind) {
+  return {{"tracks", kind.tracks},
+          {"landmarks", kind.landmarks},
+          {"two_view_landmarks", kind.two_view_landmarks},
+          {"too_few_views", kind.too_few_views},
+          {"inconsistent", kind.inconsistent},
+          {"behind_camera", kind.behind_camera},
+          {"uncertain", kind.uncertain},
+          {"implausible", kind.implausible},
+          {"threshold_px", kind.threshold_px}};
+}
+
+Json SolveJson(const SolveResult& solve) {
+  Json json;
+  json["ratios"] = {{"triplets", solve.ratios.num_triplets},
+                    {"meaningful", solve.ratios.num_meaningful},
+                    {"not_meaningful", solve.ratios.num_not_meaningful},
+                    {"without_candidates", solve.ratios.num_without_candidates},
+                    {"rejected_negative", solve.ratios.num_rejected_negative}};
+  Json& poses = json["poses"];
+  poses["views"] = solve.poses.num_views;
+  poses["placed"] = solve.poses.num_placed;
+  poses["unplaced"] = ViewList(solve.poses.unplaced);
+  poses["components"] = Json::array();
+  for (const auto& component : solve.poses.components) {
+    poses["components"].push_back(ViewList(component));
+  }
+  poses["outlier_edges"] = Json::array();
+  for (const ViewPair& edge : solve.poses.outlier_edges) {
+    poses["outlier_edges"].push_back(PairJson(edge));
+  }
+  poses["median_rotation_residual_deg"] =
+      solve.poses.median_rotation_residual_deg;
+  json["structure"] = {{"points", TriangulationJson(solve.structure.points)},
+                       {"lines", TriangulationJson(solve.structure.lines)},
+                       {"coplanar_pairs", solve.structure.coplanar_pairs}};
+  if (solve.adjustment) {
+    const AdjustmentSummary& a = *solve.adjustment;
+    json["adjustment"] = {
+        {"initial_cost", a.initial_cost},
+        {"final_cost", a.final_cost},
+        {"iterations", a.iterations},
+        {"outlier_rounds", a.outlier_rounds},
+        {"converged", a.converged},
+        {"poses_adjusted", a.poses_adjusted},
+        {"poses_without_observations", a.poses_without_observations},
+        {"points", AdjustedKindJson(a.points)},
+        {"lines", AdjustedKindJson(a.lines)},
+        {"coplanar", AdjustedKindJson(a.coplanar)}};
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string ToJson(const RunSummary& summary, const Scene& scene) {
+  Json json;
+  json["command"] = summary.command;
+  json["views"] = scene.views.size();
+  json["pairs"] = Json::array();
+  for (const PairReport& pair : summary.pairs) {
+    Json entry = {{"views", PairJson(pair.views)},
+                  {"accepted", pair.accepted},
+                  {"point_matches", pair.num_point_matches},
+                  {"point_inliers", pair.num_point_inliers},
+                  {"line_matches", pair.num_line_matches},
+                  {"line_inliers", pair.num_line_inliers},
+                  {"log10_nfa", pair.log10_nfa},
+                  {"geometry", pair.geometry}};
+    if (!pair.accepted) entry["reason"] = pair.reason;
+    json["pairs"].push_back(std::move(entry));
+  }
+  if (summary.solve) json["solve"] = SolveJson(*summary.solve);
+  if (summary.evaluation_before_adjustment) {
+    json["evaluation_before_adjustment"] =
+        Json::parse(ToJson(*summary.evaluation_before_adjustment));
+  }
+  if (summary.evaluation) {
+    json["evaluation"] = Json::parse(ToJson(*summary.evaluation));
+  }
+  Json& cost = json["cost"];
+  cost["stages"] = Json::array();
+  for (const StageCost& stage : summary.stages) {
+    cost["stages"].push_back({{"name", stage.name},
+                              {"wall_s", stage.wall_s},
+                              {"cpu_s", stage.cpu_s}});
+  }
+  cost["peak_memory_mb"] = PeakMemoryMb();
+  return json.dump(2);
+}
+
+std::string ToJson(const std::vector<ScaleRatio>& ratios) {
+  Json json = Json::array();
+  for (const ScaleRatio& ratio : ratios) json.push_back(RatioJson(ratio));
+  return json.dump(2);
+}
+
+std::string ToJson(const RigidityReport& report) {
+  Json json;
+  json["connected_components"] = report.connected_components;
+  json["isolated_views"] = report.isolated_views;
+  json["groups"] = Json::array();
+  for (const RigidGroup& group : report.groups) {
+    Json edges = Json::array();
+    for (const ViewPair& edge : group.edges) edges.push_back(PairJson(edge));
+    json["groups"].push_back({{"views", group.views}, {"edges", edges}});
+  }
+  json["hinges"] = Json::array();
+  for (const Hinge& hinge : report.hinges) {
+    json["hinges"].push_back({{"view", hinge.view}, {"groups", hinge.groups}});
+  }
+  return json.dump(2);
+}
+
+}  // namespace lowlap

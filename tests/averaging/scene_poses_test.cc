@@ -1,0 +1,99 @@
+#include "lowlap/averaging/scene_poses.h"
+
+#include <gtest/gtest.h>
+
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/geometry/rotation.h"
+#include "lowlap/synthetic/synthetic_scene.h"
+
+namespace lowlap {
+namespace {
+
+// A simulated scene with the true ratios of all its triplets.
+SyntheticScene SceneWithTrueRatios(const SyntheticOptions& options) {
+  SyntheticScene synthetic = *Simulate(options);
+  synthetic.scene.scale_ratios = TrueSolution(synthetic).scale_ratios;
+  for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
+    ratio.verdict = RatioVerdict::kMeaningful;
+    ratio.log10_nfa = -50;
+    ratio.log_ratio_stddev = 0.01;
+  }
+  return synthetic;
+}
+
+TEST(SolveScenePoses, ExactMeasurementsGiveExactPoses) {
+  for (const char* pairs : {"chain", "cycle", "window:2"}) {
+    SyntheticOptions options;
+    options.num_views = 10;
+    options.pairs = pairs;
+    SyntheticScene synthetic = SceneWithTrueRatios(options);
+    const auto summary =
+        SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+    ASSERT_TRUE(summary) << summary.error().ToString();
+    EXPECT_EQ(summary->num_placed, 10) << pairs;
+    const PoseEvaluation evaluation =
+        EvaluatePoses(synthetic.scene, synthetic.true_poses);
+    EXPECT_LT(evaluation.position.max, 1e-6) << pairs;
+    EXPECT_LT(evaluation.rotation_deg.max, 1e-6) << pairs;
+  }
+}
+
+TEST(SolveScenePoses, ACycleIsBetterThanItsOpenChain) {
+  double chain_error = 0, cycle_error = 0;
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    SyntheticOptions options;
+    options.num_views = 16;
+    options.rotation_noise_deg = 0.3;
+    options.direction_noise_deg = 0.5;
+    options.seed = seed;
+    SyntheticScene cycle = SceneWithTrueRatios(options);
+    Scene chain = cycle.scene;
+    chain.relative_poses.erase(ViewPair{0, 15});
+    ASSERT_TRUE(SolveScenePoses(&cycle.scene, PoseOptions(), RunContext()));
+    ASSERT_TRUE(SolveScenePoses(&chain, PoseOptions(), RunContext()));
+    cycle_error += EvaluatePoses(cycle.scene, cycle.true_poses).position.mean;
+    chain_error += EvaluatePoses(chain, cycle.true_poses).position.mean;
+  }
+  EXPECT_LT(cycle_error, chain_error);
+}
+
+TEST(SolveScenePoses, AContradictoryRotationIsNamedAndLeftOut) {
+  SyntheticOptions options;
+  options.num_views = 12;
+  options.pairs = "window:3";
+  SyntheticScene synthetic = SceneWithTrueRatios(options);
+  RelativePose& wrong = synthetic.scene.relative_poses.begin()->second;
+  wrong.rotation = RotationFromAngleAxis(Vec3(0.3, 0.1, 0)) * wrong.rotation;
+  const auto summary =
+      SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->outlier_edges, (std::vector<ViewPair>{wrong.views}));
+  EXPECT_LT(EvaluatePoses(synthetic.scene, synthetic.true_poses).position.max,
+            1e-6);
+}
+
+TEST(SolveScenePoses, ViewsWithoutAScaleAreListedNotPlaced) {
+  SyntheticOptions options;
+  options.num_views = 8;
+  options.pairs = "chain";
+  SyntheticScene synthetic = SceneWithTrueRatios(options);
+  for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
+    if (ratio.views.middle == 5) ratio.verdict = RatioVerdict::kNotMeaningful;
+  }
+  const auto summary =
+      SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->num_placed, 6);
+  EXPECT_EQ(summary->unplaced, (std::vector<ViewId>{6, 7}));
+  EXPECT_EQ(synthetic.scene.poses.size(), 6u);
+}
+
+TEST(SolveScenePoses, ASceneWithoutRelativePosesIsRefused) {
+  Scene scene;
+  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
+  ASSERT_FALSE(summary);
+  EXPECT_EQ(summary.error().code, ErrorCode::kInsufficientData);
+}
+
+}  // namespace
+}  // namespace lowlap
