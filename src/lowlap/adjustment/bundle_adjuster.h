@@ -13,7 +13,7 @@ namespace lowlap {
 
 /// What the adjustment of a coplanar pair minimises. P_ab is the point of line
 /// a that is closest to line b, P_ba the other way round.
-enum class CoplanarResidual {
+enum class AdjustedCoplanarResidual {
   /// In every view of b: the distance of the ray to P_ab from the
   /// interpretation plane of b; in every view of a: P_ba and a. Reacts whatever
   /// way the plane faces.
@@ -36,7 +36,8 @@ struct AdjustmentOptions {
   bool use_points = true;
   bool use_lines = true;
   bool use_coplanar = true;  // needs use_lines
-  CoplanarResidual coplanar_residual = CoplanarResidual::kTransfer;
+  AdjustedCoplanarResidual coplanar_residual =
+      AdjustedCoplanarResidual::kTransfer;
 
   /// The intrinsics to refine; those not named stay fixed.
   std::map<IntrinsicId, IntrinsicRefinement> refine_intrinsics;
@@ -129,7 +130,8 @@ struct AdjustmentSummary {
 /// Minimises  sum over kinds  1/s^2  sum rho(|r|^2),  with the residuals (px)
 ///   point    projection of X - observed pixel                             (2)
 ///   line     distances of a segment's end points to the projected line    (2)
-///   pair     see CoplanarResidual; divided by the square root of the mean
+///   pair     see AdjustedCoplanarResidual; divided by the square root of the
+///   mean
 ///            number of pairs of its two lines, so that n lines of one plane
 ///            do not count n^2 times
 /// where s is the kind's noise level and rho the Cauchy loss whose scale is the
