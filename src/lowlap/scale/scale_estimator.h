@@ -23,6 +23,9 @@ class ScaleEstimator {
   virtual Result<ScaleRatio> Estimate(const TripletView& triplet) const = 0;
 };
 
+/// What Estimate demands of its input; see there.
+Status CheckTriplet(const TripletView& triplet);
+
 /// The estimator that `options.criterion` names; the options must be valid.
 std::unique_ptr<ScaleEstimator> MakeScaleEstimator(const ScaleOptions& options);
 

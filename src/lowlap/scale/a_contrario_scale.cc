@@ -1,0 +1,52 @@
+#include "lowlap/scale/a_contrario_scale.h"
+
+#include <vector>
+
+#include "lowlap/scale/ratio_inliers.h"
+#include "lowlap/scale/ratio_nfa.h"
+#include "lowlap/scale/ratio_search.h"
+#include "lowlap/scale/ratio_support.h"
+
+namespace lowlap {
+
+Result<ScaleRatio> AContrarioScaleEstimator::Estimate(
+    const TripletView& triplet) const {
+  if (const Status status = CheckTriplet(triplet); !status) {
+    return tl::unexpected<Error>(status.error());
+  }
+  const RatioSupport support(triplet, options_);
+  ScaleRatio ratio = EmptyRatio(triplet, support);
+  const std::vector<Hypothesis>& hypotheses = support.hypotheses();
+  if (hypotheses.empty()) return ratio;
+
+  const RatioNfaCriterion criterion(support, triplet, options_);
+  SupportWorkspace workspace;
+  const auto nfa_of = [&](int index) {
+    const Hypothesis& hypothesis = hypotheses[index];
+    return criterion.Evaluate(support.Count(hypothesis.log_ratio, &workspace),
+                              hypothesis.kind);
+  };
+  const int best = SearchRatios(hypotheses, options_.exhaustive, nfa_of);
+  const RatioNfa nfa = nfa_of(best);
+  ratio.log10_nfa = nfa.log10_nfa;
+  ratio.points.log10_nfa = nfa.points.log10_nfa;
+  ratio.lines.log10_nfa = nfa.lines.log10_nfa;
+  ratio.coplanar.log10_nfa = nfa.coplanar.log10_nfa;
+  ratio.verdict = nfa.log10_nfa < 0 ? RatioVerdict::kMeaningful
+                                    : RatioVerdict::kNotMeaningful;
+
+  const bool meaningful = ratio.verdict == RatioVerdict::kMeaningful;
+  const auto threshold_px = [&](const NfaTerm& term, int num_features) {
+    const bool speaks = num_features > 0 && (!meaningful || term.log10_nfa < 0);
+    return speaks ? LadderThresholdPx(term.step) : 0.0;
+  };
+  const InlierThresholds thresholds{
+      threshold_px(nfa.points, support.num_points()),
+      threshold_px(nfa.lines, support.num_lines()),
+      threshold_px(nfa.coplanar, support.num_pairs())};
+  RefineOnInliers(triplet, support, thresholds, hypotheses[best].log_ratio,
+                  &ratio);
+  return ratio;
+}
+
+}  // namespace lowlap

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+
+#include "lowlap/scale/triplet_geometry.h"
+
+namespace lowlap {
+
+/// The crossing of two lines in the middle view, x = l_a x l_b scaled to
+/// z = 1; nullopt if they are parallel there or cross at infinity.
+std::optional<Vec3> CrossingInMiddle(const NormalizedSegment& a,
+                                     const NormalizedSegment& b);
+
+/// The ratio at which line a (seen in i and j) and line b (seen in j and k)
+/// meet, as coplanar lines do.
+///
+/// The ray through the crossing x of their images in j meets a at depth z_a
+/// (from view i) and b at depth z_b (from view k), both at unit baseline, so
+///   tau = z_a / z_b,  z_n = (q_n . b_n) / (q_n . x),  q_n = R_n^T l_n.
+/// This equals the ratio of Salaün et al. 2017 (equation 16), without end
+/// points and without the normal of the plane.
+///
+/// Standard deviation: to first order from all eight end points, each moving
+/// across its segment by its stddev_px. With
+///   g_a = b_a / (q_a . b_a) - x / (q_a . x),  h = q_b/(q_b.x) - q_a/(q_a.x),
+/// log tau changes by g_a . dq_a - g_b . dq_b + h . dx, and dx = dl_a x l_b +
+/// l_a x dl_b; the normal of a segment (s, e) changes by (n x e) / |s x e| per
+/// unit of s along its image normal n. For one angular error s of all lines
+/// this is s^2 sum [1/(q.b)^2 + 1/(q.x)^2] up to the error of x; here short
+/// segments and crossings far beyond their ends are paid for.
+///
+/// Negative: z_a or z_b is negative. Degenerate: parallel lines; a line in an
+/// epipolar plane (q.b near 0); a crossing at the vanishing point of a line
+/// (q.x near 0, e.g. lines that are parallel in space); a hopeless standard
+/// deviation. The plane may face the camera. Both lines must be in front of
+/// camera j themselves, which LineInMiddle checks.
+RatioCandidate CoplanarRatio(const TripletGeometry& geometry,
+                             const MatchedLine& a, const MatchedLine& b);
+
+}  // namespace lowlap

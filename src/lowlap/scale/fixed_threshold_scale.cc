@@ -1,0 +1,69 @@
+#include "lowlap/scale/fixed_threshold_scale.h"
+
+#include <vector>
+
+#include "lowlap/scale/ratio_inliers.h"
+#include "lowlap/scale/ratio_nfa.h"
+#include "lowlap/scale/ratio_search.h"
+#include "lowlap/scale/ratio_support.h"
+
+namespace lowlap {
+namespace {
+
+struct Agreement {
+  int inliers = 0;
+  double error_sum_px = 0;
+
+  bool BetterThan(const Agreement& other) const {
+    return inliers != other.inliers ? inliers > other.inliers
+                                    : error_sum_px < other.error_sum_px;
+  }
+};
+
+}  // namespace
+
+Result<ScaleRatio> FixedThresholdScaleEstimator::Estimate(
+    const TripletView& triplet) const {
+  if (const Status status = CheckTriplet(triplet); !status) {
+    return tl::unexpected<Error>(status.error());
+  }
+  const RatioSupport support(triplet, options_);
+  ScaleRatio ratio = EmptyRatio(triplet, support);
+  const std::vector<Hypothesis>& hypotheses = support.hypotheses();
+  if (hypotheses.empty()) return ratio;
+
+  std::vector<float> errors_px;
+  const auto agreement_of = [&](int index) {
+    Agreement agreement;
+    for (const FeatureKind kind :
+         {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kCoplanar}) {
+      support.Errors(kind, hypotheses[index].log_ratio, &errors_px);
+      for (const float error_px : errors_px) {
+        if (!(error_px < options_.threshold_px)) continue;
+        ++agreement.inliers;
+        agreement.error_sum_px += error_px;
+      }
+    }
+    return agreement;
+  };
+  const int best = SearchRatios(hypotheses, options_.exhaustive, agreement_of);
+
+  SupportWorkspace workspace;
+  const RatioNfaCriterion criterion(support, triplet, options_);
+  const RatioNfa nfa =
+      criterion.Evaluate(support.Count(hypotheses[best].log_ratio, &workspace),
+                         hypotheses[best].kind);
+  ratio.log10_nfa = nfa.log10_nfa;
+  ratio.points.log10_nfa = nfa.points.log10_nfa;
+  ratio.lines.log10_nfa = nfa.lines.log10_nfa;
+  ratio.coplanar.log10_nfa = nfa.coplanar.log10_nfa;
+  ratio.verdict = agreement_of(best).inliers > 1 ? RatioVerdict::kMeaningful
+                                                 : RatioVerdict::kNotMeaningful;
+  const InlierThresholds thresholds{
+      options_.threshold_px, options_.threshold_px, options_.threshold_px};
+  RefineOnInliers(triplet, support, thresholds, hypotheses[best].log_ratio,
+                  &ratio);
+  return ratio;
+}
+
+}  // namespace lowlap

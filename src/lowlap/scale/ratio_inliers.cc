@@ -1,0 +1,106 @@
+#include "lowlap/scale/ratio_inliers.h"
+
+#include <vector>
+
+#include "lowlap/scale/ratio_refinement.h"
+
+namespace lowlap {
+namespace {
+
+using Indices = std::vector<int>;
+
+struct Inliers {
+  Indices points;
+  Indices lines;
+  Indices pairs;
+};
+
+Indices Below(const RatioSupport& support, FeatureKind kind, double log_ratio,
+              double threshold_px) {
+  Indices indices;
+  if (!(threshold_px > 0)) return indices;
+  std::vector<float> errors_px;
+  support.Errors(kind, log_ratio, &errors_px);
+  for (std::size_t n = 0; n < errors_px.size(); ++n) {
+    if (errors_px[n] < threshold_px) indices.push_back(static_cast<int>(n));
+  }
+  return indices;
+}
+
+Inliers FindInliers(const RatioSupport& support,
+                    const InlierThresholds& thresholds, double log_ratio) {
+  return {Below(support, FeatureKind::kPoint, log_ratio, thresholds.points_px),
+          Below(support, FeatureKind::kLine, log_ratio, thresholds.lines_px),
+          Below(support, FeatureKind::kCoplanar, log_ratio,
+                thresholds.coplanar_px)};
+}
+
+std::vector<RatioInlier> InlierRatios(const RatioSupport& support,
+                                      const TripletView& triplet,
+                                      const Inliers& inliers) {
+  std::vector<RatioInlier> ratios;
+  const auto add = [&](FeatureKind kind, int index, double multiplicity) {
+    const RatioCandidate& ratio = support.Ratios(kind)[index];
+    ratios.push_back({ratio.log_ratio, ratio.log_ratio_stddev,
+                      static_cast<int>(kind), multiplicity});
+  };
+  for (const int index : inliers.points) add(FeatureKind::kPoint, index, 1.0);
+  for (const int index : inliers.lines) add(FeatureKind::kLine, index, 1.0);
+  // Pairs that share a line share its noise. With n_a lines all paired with n_b
+  // others, the mean of the two occurrence counts makes n_a n_b pairs count as
+  // the harmonic mean of n_a and n_b.
+  std::vector<int> first(triplet.lines_ij.size(), 0);
+  std::vector<int> last(triplet.lines_jk.size(), 0);
+  for (const int index : inliers.pairs) {
+    ++first[support.Pair(index).first];
+    ++last[support.Pair(index).last];
+  }
+  for (const int index : inliers.pairs) {
+    const CoplanarCandidate& pair = support.Pair(index);
+    add(FeatureKind::kCoplanar, index,
+        0.5 * (first[pair.first] + last[pair.last]));
+  }
+  return ratios;
+}
+
+}  // namespace
+
+ScaleRatio EmptyRatio(const TripletView& triplet, const RatioSupport& support) {
+  ScaleRatio ratio;
+  ratio.views = triplet.views;
+  ratio.points.candidates = support.num_points();
+  ratio.lines.candidates = support.num_lines();
+  ratio.coplanar.candidates = support.num_pairs();
+  ratio.num_rejected_negative = support.num_rejected_negative();
+  return ratio;
+}
+
+void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
+                     const InlierThresholds& thresholds, double log_ratio,
+                     ScaleRatio* ratio) {
+  constexpr int kRounds = 2;
+  Inliers inliers = FindInliers(support, thresholds, log_ratio);
+  RefinedRatio refined{log_ratio, 0};
+  for (int round = 0; round < kRounds; ++round) {
+    refined =
+        RefineRatio(InlierRatios(support, triplet, inliers), refined.log_ratio);
+    inliers = FindInliers(support, thresholds, refined.log_ratio);
+  }
+  ratio->log_ratio = refined.log_ratio;
+  ratio->log_ratio_stddev = refined.log_ratio_stddev;
+  ratio->points.inliers = static_cast<int>(inliers.points.size());
+  ratio->lines.inliers = static_cast<int>(inliers.lines.size());
+  ratio->coplanar.inliers = static_cast<int>(inliers.pairs.size());
+  ratio->points.threshold_px = thresholds.points_px;
+  ratio->lines.threshold_px = thresholds.lines_px;
+  ratio->coplanar.threshold_px = thresholds.coplanar_px;
+  ratio->coplanar_inliers.clear();
+  for (const int index : inliers.pairs) {
+    const CoplanarCandidate& pair = support.Pair(index);
+    ratio->coplanar_inliers.push_back(
+        {triplet.lines_ij[pair.first].segment_in_middle,
+         triplet.lines_jk[pair.last].segment_in_middle});
+  }
+}
+
+}  // namespace lowlap

@@ -1,0 +1,77 @@
+#pragma once
+
+#include "lowlap/robust/nfa.h"
+#include "lowlap/scale/ratio_support.h"
+#include "lowlap/scale/scale_options.h"
+
+namespace lowlap {
+
+/// The NFA of one tau, by kind and in total (the sum of the logs).
+struct RatioNfa {
+  double log10_nfa = 0;
+  /// The total without the caps: orders ratios that chance explains.
+  double uncapped = 0;
+  NfaTerm points;
+  NfaTerm lines;
+  NfaTerm coplanar;
+
+  bool BetterThan(const RatioNfa& other) const {
+    return log10_nfa != other.log10_nfa ? log10_nfa < other.log10_nfa
+                                        : uncapped < other.uncapped;
+  }
+};
+
+/// The a-contrario criterion of a triplet (Salaün et al. 2017, section 6).
+///
+/// Calibrated form, where it differs from the paper's and why:
+///  - The background probability that an unrelated feature is an inlier at
+///    threshold e is measured on the triplet's own features: their errors at
+///    ratios drawn (without chance, by ranks) from the ratios of their kind,
+///    each displaced by a logistic with scale kBackgroundSpread of log tau. A
+///    feature that has been verified by two epipolar geometries can only slide
+///    along its epipolar lines, and by no more than the depth of the scene; a
+///    fixed law such as 2 D e / A overlooks that, most of all for short
+///    baselines. Few draws say little about small e, so the law is continued
+///    in proportion to e from above, and it is never below 2 D e / A.
+///  - The least error of a line over its partners is measured as such, so that
+///    the number of partners is paid for.
+///  - A pair has two lines: see CalibratedPairTerm.
+///  - Only the kind of the sampled feature loses one sample.
+///  - Every probability, and the NFA of every kind, is at most 1: a kind with
+///    nothing to say never outvotes the others.
+///  - The number of tests is the number of hypotheses.
+/// Paper form: the product of the three printed terms.
+class RatioNfaCriterion {
+ public:
+  /// Scale of the logistic, in log tau: half of it lies within 32 %.
+  static constexpr double kBackgroundSpread = 0.25;
+
+  RatioNfaCriterion(const RatioSupport& support, const TripletView& triplet,
+                    const ScaleOptions& options);
+
+  /// The NFA of the ratio that was computed from a feature of kind `sampled`.
+  RatioNfa Evaluate(const SupportCounts& counts, FeatureKind sampled) const;
+
+  /// log10 of the background probability per threshold.
+  struct Background {
+    LadderProbabilities points{};
+    LadderProbabilities lines{};
+    LadderProbabilities coplanar_first{};
+    LadderProbabilities coplanar_last{};
+  };
+  const Background& background() const { return background_; }
+
+ private:
+  void MeasureBackground(const TripletView& triplet);
+
+  const RatioSupport& support_;
+  NfaForm form_;
+  int num_neighbors_;
+  double image_area_px2_;
+  double image_diagonal_px_;
+  double log10_hypotheses_;
+  LogFactorials factorials_;
+  Background background_;
+};
+
+}  // namespace lowlap

@@ -1,0 +1,70 @@
+#include "lowlap/scale/ratio_refinement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lowlap {
+namespace {
+
+// Squared noise of every group in units of the inliers' own deviations.
+std::vector<double> GroupNoise(const std::vector<RatioInlier>& inliers,
+                               double log_ratio) {
+  constexpr double kStddevOfMedianDeviation = 1.4826;
+  constexpr double kPriorCount = 2.0;
+  std::vector<std::vector<double>> deviations;
+  for (const RatioInlier& inlier : inliers) {
+    const std::size_t group = static_cast<std::size_t>(inlier.group);
+    if (deviations.size() <= group) deviations.resize(group + 1);
+    deviations[group].push_back(std::abs(inlier.log_ratio - log_ratio) /
+                                inlier.log_ratio_stddev);
+  }
+  std::vector<double> noise;
+  for (std::vector<double>& group : deviations) {
+    double squared = 0;
+    if (!group.empty()) {
+      const auto middle = group.begin() + group.size() / 2;
+      std::nth_element(group.begin(), middle, group.end());
+      const double spread = kStddevOfMedianDeviation * *middle;
+      squared = spread * spread;
+    }
+    const double count = static_cast<double>(group.size());
+    noise.push_back((count * squared + kPriorCount) / (count + kPriorCount));
+  }
+  return noise;
+}
+
+}  // namespace
+
+RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
+                         double initial) {
+  // Cauchy's constant for 95 % efficiency on normal residuals.
+  constexpr double kCauchy = 2.3849;
+  constexpr int kMaxIterations = 20;
+  if (inliers.empty()) {
+    return {initial, std::numeric_limits<double>::infinity()};
+  }
+  double log_ratio = initial;
+  double information = 0;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    const std::vector<double> noise = GroupNoise(inliers, log_ratio);
+    double sum = 0;
+    information = 0;
+    for (const RatioInlier& inlier : inliers) {
+      const double residual = inlier.log_ratio - log_ratio;
+      const double variance = noise[inlier.group] * inlier.log_ratio_stddev *
+                              inlier.log_ratio_stddev;
+      const double robust =
+          1.0 / (1.0 + residual * residual / (kCauchy * kCauchy * variance));
+      const double weight = robust / (variance * inlier.multiplicity);
+      sum += weight * residual;
+      information += weight;
+    }
+    const double step = sum / information;
+    log_ratio += step;
+    if (std::abs(step) < 1e-12) break;
+  }
+  return {log_ratio, 1.0 / std::sqrt(information)};
+}
+
+}  // namespace lowlap

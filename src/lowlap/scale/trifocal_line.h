@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+
+#include "lowlap/geometry/plucker_line.h"
+#include "lowlap/scale/triplet_geometry.h"
+
+namespace lowlap {
+
+/// The depth in camera j at which the ray through x (normalised, in j) meets
+/// the interpretation plane of a line seen in a neighbour n, at unit baseline:
+///   z = (q . b) / (q . x),  q = R_n^T l_n,  b the centre of n in j.
+/// For x on the line's image in j it is the depth of the 3D line. Infinite or
+/// NaN if the ray is parallel to the plane.
+double DepthOnPlane(const RigidTransform& camn_from_camj, const Vec3& normal_n,
+                    const Vec3& x);
+
+/// The 3D line of a match, in camera j's frame at unit baseline. nullopt:
+/// degenerate (the line lies in an epipolar plane, or a segment is not valid),
+/// or negative: an end point of the segment in j would be behind camera j.
+/// `status` says which.
+std::optional<PluckerLine> LineInMiddle(const RigidTransform& camn_from_camj,
+                                        const NormalizedSegment& in_j,
+                                        const NormalizedSegment& in_n,
+                                        CandidateStatus* status);
+
+/// The tau that turns the projection of a line into camera k closest to the
+/// observed one (Salaün et al. 2017, section 4, with signs and frames
+/// corrected).
+///
+/// (d, m) the line from views (i, j) at lambda_i = 1; the normal of its
+/// interpretation plane in k is v + tau w with
+///   v = R_k m,  w = t_k x (R_k d),  u = the observed normal in k,
+/// and tau = ClosestDirection(u, v, w). Degenerate: the line lies in an
+/// epipolar plane of either pair. Negative: tau < 0 or behind camera j.
+std::optional<double> TrifocalLineTau(const TripletGeometry& geometry,
+                                      const TrifocalLine& line,
+                                      CandidateStatus* status);
+
+/// The same read from both ends, combined in the log; half their difference is
+/// part of the standard deviation. With r' the speeds of the distances of the
+/// two outer end points to the projected line, per unit of log tau:
+///   var(log tau) = sum over the outer views of stddev^2 / (r'_1^2 + r'_2^2).
+RatioCandidate TrifocalLineRatio(const TripletGeometry& geometry,
+                                 const TrifocalLine& line);
+
+}  // namespace lowlap

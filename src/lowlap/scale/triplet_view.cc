@@ -1,0 +1,199 @@
+#include "lowlap/scale/triplet_view.h"
+
+#include <string>
+#include <utility>
+
+namespace lowlap {
+namespace {
+
+// A match seen from the middle view.
+struct MiddleMatch {
+  FeatureIndex middle = 0;
+  FeatureIndex neighbor = 0;
+};
+
+std::vector<MiddleMatch> FromMiddle(const std::vector<FeatureMatch>& matches,
+                                    bool middle_is_first) {
+  std::vector<MiddleMatch> result;
+  result.reserve(matches.size());
+  for (const FeatureMatch& match : matches) {
+    result.push_back(middle_is_first ? MiddleMatch{match.first, match.second}
+                                     : MiddleMatch{match.second, match.first});
+  }
+  return result;
+}
+
+// One neighbour of the middle view.
+struct Neighbor {
+  const RelativePose* edge = nullptr;
+  const NormalizedFeatures* features = nullptr;
+  const ViewFeatures* raw = nullptr;
+  bool middle_is_first = false;
+};
+
+Status CheckMatches(const Scene& scene, const RelativePose& edge,
+                    const std::vector<FeatureMatch>& matches, bool points) {
+  const auto count = [&](ViewId view) -> std::size_t {
+    const auto it = scene.features.find(view);
+    if (it == scene.features.end()) return 0;
+    return points ? it->second.points_px.size() : it->second.segments.size();
+  };
+  const std::size_t num_first = count(edge.views.first);
+  const std::size_t num_second = count(edge.views.second);
+  for (const FeatureMatch& match : matches) {
+    if (match.first < num_first && match.second < num_second) continue;
+    return MakeError(ErrorCode::kInvalidScene,
+                     "the relative pose of views " +
+                         std::to_string(edge.views.first) + " and " +
+                         std::to_string(edge.views.second) +
+                         " matches a feature that does not exist");
+  }
+  return {};
+}
+
+// Calls visit(match_ij, match_jk) for all pairs with one middle feature, in the
+// order of `ij`.
+template <class Visit>
+void Chain(const std::vector<MiddleMatch>& ij,
+           const std::vector<MiddleMatch>& jk, std::size_t num_middle,
+           const Visit& visit) {
+  constexpr int kNone = -1;
+  std::vector<int> head(num_middle, kNone);
+  std::vector<int> next(jk.size(), kNone);
+  for (int m = static_cast<int>(jk.size()) - 1; m >= 0; --m) {
+    next[m] = head[jk[m].middle];
+    head[jk[m].middle] = m;
+  }
+  for (const MiddleMatch& match : ij) {
+    for (int m = head[match.middle]; m != kNone; m = next[m]) {
+      visit(match, jk[m]);
+    }
+  }
+}
+
+ObservedSegment Observe(const NormalizedFeatures& features,
+                        const ViewFeatures& raw, FeatureIndex segment) {
+  return {features.segments[segment], raw.segments[segment].stddev_px};
+}
+
+}  // namespace
+
+NormalizedFeaturesByView NormalizeAllFeatures(const Scene& scene) {
+  NormalizedFeaturesByView normalized;
+  for (const auto& [view, features] : scene.features) {
+    const Intrinsic* intrinsic = scene.FindIntrinsic(view);
+    if (intrinsic == nullptr) continue;
+    normalized.emplace(view, NormalizeFeatures(features, *intrinsic));
+  }
+  return normalized;
+}
+
+Result<TripletView> MakeTripletView(const Scene& scene,
+                                    const NormalizedFeaturesByView& features,
+                                    const ViewTriplet& views,
+                                    const ScaleOptions& options) {
+  const std::string name = "triplet (" + std::to_string(views.first) + ", " +
+                           std::to_string(views.middle) + ", " +
+                           std::to_string(views.last) + ")";
+  const Intrinsic* intrinsic = scene.FindIntrinsic(views.middle);
+  if (intrinsic == nullptr) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     name + ": the middle view has no intrinsic");
+  }
+  static const NormalizedFeatures kNoFeatures;
+  static const ViewFeatures kNoRaw;
+  const auto normalized_of = [&](ViewId view) {
+    const auto it = features.find(view);
+    return it == features.end() ? &kNoFeatures : &it->second;
+  };
+  const auto raw_of = [&](ViewId view) {
+    const auto it = scene.features.find(view);
+    return it == scene.features.end() ? &kNoRaw : &it->second;
+  };
+  Neighbor neighbors[2];
+  for (int n = 0; n < 2; ++n) {
+    const ViewId view = n == 0 ? views.first : views.last;
+    Neighbor& neighbor = neighbors[n];
+    neighbor.edge = scene.FindRelativePose(view, views.middle);
+    if (neighbor.edge == nullptr || features.count(view) == 0 ||
+        features.count(views.middle) == 0) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       name +
+                           ": a relative pose, or the normalised features "
+                           "of a view, are missing");
+    }
+    for (const bool points : {true, false}) {
+      const Status status = CheckMatches(
+          scene, *neighbor.edge,
+          points ? neighbor.edge->point_inliers : neighbor.edge->line_inliers,
+          points);
+      if (!status) return tl::unexpected<Error>(status.error());
+    }
+    neighbor.features = normalized_of(view);
+    neighbor.raw = raw_of(view);
+    neighbor.middle_is_first = neighbor.edge->views.first == views.middle;
+  }
+  const auto& [i, k] = neighbors;
+  const NormalizedFeatures& middle = *normalized_of(views.middle);
+  const ViewFeatures& middle_raw = *raw_of(views.middle);
+
+  TripletView triplet;
+  triplet.views = views;
+  triplet.geometry.cami_from_camj =
+      UnitTransform(*i.edge, views.middle, views.first);
+  triplet.geometry.camk_from_camj =
+      UnitTransform(*k.edge, views.middle, views.last);
+  triplet.geometry.focal_i_px = i.features->focal_px;
+  triplet.geometry.focal_j_px = middle.focal_px;
+  triplet.geometry.focal_k_px = k.features->focal_px;
+  triplet.image_area_px2 = intrinsic->ImageArea();
+  triplet.image_diagonal_px = intrinsic->ImageDiagonal();
+
+  if (options.use_points) {
+    const auto is_valid = [](const Vec3& point) { return point.z() > 0; };
+    Chain(FromMiddle(i.edge->point_inliers, i.middle_is_first),
+          FromMiddle(k.edge->point_inliers, k.middle_is_first),
+          middle.points.size(),
+          [&](const MiddleMatch& ij, const MiddleMatch& jk) {
+            const TrifocalPoint point{
+                ij.middle, i.features->points[ij.neighbor],
+                middle.points[ij.middle], k.features->points[jk.neighbor]};
+            if (is_valid(point.in_i) && is_valid(point.in_j) &&
+                is_valid(point.in_k)) {
+              triplet.points.push_back(point);
+            }
+          });
+  }
+  if (!options.use_lines && !options.use_coplanar) return triplet;
+  const std::vector<MiddleMatch> lines_ij =
+      FromMiddle(i.edge->line_inliers, i.middle_is_first);
+  const std::vector<MiddleMatch> lines_jk =
+      FromMiddle(k.edge->line_inliers, k.middle_is_first);
+  if (options.use_lines) {
+    Chain(lines_ij, lines_jk, middle.segments.size(),
+          [&](const MiddleMatch& ij, const MiddleMatch& jk) {
+            triplet.lines.push_back(
+                {ij.middle, Observe(*i.features, *i.raw, ij.neighbor),
+                 Observe(middle, middle_raw, ij.middle),
+                 Observe(*k.features, *k.raw, jk.neighbor)});
+          });
+  }
+  if (options.use_coplanar) {
+    for (const MiddleMatch& match : lines_ij) {
+      triplet.lines_ij.push_back(
+          {match.middle, Observe(middle, middle_raw, match.middle),
+           Observe(*i.features, *i.raw, match.neighbor)});
+    }
+    for (const MiddleMatch& match : lines_jk) {
+      triplet.lines_jk.push_back(
+          {match.middle, Observe(middle, middle_raw, match.middle),
+           Observe(*k.features, *k.raw, match.neighbor)});
+    }
+    triplet.coplanar =
+        FindCoplanarCandidates(triplet.geometry, triplet.lines_ij,
+                               triplet.lines_jk, options.num_neighbors);
+  }
+  return triplet;
+}
+
+}  // namespace lowlap
