@@ -78,7 +78,12 @@ class JsonFromXml {
  private:
   Status AppendValue(const rapidxml::xml_node<>& node, const std::string& name,
                      std::string& json) {
-    const std::string value(node.value(), node.value_size());
+    // With xml:space="preserve" cereal's parser leaves unexpanded text in the
+    // element, except for blanks alone; the data below it is always right.
+    const rapidxml::xml_node<>* data = node.first_node();
+    const std::string value =
+        data == nullptr ? std::string(node.value(), node.value_size())
+                        : std::string(data->value(), data->value_size());
     if (IsStringItem(name)) {
       json += Json(value).dump();
       return {};
