@@ -1,10 +1,11 @@
 #include "lowlap/scene/intrinsic.h"
 
-#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
+
+#include "lowlap/scene/internal/undistort.h"
 
 namespace lowlap {
 namespace {
@@ -36,58 +37,6 @@ Vec2 DistortFisheye(const std::vector<double>& k, const Vec2& p) {
   const double theta_d =
       theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
   return p * (theta_d / r);
-}
-
-// Newton on the 2D map with a numeric Jacobian; the models are smooth and close
-// to the identity where they are invertible.
-std::optional<Vec2> Undistort(CameraModel model,
-                              const std::vector<double>& coefficients,
-                              const Vec2& distorted) {
-  Vec2 p = distorted;
-  if (model == CameraModel::kFisheye) {
-    const double theta_d = distorted.norm();
-    if (theta_d < 1e-12) return p;
-    // Solve theta_d(theta) in one dimension, where tan does not interfere.
-    const std::vector<double>& k = coefficients;
-    double theta = theta_d;
-    for (int iteration = 0; iteration < 50; ++iteration) {
-      const double t2 = theta * theta;
-      const double value =
-          theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3])))) -
-          theta_d;
-      const double slope =
-          1 +
-          t2 * (3 * k[0] + t2 * (5 * k[1] + t2 * (7 * k[2] + t2 * 9 * k[3])));
-      if (!(slope > 0)) return std::nullopt;
-      const double step = value / slope;
-      theta -= step;
-      if (std::abs(step) < 1e-14) break;
-    }
-    if (!(theta > 0) || theta >= 0.5 * kPi) return std::nullopt;
-    return Vec2(distorted * (std::tan(theta) / theta_d));
-  }
-  for (int iteration = 0; iteration < 50; ++iteration) {
-    constexpr double kStep = 1e-7;
-    const Vec2 value = Distort(model, coefficients, p) - distorted;
-    Mat2 jacobian;
-    for (int axis = 0; axis < 2; ++axis) {
-      Vec2 forward = p, backward = p;
-      forward(axis) += kStep;
-      backward(axis) -= kStep;
-      jacobian.col(axis) = (Distort(model, coefficients, forward) -
-                            Distort(model, coefficients, backward)) /
-                           (2 * kStep);
-    }
-    // A folded map has a Jacobian of the other orientation.
-    if (!(jacobian.determinant() > 0)) return std::nullopt;
-    const Vec2 step = jacobian.inverse() * value;
-    p -= step;
-    if (step.norm() < 1e-14 * (1 + p.norm())) break;
-  }
-  if ((Distort(model, coefficients, p) - distorted).norm() > 1e-9) {
-    return std::nullopt;
-  }
-  return p;
 }
 
 }  // namespace
@@ -159,7 +108,7 @@ std::optional<Vec2> Intrinsic::Normalize(const Vec2& pixel_px) const {
   const Vec2 centred = pixel_px - principal_point_px;
   const Vec2 distorted(centred.x() / fx_px, centred.y() / fy_px);
   if (!HasDistortion()) return distorted;
-  return Undistort(model, distortion, distorted);
+  return internal::Undistort(model, distortion, distorted);
 }
 
 double Intrinsic::MeanFocalPx() const {

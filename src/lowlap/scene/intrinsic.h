@@ -42,9 +42,8 @@ struct Intrinsic {
   /// must have z > 0 (the value is meaningless otherwise).
   Vec2 Project(const Vec3& point_in_cam) const;
 
-  /// Unit viewing ray of a pixel: the inverse of Project, distortion undone by
-  /// Newton iteration. nullopt: the pixel lies outside the invertible range of
-  /// the distortion.
+  /// Unit viewing ray of a pixel: the inverse of Project. nullopt: the pixel
+  /// lies outside the range around the axis where the distortion is invertible.
   std::optional<Vec3> Bearing(const Vec2& pixel_px) const;
 
   /// Undistorted normalised coordinates (X/Z, Y/Z) of a pixel; nullopt as
