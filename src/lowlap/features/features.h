@@ -18,6 +18,9 @@ struct FeatureOptions {
   bool detect_lines = true;
   PointOptions points;
   LineOptions lines;
+  /// Images are processed in parallel only as far as this reaches: SIFT's scale
+  /// space takes about 240 bytes per pixel (1.5 GB for 6 megapixels).
+  double max_memory_gb = 3.5;
 
   Status Validate() const;
 };

@@ -12,8 +12,11 @@ namespace lowlap {
 struct LineMatchOptions {
   /// Greatest Hamming distance of two descriptors of 256 bits.
   int max_distance_bits = 64;
-  /// The distance must be below this times the second nearest.
-  double max_ratio = 0.9;
+  /// Partners that a segment may have before the neighbours decide.
+  int max_candidates = 4;
+  /// Least agreement with the neighbours, relative to the best match; in [0,
+  /// 1].
+  double min_score = 0.3;
   /// The longer segment is at most this many times the shorter one.
   double max_length_ratio = 4.0;
 

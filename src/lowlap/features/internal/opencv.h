@@ -1,0 +1,43 @@
+#pragma once
+
+#include <exception>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "lowlap/core/result.h"
+#include "lowlap/features/image.h"
+
+namespace lowlap::internal {
+
+/// A view of the image's pixels, not a copy; OpenCV has no const matrix, so
+/// the caller must not write to it.
+inline cv::Mat AsMat(const GrayImage& image) {
+  return cv::Mat(image.height, image.width, CV_8UC1,
+                 const_cast<std::uint8_t*>(image.pixels.data()));
+}
+
+/// Holds OpenCV to the calling thread while it lives. Images are processed in
+/// parallel by their caller, who was told how many threads it may use; OpenCV
+/// would start its own. The setting is global to the process: the last holder
+/// restores what the first one found.
+class SingleThreadedOpenCv {
+ public:
+  SingleThreadedOpenCv();
+  ~SingleThreadedOpenCv();
+  SingleThreadedOpenCv(const SingleThreadedOpenCv&) = delete;
+  SingleThreadedOpenCv& operator=(const SingleThreadedOpenCv&) = delete;
+};
+
+/// Runs a function that returns a Result and may throw out of OpenCV or the
+/// allocator; such an exception becomes an error.
+template <class Function>
+auto CatchOpenCv(const std::string& what, Function&& function)
+    -> decltype(function()) {
+  try {
+    return function();
+  } catch (const std::exception& e) {
+    return MakeError(ErrorCode::kNumerical, what + ": " + e.what());
+  }
+}
+
+}  // namespace lowlap::internal

@@ -1,0 +1,213 @@
+#include "lowlap/features/internal/segment_merging.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+namespace lowlap::internal {
+namespace {
+
+// A level localises an edge to about this many of its pixels.
+constexpr double kLateralTolerance = 0.75;
+// Pieces of one edge are this straight, in pixels of the finer level.
+constexpr double kStraightness = 1.2;
+// Share of a merged segment, or of a coarse one, that pieces must cover.
+constexpr double kMinCover = 0.5;
+
+// A segment as axis: position along and distance across.
+struct Axis {
+  Vec2 origin;
+  Vec2 direction;
+  double length;
+
+  Axis(const Vec2& start, const Vec2& end)
+      : origin(start), length((end - start).norm()) {
+    direction = length > 0 ? Vec2((end - start) / length) : Vec2(1, 0);
+  }
+  double Along(const Vec2& p) const { return direction.dot(p - origin); }
+  double Across(const Vec2& p) const {
+    const Vec2 v = p - origin;
+    return direction.x() * v.y() - direction.y() * v.x();
+  }
+};
+
+struct Interval {
+  double low;
+  double high;
+};
+
+Interval Project(const Axis& axis, const RawSegment& segment) {
+  const double a = axis.Along(segment.start_px);
+  const double b = axis.Along(segment.end_px);
+  return {std::min(a, b), std::max(a, b)};
+}
+
+double OverlapWithAxis(const Axis& axis, const Interval& interval) {
+  return std::min(interval.high, axis.length) - std::max(interval.low, 0.0);
+}
+
+bool LiesOn(const Axis& axis, const RawSegment& segment, double tolerance_px) {
+  return axis.direction.dot(segment.end_px - segment.start_px) > 0 &&
+         std::abs(axis.Across(segment.start_px)) <= tolerance_px &&
+         std::abs(axis.Across(segment.end_px)) <= tolerance_px;
+}
+
+double UnionLength(std::vector<Interval> intervals) {
+  std::sort(intervals.begin(), intervals.end(),
+            [](const Interval& a, const Interval& b) { return a.low < b.low; });
+  double total = 0;
+  double reached = -INFINITY;
+  for (const Interval& interval : intervals) {
+    const double low = std::max(interval.low, reached);
+    if (interval.high > low) total += interval.high - low;
+    reached = std::max(reached, interval.high);
+  }
+  return total;
+}
+
+// The segment along the principal axis of the end points, weighted by length,
+// that spans all of them; in the polarity of the pieces.
+RawSegment Span(const std::vector<RawSegment>& pieces) {
+  double weight = 0;
+  Vec2 mean = Vec2::Zero();
+  Vec2 polarity = Vec2::Zero();
+  int level = pieces.front().level;
+  for (const RawSegment& piece : pieces) {
+    const double w = piece.LengthPx();
+    weight += 2 * w;
+    mean += w * (piece.start_px + piece.end_px);
+    polarity += piece.end_px - piece.start_px;
+    level = std::min(level, piece.level);
+  }
+  mean /= weight;
+  Mat2 scatter = Mat2::Zero();
+  for (const RawSegment& piece : pieces) {
+    for (const Vec2& p : {piece.start_px, piece.end_px}) {
+      scatter += piece.LengthPx() * (p - mean) * (p - mean).transpose();
+    }
+  }
+  Vec2 direction =
+      Eigen::SelfAdjointEigenSolver<Mat2>(scatter).eigenvectors().col(1);
+  if (direction.dot(polarity) < 0) direction = -direction;
+  double low = INFINITY, high = -INFINITY;
+  for (const RawSegment& piece : pieces) {
+    for (const Vec2& p : {piece.start_px, piece.end_px}) {
+      const double along = direction.dot(p - mean);
+      low = std::min(low, along);
+      high = std::max(high, along);
+    }
+  }
+  return {mean + low * direction, mean + high * direction, level};
+}
+
+bool IsStraight(const RawSegment& span, const std::vector<RawSegment>& pieces) {
+  const Axis axis(span.start_px, span.end_px);
+  for (const RawSegment& piece : pieces) {
+    const double tolerance = kStraightness * std::ldexp(1.0, piece.level);
+    if (!LiesOn(axis, piece, tolerance)) return false;
+  }
+  return true;
+}
+
+double Cover(const RawSegment& span, const std::vector<RawSegment>& pieces) {
+  const Axis axis(span.start_px, span.end_px);
+  std::vector<Interval> intervals;
+  for (const RawSegment& piece : pieces) {
+    intervals.push_back(Project(axis, piece));
+  }
+  return UnionLength(std::move(intervals)) / span.LengthPx();
+}
+
+bool Longer(const RawSegment& a, const RawSegment& b) {
+  const double la = a.LengthPx(), lb = b.LengthPx();
+  if (la != lb) return la > lb;
+  if (a.start_px.y() != b.start_px.y()) return a.start_px.y() < b.start_px.y();
+  return a.start_px.x() < b.start_px.x();
+}
+
+// Splits pieces that lie on one guide into collinear groups: a guide may run
+// between two edges that only the finer level tells apart.
+std::vector<std::vector<RawSegment>> GroupCollinear(
+    std::vector<RawSegment> pieces) {
+  std::sort(pieces.begin(), pieces.end(), Longer);
+  std::vector<std::vector<RawSegment>> groups;
+  for (const RawSegment& piece : pieces) {
+    bool placed = false;
+    for (std::vector<RawSegment>& group : groups) {
+      group.push_back(piece);
+      placed = IsStraight(Span(group), group);
+      if (placed) break;
+      group.pop_back();
+    }
+    if (!placed) groups.push_back({piece});
+  }
+  return groups;
+}
+
+// Lets one coarse segment guide the merging of `segments`.
+void ApplyGuide(const RawSegment& guide, std::vector<RawSegment>* segments) {
+  const Axis axis(guide.start_px, guide.end_px);
+  const double tolerance = kLateralTolerance * std::ldexp(1.0, guide.level);
+  std::vector<RawSegment> pieces, others;
+  for (const RawSegment& segment : *segments) {
+    const bool is_piece = LiesOn(axis, segment, tolerance) &&
+                          OverlapWithAxis(axis, Project(axis, segment)) >=
+                              0.5 * segment.LengthPx();
+    (is_piece ? pieces : others).push_back(segment);
+  }
+  if (pieces.empty()) {
+    segments->push_back(guide);
+    return;
+  }
+  std::vector<RawSegment> merged;
+  for (const std::vector<RawSegment>& group : GroupCollinear(pieces)) {
+    const RawSegment span = Span(group);
+    if (group.size() > 1 && Cover(span, group) >= kMinCover) {
+      merged.push_back(span);
+    } else {
+      merged.insert(merged.end(), group.begin(), group.end());
+    }
+  }
+  if (Cover(guide, merged) < kMinCover) {
+    // The pieces are crumbs of an edge that only the coarse level sees.
+    merged = {guide};
+  }
+  *segments = std::move(others);
+  segments->insert(segments->end(), merged.begin(), merged.end());
+}
+
+}  // namespace
+
+std::vector<RawSegment> MergeLevels(
+    const std::vector<std::vector<RawSegment>>& levels) {
+  std::vector<RawSegment> segments;
+  for (std::vector<RawSegment> guides : levels) {
+    std::sort(guides.begin(), guides.end(), Longer);
+    if (segments.empty()) {
+      segments = std::move(guides);
+      continue;
+    }
+    for (const RawSegment& guide : guides) ApplyGuide(guide, &segments);
+  }
+  std::sort(segments.begin(), segments.end(), Longer);
+  return segments;
+}
+
+std::vector<std::size_t> WithoutDuplicates(
+    const std::vector<RawSegment>& segments, double max_distance_px) {
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    const bool duplicate =
+        std::any_of(kept.begin(), kept.end(), [&](std::size_t k) {
+          const Axis axis(segments[k].start_px, segments[k].end_px);
+          return LiesOn(axis, segments[i], max_distance_px) &&
+                 OverlapWithAxis(axis, Project(axis, segments[i])) >
+                     0.5 * segments[i].LengthPx();
+        });
+    if (!duplicate) kept.push_back(i);
+  }
+  return kept;
+}
+
+}  // namespace lowlap::internal

@@ -1,0 +1,55 @@
+#include "lowlap/matching/matching.h"
+
+#include <string>
+
+#include "lowlap/core/parallel.h"
+
+namespace lowlap {
+
+Status MatchOptions::Validate() const {
+  if (const Status s = points.Validate(); !s) return s;
+  return lines.Validate();
+}
+
+Result<std::map<ViewPair, PairMatches>> MatchFeatures(
+    const std::map<ViewId, DetectedFeatures>& features,
+    const std::vector<ViewPair>& pairs, const MatchOptions& options,
+    const RunContext& context) {
+  if (const Status s = options.Validate(); !s) {
+    return tl::unexpected<Error>(s.error());
+  }
+  for (const ViewPair& pair : pairs) {
+    for (const ViewId id : {pair.first, pair.second}) {
+      if (features.count(id) == 0) {
+        return MakeError(
+            ErrorCode::kInvalidArgument,
+            "no features were detected in view " + std::to_string(id));
+      }
+    }
+  }
+  std::vector<PairMatches> results(pairs.size());
+  const Status done =
+      ParallelFor(context, "matching", pairs.size(), [&](std::size_t i) {
+        const DetectedFeatures& first = features.at(pairs[i].first);
+        const DetectedFeatures& second = features.at(pairs[i].second);
+        if (options.match_points) {
+          results[i].points =
+              MatchPoints(first.point_descriptors, second.point_descriptors,
+                          options.points);
+        }
+        if (options.match_lines) {
+          results[i].lines =
+              MatchLines({first.features.segments, first.line_descriptors},
+                         {second.features.segments, second.line_descriptors},
+                         options.lines);
+        }
+      });
+  if (!done) return tl::unexpected<Error>(done.error());
+  std::map<ViewPair, PairMatches> matches;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    matches.emplace(pairs[i], std::move(results[i]));
+  }
+  return matches;
+}
+
+}  // namespace lowlap

@@ -1,0 +1,225 @@
+#include "lowlap/matching/tracks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+namespace lowlap {
+namespace {
+
+using Matches = const std::vector<FeatureMatch>& (*)(const RelativePose&);
+
+// A match of two features, numbered over all views.
+struct Link {
+  int a = 0;
+  int b = 0;
+  bool in_triangle = false;
+  double log10_nfa = 0;
+  std::size_t pair_inliers = 0;
+};
+
+struct FeatureGraph {
+  std::vector<FeatureRef> features;  // sorted
+  std::vector<Link> links;
+};
+
+FeatureGraph CollectLinks(const Scene& scene, Matches matches_of) {
+  FeatureGraph graph;
+  for (const auto& [views, pose] : scene.relative_poses) {
+    for (const FeatureMatch& match : matches_of(pose)) {
+      graph.features.push_back({views.first, match.first});
+      graph.features.push_back({views.second, match.second});
+    }
+  }
+  std::sort(graph.features.begin(), graph.features.end());
+  graph.features.erase(
+      std::unique(graph.features.begin(), graph.features.end()),
+      graph.features.end());
+  const auto index = [&](const FeatureRef& ref) {
+    return static_cast<int>(
+        std::lower_bound(graph.features.begin(), graph.features.end(), ref) -
+        graph.features.begin());
+  };
+  for (const auto& [views, pose] : scene.relative_poses) {
+    const std::vector<FeatureMatch>& matches = matches_of(pose);
+    for (const FeatureMatch& match : matches) {
+      Link link;
+      link.a = index({views.first, match.first});
+      link.b = index({views.second, match.second});
+      link.log10_nfa = pose.log10_nfa;
+      link.pair_inliers = matches.size();
+      graph.links.push_back(link);
+    }
+  }
+  return graph;
+}
+
+// A link is in a triangle if its two features have a common neighbour.
+void MarkTriangles(FeatureGraph* graph) {
+  std::vector<std::vector<int>> neighbors(graph->features.size());
+  for (const Link& link : graph->links) {
+    neighbors[link.a].push_back(link.b);
+    neighbors[link.b].push_back(link.a);
+  }
+  for (std::vector<int>& list : neighbors) std::sort(list.begin(), list.end());
+  for (Link& link : graph->links) {
+    const std::vector<int>& a = neighbors[link.a];
+    const std::vector<int>& b = neighbors[link.b];
+    for (auto i = a.begin(), j = b.begin(); i != a.end() && j != b.end();) {
+      if (*i == *j) {
+        link.in_triangle = true;
+        break;
+      }
+      *i < *j ? ++i : ++j;
+    }
+  }
+}
+
+bool StrongerLink(const Link& p, const Link& q) {
+  const auto key = [](const Link& link) {
+    return std::make_tuple(!link.in_triangle, link.log10_nfa,
+                           -static_cast<double>(link.pair_inliers), link.a,
+                           link.b);
+  };
+  return key(p) < key(q);
+}
+
+// Joins features along links, strongest first, unless `compatible` refuses two
+// features of one view to share a track.
+std::vector<Track> JoinTracks(
+    FeatureGraph graph,
+    const std::function<bool(const FeatureRef&, const FeatureRef&)>&
+        compatible) {
+  MarkTriangles(&graph);
+  std::sort(graph.links.begin(), graph.links.end(), StrongerLink);
+
+  const std::size_t count = graph.features.size();
+  std::vector<int> track_of(count);
+  std::vector<std::vector<int>> members(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    track_of[i] = static_cast<int>(i);
+    members[i] = {static_cast<int>(i)};
+  }
+  // Members are sorted, and features are sorted by view: a merge meets the
+  // features that two tracks have in the same view.
+  const auto can_join = [&](const std::vector<int>& a,
+                            const std::vector<int>& b) {
+    for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+      const ViewId view_a = graph.features[a[i]].view;
+      const ViewId view_b = graph.features[b[j]].view;
+      if (view_a != view_b) {
+        view_a < view_b ? ++i : ++j;
+        continue;
+      }
+      for (std::size_t k = j;
+           k < b.size() && graph.features[b[k]].view == view_a; ++k) {
+        if (!compatible(graph.features[a[i]], graph.features[b[k]])) {
+          return false;
+        }
+      }
+      ++i;
+    }
+    return true;
+  };
+  for (const Link& link : graph.links) {
+    int into = track_of[link.a];
+    int from = track_of[link.b];
+    if (into == from || !can_join(members[into], members[from])) continue;
+    if (members[into].size() < members[from].size()) std::swap(into, from);
+    for (const int member : members[from]) track_of[member] = into;
+    std::vector<int> merged;
+    std::merge(members[into].begin(), members[into].end(),
+               members[from].begin(), members[from].end(),
+               std::back_inserter(merged));
+    members[into] = std::move(merged);
+    members[from].clear();
+  }
+
+  std::vector<Track> tracks;
+  for (const std::vector<int>& list : members) {
+    if (list.size() < 2) continue;
+    Track track;
+    for (const int member : list) track.push_back(graph.features[member]);
+    if (track.front().view != track.back().view) {
+      tracks.push_back(std::move(track));
+    }
+  }
+  std::sort(tracks.begin(), tracks.end());
+  return tracks;
+}
+
+std::map<std::uint32_t, Track> Number(std::vector<Track> tracks) {
+  std::map<std::uint32_t, Track> numbered;
+  std::uint32_t id = 0;
+  for (Track& track : tracks) {
+    numbered.emplace_hint(numbered.end(), id++, std::move(track));
+  }
+  return numbered;
+}
+
+double DistanceToSupportLine(const Vec2& point, const LineSegment& segment) {
+  const Vec2 direction = segment.end_px - segment.start_px;
+  const Vec2 offset = point - segment.start_px;
+  const double length = direction.norm();
+  if (!(length > 0)) return offset.norm();
+  return std::abs(direction.x() * offset.y() - direction.y() * offset.x()) /
+         length;
+}
+
+bool AreCollinear(const LineSegment& a, const LineSegment& b,
+                  double max_distance_px) {
+  const LineSegment& longer = a.LengthPx() >= b.LengthPx() ? a : b;
+  const LineSegment& shorter = a.LengthPx() >= b.LengthPx() ? b : a;
+  return DistanceToSupportLine(shorter.start_px, longer) <= max_distance_px &&
+         DistanceToSupportLine(shorter.end_px, longer) <= max_distance_px;
+}
+
+}  // namespace
+
+Status LineTrackOptions::Validate() const {
+  if (!(max_collinear_distance_px >= 0)) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "max_collinear_distance_px must not be negative");
+  }
+  return {};
+}
+
+std::map<PointTrackId, Track> BuildPointTracks(const Scene& scene) {
+  const Matches inliers =
+      [](const RelativePose& pose) -> const std::vector<FeatureMatch>& {
+    return pose.point_inliers;
+  };
+  return Number(
+      JoinTracks(CollectLinks(scene, inliers),
+                 [](const FeatureRef&, const FeatureRef&) { return false; }));
+}
+
+std::map<LineTrackId, Track> BuildLineTracks(const Scene& scene,
+                                             const LineTrackOptions& options) {
+  const Matches inliers =
+      [](const RelativePose& pose) -> const std::vector<FeatureMatch>& {
+    return pose.line_inliers;
+  };
+  const auto find = [&](const FeatureRef& ref) -> const LineSegment* {
+    const auto features = scene.features.find(ref.view);
+    if (features == scene.features.end() ||
+        ref.feature >= features->second.segments.size()) {
+      return nullptr;
+    }
+    return &features->second.segments[ref.feature];
+  };
+  return Number(
+      JoinTracks(CollectLinks(scene, inliers),
+                 [&](const FeatureRef& a, const FeatureRef& b) {
+                   const LineSegment* segment_a = find(a);
+                   const LineSegment* segment_b = find(b);
+                   return segment_a != nullptr && segment_b != nullptr &&
+                          AreCollinear(*segment_a, *segment_b,
+                                       options.max_collinear_distance_px);
+                 }));
+}
+
+}  // namespace lowlap
