@@ -1,0 +1,100 @@
+#include "lowlap/evaluation/ground_truth.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lowlap/evaluation/statistics.h"
+
+namespace lowlap {
+namespace {
+
+Pose PoseAt(double x) {
+  Pose pose;
+  pose.center.x() = x;
+  return pose;
+}
+
+Scene SceneOf(const std::vector<std::pair<std::string, std::string>>& files) {
+  Scene scene;
+  for (std::size_t n = 0; n < files.size(); ++n) {
+    View& view = scene.views[static_cast<ViewId>(n)];
+    view.local_path = files[n].first;
+    view.filename = files[n].second;
+  }
+  return scene;
+}
+
+TEST(GroundTruthByName, MatchesPathThenNameThenStem) {
+  const Scene scene = SceneOf({{"left", "1.jpg"},
+                               {"right", "1.jpg"},
+                               {"left", "2.jpg"},
+                               {"", "3.png"},
+                               {"", "4.jpg"}});
+  const auto truth = GroundTruthByName(scene, {{"left/1.jpg", PoseAt(1)},
+                                               {"right/1.jpg", PoseAt(2)},
+                                               {"2.jpg", PoseAt(3)},
+                                               {"3.jpg", PoseAt(4)},
+                                               {"5.jpg", PoseAt(5)}});
+  ASSERT_TRUE(truth.has_value()) << truth.error().ToString();
+  ASSERT_EQ(truth->size(), 4u);
+  EXPECT_EQ(truth->at(0).center.x(), 1);
+  EXPECT_EQ(truth->at(1).center.x(), 2);
+  EXPECT_EQ(truth->at(2).center.x(), 3);
+  EXPECT_EQ(truth->at(3).center.x(), 4);
+}
+
+TEST(GroundTruthByName, AnExactNameIsNotTakenByALooseOne) {
+  const Scene scene = SceneOf({{"", "1.png"}, {"", "1.jpg"}});
+  const auto truth = GroundTruthByName(scene, {{"1.jpg", PoseAt(1)}});
+  ASSERT_TRUE(truth.has_value());
+  EXPECT_EQ(truth->count(0), 0u);
+  EXPECT_EQ(truth->count(1), 1u);
+}
+
+TEST(GroundTruthByName, TwoTruthsOfOneStemAreNotGuessedAt) {
+  const Scene scene = SceneOf({{"", "1.tif"}, {"", "2.jpg"}});
+  const auto truth = GroundTruthByName(
+      scene,
+      {{"1.jpg", PoseAt(1)}, {"1.png", PoseAt(2)}, {"2.jpg", PoseAt(3)}});
+  ASSERT_TRUE(truth.has_value());
+  EXPECT_EQ(truth->count(0), 0u);
+  EXPECT_EQ(truth->count(1), 1u);
+}
+
+TEST(GroundTruthByName, AmbiguityAndNoMatchAreErrors) {
+  const Scene scene = SceneOf({{"left", "1.jpg"}, {"right", "1.jpg"}});
+  const auto ambiguous = GroundTruthByName(scene, {{"1.jpg", PoseAt(1)}});
+  ASSERT_FALSE(ambiguous.has_value());
+  EXPECT_EQ(ambiguous.error().code, ErrorCode::kInvalidScene);
+  EXPECT_THAT(ambiguous.error().message, ::testing::HasSubstr("'1.jpg'"));
+  const auto none = GroundTruthByName(scene, {{"7.jpg", PoseAt(1)}});
+  ASSERT_FALSE(none.has_value());
+  EXPECT_EQ(none.error().code, ErrorCode::kInsufficientData);
+}
+
+TEST(GroundTruthFromScene, TakesThePosedViewsWithSharedPoses) {
+  Scene scene = SceneOf({{"", "a"}, {"", "b"}, {"", "c"}});
+  scene.views.at(0).pose_id = 9;
+  scene.views.at(1).pose_id = 9;
+  scene.views.at(2).pose_id = 4;
+  scene.poses[9] = PoseAt(5);
+  const GroundTruth truth = GroundTruthFromScene(scene);
+  ASSERT_EQ(truth.size(), 2u);
+  EXPECT_EQ(truth.at(1).center.x(), 5);
+}
+
+TEST(Summarize, GivesMeanMedianMaxAndRmse) {
+  EXPECT_EQ(Summarize({}).count, 0);
+  EXPECT_EQ(Summarize({}).mean, 0);
+  const ErrorStatistics odd = Summarize({4, 1, 1});
+  EXPECT_EQ(odd.count, 3);
+  EXPECT_EQ(odd.mean, 2);
+  EXPECT_EQ(odd.median, 1);
+  EXPECT_EQ(odd.max, 4);
+  EXPECT_DOUBLE_EQ(odd.rmse, std::sqrt(6.0));
+  EXPECT_EQ(Summarize({4, 1, 2, 1}).median, 1.5);
+  EXPECT_EQ(Summarize({7}).median, 7);
+}
+
+}  // namespace
+}  // namespace lowlap
