@@ -108,6 +108,9 @@ struct AdjustmentSummary {
   std::vector<PoseId> poses_without_observations;
   /// Sets of poses that share structure; each has a gauge of its own.
   std::size_t components = 0;
+  /// Observations of the input's landmarks in views without pose or intrinsic;
+  /// they are not in the result.
+  std::size_t observations_without_camera = 0;
   /// Landmarks of the input that are gone at the end, and new ones.
   std::size_t landmarks_removed = 0;
   std::size_t landmarks_added = 0;

@@ -2,6 +2,7 @@
 
 #include <ceres/cost_function.h>
 
+#include "lowlap/adjustment/internal/jacobian_map.h"
 #include "lowlap/adjustment/internal/quaternion.h"
 #include "lowlap/adjustment/internal/segment_rays.h"
 
@@ -66,24 +67,20 @@ class LineReprojectionCost final : public ceres::CostFunction {
     }
     if (jacobians == nullptr) return true;
     if (jacobians[0] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, 2, 4, Eigen::RowMajor>>(jacobians[0]) =
-          by_normal * rotation.Jacobian(moment);
+      JacobianMap<2, 4>(jacobians[0]) = by_normal * rotation.Jacobian(moment);
     }
     const Mat23 by_moment = by_normal * matrix;
     const Mat23 by_center = by_moment * CrossMatrix(direction);
     if (jacobians[1] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, 2, 3, Eigen::RowMajor>>(jacobians[1]) =
-          by_center;
+      JacobianMap<2, 3>(jacobians[1]) = by_center;
     }
     if (jacobians[2] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, 2, 6, Eigen::RowMajor>> by_line(
-          jacobians[2]);
+      auto by_line = JacobianMap<2, 6>(jacobians[2]);
       by_line.leftCols<3>() = -by_center;
       by_line.rightCols<3>() = by_moment * CrossMatrix(arm);
     }
     if (intrinsic_count_ > 0 && jacobians[3] != nullptr) {
-      Eigen::Map<Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>>(
-          jacobians[3], 2, intrinsic_count_) =
+      JacobianMap<2>(jacobians[3], intrinsic_count_) =
           by_intrinsic.leftCols(intrinsic_count_);
     }
     return true;

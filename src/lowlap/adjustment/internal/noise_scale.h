@@ -21,7 +21,7 @@ struct NoiseBounds {
   NoiseScale fallback{0.5, 1.5};
 };
 
-inline constexpr int kMinErrors = 20;
+inline constexpr int kMinErrors = 8;
 
 /// The threshold that separates the errors from those of the background law
 /// with the least number of false alarms, and the noise level of the errors

@@ -2,6 +2,7 @@
 
 #include <ceres/cost_function.h>
 
+#include "lowlap/adjustment/internal/jacobian_map.h"
 #include "lowlap/adjustment/internal/projection.h"
 #include "lowlap/adjustment/internal/quaternion.h"
 
@@ -56,22 +57,15 @@ class PointReprojectionCost final : public ceres::CostFunction {
       residual = difference_px;
     }
     if (jacobians == nullptr) return true;
-    using RowMajor24 = Eigen::Matrix<double, 2, 4, Eigen::RowMajor>;
-    using RowMajor23 = Eigen::Matrix<double, 2, 3, Eigen::RowMajor>;
     if (jacobians[0] != nullptr) {
-      Eigen::Map<RowMajor24>(jacobians[0]) = by_x_cam * rotation.Jacobian(ray);
+      JacobianMap<2, 4>(jacobians[0]) = by_x_cam * rotation.Jacobian(ray);
     }
-    const RowMajor23 by_point = by_x_cam * matrix;
-    if (jacobians[1] != nullptr) {
-      Eigen::Map<RowMajor23>(jacobians[1]) = -by_point;
-    }
-    if (jacobians[2] != nullptr) {
-      Eigen::Map<RowMajor23>(jacobians[2]) = by_point;
-    }
+    const Mat23 by_point = by_x_cam * matrix;
+    if (jacobians[1] != nullptr) JacobianMap<2, 3>(jacobians[1]) = -by_point;
+    if (jacobians[2] != nullptr) JacobianMap<2, 3>(jacobians[2]) = by_point;
     if (refined && jacobians[3] != nullptr) {
       const int count = intrinsic_->ParameterCount();
-      Eigen::Map<Eigen::Matrix<double, 2, Eigen::Dynamic, Eigen::RowMajor>>(
-          jacobians[3], 2, count) = by_intrinsic.leftCols(count);
+      JacobianMap<2>(jacobians[3], count) = by_intrinsic.leftCols(count);
     }
     return true;
   }

@@ -1,0 +1,95 @@
+#include "lowlap/adjustment/internal/pair_terms.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lowlap/adjustment/internal/coplanar_costs.h"
+#include "lowlap/adjustment/internal/line_reprojection_cost.h"
+#include "lowlap/adjustment/internal/problem_selection.h"
+
+namespace lowlap::internal {
+namespace {
+
+LineParameters Parameters(const LineTrackState& line) {
+  LineParameters parameters;
+  parameters << line.point, line.direction;
+  return parameters;
+}
+
+}  // namespace
+
+std::vector<PairTerm> PairTerms(const StructureState& state,
+                                const PairState& pair,
+                                AdjustedCoplanarResidual residual) {
+  const std::vector<int> first = ViewsOf(state.lines[pair.first]);
+  const std::vector<int> second = ViewsOf(state.lines[pair.second]);
+  std::vector<PairTerm> terms;
+  if (residual == AdjustedCoplanarResidual::kImageDistance) {
+    for (const int view : first) {
+      if (std::binary_search(second.begin(), second.end(), view)) {
+        terms.push_back({view, pair.first, pair.second});
+      }
+    }
+    return terms;
+  }
+  for (const int view : second) {
+    terms.push_back({view, pair.first, pair.second});
+  }
+  for (const int view : first) {
+    terms.push_back({view, pair.second, pair.first});
+  }
+  return terms;
+}
+
+double PairErrorPx(const CameraSet& cameras, const StructureState& state,
+                   const PairState& pair, AdjustedCoplanarResidual residual) {
+  const std::vector<PairTerm> terms = PairTerms(state, pair, residual);
+  if (terms.empty()) return std::numeric_limits<double>::infinity();
+  double squares = 0;
+  for (const PairTerm& term : terms) {
+    const LineParameters on = Parameters(state.lines[term.on]);
+    const LineParameters to = Parameters(state.lines[term.to]);
+    const double focal_px = cameras.IntrinsicOf(term.view).value.MeanFocalPx();
+    const Vec3& center = cameras.PoseOf(term.view).center;
+    double values[3] = {0, 0, 0};
+    if (residual == AdjustedCoplanarResidual::kTransfer) {
+      CoplanarTransferCost{focal_px}(center.data(), on.data(), to.data(),
+                                     values);
+    } else {
+      CoplanarImageDistanceCost{focal_px}(center.data(), on.data(), to.data(),
+                                          values);
+    }
+    squares +=
+        values[0] * values[0] + values[1] * values[1] + values[2] * values[2];
+  }
+  const double error = std::sqrt(squares / static_cast<double>(terms.size()));
+  return std::isfinite(error) ? error : std::numeric_limits<double>::infinity();
+}
+
+NoiseScale EstimatePairNoise(const CameraSet& cameras,
+                             const StructureState& state,
+                             AdjustedCoplanarResidual residual,
+                             const NoiseScale& line_noise,
+                             const NoiseBounds& bounds) {
+  std::vector<double> errors_px;
+  for (const PairState& pair : state.pairs) {
+    if (!state.lines[pair.first].IsLandmark() ||
+        !state.lines[pair.second].IsLandmark()) {
+      continue;
+    }
+    errors_px.push_back(PairErrorPx(cameras, state, pair, residual));
+  }
+  NoiseBounds pair_bounds = bounds;
+  pair_bounds.fallback = line_noise;
+  NoiseScale noise =
+      EstimateNoise(errors_px,
+                    BackgroundLaw::PointToLine(cameras.MeanImageArea(),
+                                               cameras.MeanImageDiagonal()),
+                    kUnitMedian1, pair_bounds);
+  noise.stddev_px = std::max(noise.stddev_px, line_noise.stddev_px);
+  noise.threshold_px = std::max(noise.threshold_px, line_noise.threshold_px);
+  return noise;
+}
+
+}  // namespace lowlap::internal

@@ -1,0 +1,236 @@
+#include "lowlap/adjustment/internal/problem_builder.h"
+
+#include <cmath>
+
+#include "lowlap/adjustment/internal/coplanar_costs.h"
+#include "lowlap/adjustment/internal/pair_terms.h"
+#include "lowlap/adjustment/internal/point_reprojection_cost.h"
+
+namespace lowlap::internal {
+namespace {
+
+IntrinsicRefinement RefinementOf(const AdjustmentOptions& options,
+                                 const IntrinsicState& intrinsic) {
+  const auto found = options.refine_intrinsics.find(intrinsic.id);
+  if (found == options.refine_intrinsics.end() ||
+      intrinsic.value.model == CameraModel::kSpherical) {
+    return {};
+  }
+  return found->second;
+}
+
+}  // namespace
+
+ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
+                               const SolveRequest& request,
+                               const ProblemSelection& selection,
+                               const std::vector<Component>& components,
+                               CameraSet* cameras, StructureState* state)
+    : options_(options),
+      request_(request),
+      selection_(selection),
+      components_(components),
+      cameras_(cameras),
+      state_(state) {
+  ceres::Problem::Options problem_options;
+  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  problem_ = std::make_unique<ceres::Problem>(problem_options);
+  for (IntrinsicState& intrinsic : cameras_->intrinsics) {
+    intrinsic.ParametersFromValue();
+  }
+  lines_.resize(state_->lines.size());
+  for (const int n : selection_.lines) {
+    lines_[n] << state_->lines[n].point, state_->lines[n].direction;
+  }
+  AddPoints();
+  AddLines();
+  AddPairs();
+  SetManifolds();
+}
+
+bool ProblemBuilder::IsRefined(int intrinsic) const {
+  return RefinementOf(options_, cameras_->intrinsics[intrinsic]).Any();
+}
+
+ceres::LossFunction* ProblemBuilder::MakeLoss(const NoiseScale& noise,
+                                              double weight) {
+  losses_.push_back(std::make_unique<ceres::ScaledLoss>(
+      new ceres::CauchyLoss(noise.threshold_px),
+      weight / (noise.stddev_px * noise.stddev_px), ceres::TAKE_OWNERSHIP));
+  return losses_.back().get();
+}
+
+void ProblemBuilder::AddPoints() {
+  ceres::LossFunction* loss = MakeLoss(request_.noise.points, 1);
+  for (const int n : selection_.points) {
+    PointTrackState& track = state_->points[n];
+    for (const PointCandidate& candidate : track.candidates) {
+      if (!candidate.used) continue;
+      const CameraView& view = cameras_->views[candidate.view];
+      PoseState& pose = cameras_->poses[view.pose];
+      IntrinsicState& intrinsic = cameras_->intrinsics[view.intrinsic];
+      const bool refined = IsRefined(view.intrinsic);
+      std::vector<double*> blocks = {pose.cam_from_world.coeffs().data(),
+                                     pose.center.data(), track.position.data()};
+      if (refined) blocks.push_back(intrinsic.parameters.data());
+      problem_->AddResidualBlock(
+          new PointReprojectionCost(&intrinsic, refined, candidate.pixel_px),
+          loss, blocks);
+    }
+  }
+}
+
+void ProblemBuilder::AddLines() {
+  ceres::LossFunction* loss = MakeLoss(request_.noise.lines, 1);
+  for (const int n : selection_.lines) {
+    for (const LineCandidate& candidate : state_->lines[n].candidates) {
+      if (!candidate.used) continue;
+      const CameraView& view = cameras_->views[candidate.view];
+      PoseState& pose = cameras_->poses[view.pose];
+      IntrinsicState& intrinsic = cameras_->intrinsics[view.intrinsic];
+      const bool refined = IsRefined(view.intrinsic);
+      std::vector<double*> blocks = {pose.cam_from_world.coeffs().data(),
+                                     pose.center.data(), lines_[n].data()};
+      if (refined) blocks.push_back(intrinsic.parameters.data());
+      problem_->AddResidualBlock(
+          new LineReprojectionCost(candidate.rays, candidate.weight, intrinsic,
+                                   refined),
+          loss, blocks);
+    }
+  }
+}
+
+void ProblemBuilder::AddPairs() {
+  for (const int n : selection_.pairs) {
+    const PairState& pair = state_->pairs[n];
+    const std::vector<PairTerm> terms =
+        PairTerms(*state_, pair, options_.coplanar_residual);
+    if (terms.empty()) continue;
+    // A pair counts as one measurement however many views see it, and a line's
+    // pairs together as about two.
+    const double degree = 0.5 * (selection_.pair_degree[pair.first] +
+                                 selection_.pair_degree[pair.second]);
+    ceres::LossFunction* loss =
+        MakeLoss(request_.noise.coplanar,
+                 1 / (degree * static_cast<double>(terms.size())));
+    for (const PairTerm& term : terms) {
+      const double focal_px =
+          cameras_->IntrinsicOf(term.view).value.MeanFocalPx();
+      const std::vector<double*> blocks = {
+          cameras_->poses[cameras_->views[term.view].pose].center.data(),
+          lines_[term.on].data(), lines_[term.to].data()};
+      ceres::CostFunction* cost = nullptr;
+      if (options_.coplanar_residual == AdjustedCoplanarResidual::kTransfer) {
+        cost =
+            new ceres::AutoDiffCostFunction<CoplanarTransferCost, 1, 3, 6, 6>(
+                new CoplanarTransferCost{focal_px});
+      } else {
+        cost = new ceres::AutoDiffCostFunction<CoplanarImageDistanceCost, 3, 3,
+                                               6, 6>(
+            new CoplanarImageDistanceCost{focal_px});
+      }
+      problem_->AddResidualBlock(cost, loss, blocks);
+    }
+  }
+}
+
+void ProblemBuilder::SetManifolds() {
+  for (const int n : selection_.lines) {
+    problem_->SetManifold(lines_[n].data(), new ceres::LineManifold<3>());
+  }
+  for (const Component& component : components_) {
+    for (const int n : component.poses) {
+      PoseState& pose = cameras_->poses[n];
+      double* rotation = pose.cam_from_world.coeffs().data();
+      if (request_.fixed_rotations || n == component.reference) {
+        problem_->SetParameterBlockConstant(rotation);
+      } else {
+        problem_->SetManifold(rotation, new ceres::EigenQuaternionManifold());
+      }
+    }
+    problem_->SetParameterBlockConstant(
+        cameras_->poses[component.reference].center.data());
+    // The reference is the origin of the frame: a sphere about it keeps the
+    // length of the baseline.
+    if (component.partner >= 0) {
+      problem_->SetManifold(cameras_->poses[component.partner].center.data(),
+                            new ceres::SphereManifold<3>());
+    }
+  }
+  for (IntrinsicState& intrinsic : cameras_->intrinsics) {
+    double* parameters = intrinsic.parameters.data();
+    if (!problem_->HasParameterBlock(parameters)) continue;
+    const IntrinsicRefinement refinement = RefinementOf(options_, intrinsic);
+    std::vector<int> constant;
+    for (int n = 0; n < intrinsic.ParameterCount(); ++n) {
+      const bool free = n < 2   ? refinement.focal
+                        : n < 4 ? refinement.principal_point
+                                : refinement.distortion;
+      if (!free) constant.push_back(n);
+    }
+    if (static_cast<int>(constant.size()) == intrinsic.ParameterCount()) {
+      problem_->SetParameterBlockConstant(parameters);
+    } else if (!constant.empty()) {
+      problem_->SetManifold(
+          parameters,
+          new ceres::SubsetManifold(intrinsic.ParameterCount(), constant));
+    }
+  }
+}
+
+std::shared_ptr<ceres::ParameterBlockOrdering> ProblemBuilder::Ordering()
+    const {
+  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
+  std::vector<double*> blocks;
+  problem_->GetParameterBlocks(&blocks);
+  for (double* block : blocks) ordering->AddElementToGroup(block, 1);
+  for (const int n : selection_.points) {
+    ordering->AddElementToGroup(state_->points[n].position.data(), 0);
+  }
+  // Two lines of a pair share residuals: only one of them may be eliminated.
+  std::vector<std::vector<int>> partners(state_->lines.size());
+  for (const int n : selection_.pairs) {
+    const PairState& pair = state_->pairs[n];
+    partners[pair.first].push_back(pair.second);
+    partners[pair.second].push_back(pair.first);
+  }
+  std::vector<char> eliminated(state_->lines.size(), 0);
+  for (const int n : selection_.lines) {
+    bool independent = true;
+    for (const int partner : partners[n]) {
+      independent = independent && !eliminated[partner];
+    }
+    if (!independent) continue;
+    eliminated[n] = 1;
+    ordering->AddElementToGroup(const_cast<double*>(lines_[n].data()), 0);
+  }
+  return ordering;
+}
+
+int ProblemBuilder::ReducedSize() const {
+  const auto ordering = Ordering();
+  int size = 0;
+  std::vector<double*> blocks;
+  problem_->GetParameterBlocks(&blocks);
+  for (double* block : blocks) {
+    if (ordering->GroupId(block) == 1 &&
+        !problem_->IsParameterBlockConstant(block)) {
+      size += problem_->ParameterBlockTangentSize(block);
+    }
+  }
+  return size;
+}
+
+void ProblemBuilder::TakeResults() {
+  for (const int n : selection_.lines) {
+    state_->lines[n].point = lines_[n].head<3>();
+    state_->lines[n].direction = lines_[n].tail<3>().normalized();
+  }
+  for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
+    if (IsRefined(static_cast<int>(n))) {
+      cameras_->intrinsics[n].ValueFromParameters();
+    }
+  }
+}
+
+}  // namespace lowlap::internal

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <ceres/ceres.h>
+
+#include <memory>
+#include <vector>
+
+#include "lowlap/adjustment/internal/line_reprojection_cost.h"
+#include "lowlap/adjustment/internal/problem_selection.h"
+#include "lowlap/adjustment/internal/solve.h"
+
+namespace lowlap::internal {
+
+/// A ceres::Problem over the poses of `cameras` and copies of the lines, in the
+/// frames of their components. Owns what the problem points to.
+class ProblemBuilder {
+ public:
+  ProblemBuilder(const AdjustmentOptions& options, const SolveRequest& request,
+                 const ProblemSelection& selection,
+                 const std::vector<Component>& components, CameraSet* cameras,
+                 StructureState* state);
+
+  ceres::Problem& problem() { return *problem_; }
+  /// Points and an independent set of the lines first: what the Schur
+  /// complement eliminates.
+  std::shared_ptr<ceres::ParameterBlockOrdering> Ordering() const;
+  /// Degrees of freedom of the blocks that are not eliminated.
+  int ReducedSize() const;
+  /// Lines and intrinsics from the solver's blocks into the state.
+  void TakeResults();
+
+ private:
+  void AddPoints();
+  void AddLines();
+  void AddPairs();
+  void SetManifolds();
+  bool IsRefined(int intrinsic) const;
+  /// Loss for residuals in pixels, in units of the noise.
+  ceres::LossFunction* MakeLoss(const NoiseScale& noise, double weight);
+
+  const AdjustmentOptions& options_;
+  const SolveRequest& request_;
+  const ProblemSelection& selection_;
+  const std::vector<Component>& components_;
+  CameraSet* cameras_;
+  StructureState* state_;
+
+  std::vector<LineParameters> lines_;  // by index in the state
+  std::vector<std::unique_ptr<ceres::LossFunction>> losses_;
+  std::unique_ptr<ceres::Problem> problem_;
+};
+
+}  // namespace lowlap::internal
