@@ -48,6 +48,13 @@ class AContrarioLadder {
                    const BackgroundLaw& law, double min_threshold,
                    double max_threshold);
 
+  /// The same ladder for data whose wrong members are not uniform: alpha at
+  /// each step becomes the share of `background_counts` (residuals of data
+  /// known to be wrong, such as permuted matches, per step, NumSteps() + 1
+  /// entries) where that exceeds the law. Plus one, so that no alpha is zero.
+  AContrarioLadder WithBackground(
+      const std::vector<int>& background_counts) const;
+
   int NumSteps() const { return static_cast<int>(thresholds_.size()); }
   double Threshold(int step) const { return thresholds_[step]; }
 

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "lowlap/geometry/rigid_transform.h"
+#include "lowlap/two_view/point_pairs.h"
+
+namespace lowlap {
+
+using Mat5 = Eigen::Matrix<double, 5, 5>;
+using Vec5 = Eigen::Matrix<double, 5, 1>;
+
+/// The signed Sampson residual of one match in pixels: with E = [t]x R,
+///   r = x2^T E x1 / sqrt( |(E x1)_12|^2 / f2^2 + |(E^T x2)_12|^2 / f1^2 ),
+/// and, if asked for, its derivative by (w, d) in
+///   R <- exp([w]x) R,  t <- (t + B d) / |t + B d|,  B = TangentBasis(t).
+/// Zero where both points are epipoles.
+class SampsonResidual {
+ public:
+  SampsonResidual(const RigidTransform& cam2_from_cam1, double focal1_px,
+                  double focal2_px);
+
+  double operator()(const Vec3& x1, const Vec3& x2,
+                    Vec5* jacobian = nullptr) const;
+
+ private:
+  Mat3 essential_;
+  Eigen::Matrix<double, 9, 5> derivative_;  // of E, row-major
+  double weight1_;                          // 1 / f1^2
+  double weight2_;
+};
+
+struct PoseRefinementOptions {
+  /// Scale s of the Cauchy loss s^2 / 2 log(1 + r^2 / s^2).
+  double loss_scale_px = 1;
+  int max_iterations = 20;
+};
+
+/// The motion (|t| = 1) that minimises the Cauchy loss of the Sampson residuals
+/// of the matches named by `indices`: Levenberg-Marquardt on SO(3) x S^2 with
+/// iterated reweighting. Returns the start if there are fewer than 5 matches.
+RigidTransform RefineRelativePose(const RigidTransform& cam2_from_cam1,
+                                  const PointPairs& pairs,
+                                  const std::vector<int>& indices,
+                                  const PoseRefinementOptions& options);
+
+/// Covariance of (w, d) as above at the minimum of the same loss:
+///   (sum psi^2 / (n - 5)) / (mean psi')^2 (sum J J^T)^-1
+/// (Huber, "Robust Statistics", section 7.6), psi the derivative of the loss.
+/// nullopt: fewer than 6 matches, or a singular system.
+std::optional<Mat5> RelativePoseCovariance(const RigidTransform& cam2_from_cam1,
+                                           const PointPairs& pairs,
+                                           const std::vector<int>& indices,
+                                           double loss_scale_px);
+
+}  // namespace lowlap

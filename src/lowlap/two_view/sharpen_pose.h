@@ -1,0 +1,31 @@
+#pragma once
+
+#include "lowlap/core/random.h"
+#include "lowlap/geometry/rigid_transform.h"
+#include "lowlap/two_view/essential_kernel.h"
+
+namespace lowlap {
+
+struct SharpenedPose {
+  RigidTransform cam2_from_cam1;
+  double scale_px = 0;  // the scale s at which the pose was found
+};
+
+/// The pose near `cam2_from_cam1` with the sharpest core of small residuals.
+///
+/// Repeated structure (windows in a row) leaves many wrong matches a few pixels
+/// beside their epipolar lines. The pose of least NFA bends towards them: they
+/// add inliers, at the price of residuals that are all a little larger. The
+/// right pose is told from it by the core: it maximises the truncated Cauchy
+/// score
+///   sum log(1 + 9) - log(1 + min(r^2 / s^2, 9)),
+/// s the precision of the points. Five-point samples from the inliers at
+/// `threshold_px`, scored on the matches within twice that, the best ones
+/// refined. s starts at the 0.3 pixels of a good detector and doubles until
+/// the core (r <= 3 s) holds at least half of those inliers, so that noisier
+/// points and imperfect calibrations are served too.
+SharpenedPose SharpenPose(const EssentialKernel& kernel,
+                          const RigidTransform& cam2_from_cam1,
+                          double threshold_px, Random& random);
+
+}  // namespace lowlap
