@@ -1,0 +1,125 @@
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <filesystem>
+#include <limits>
+
+#include "lowlap/core/random.h"
+#include "lowlap/io/scene_binary.h"
+#include "lowlap/io/scene_json.h"
+#include "scene/example_scenes.h"
+#include "support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using testing::FullScene;
+using testing::IsError;
+using testing::IsOk;
+using testing::RandomScene;
+
+TEST(SceneFiles, FullSceneSurvivesBothForms) {
+  const Scene scene = FullScene();
+  const Result<std::string> text = FormatSceneJson(scene);
+  const Result<std::string> bytes = FormatSceneBinary(scene);
+  ASSERT_THAT(text, IsOk());
+  ASSERT_THAT(bytes, IsOk());
+  const Result<Scene> from_text = ParseSceneJson(*text);
+  const Result<Scene> from_bytes = ParseSceneBinary(*bytes);
+  ASSERT_THAT(from_text, IsOk());
+  ASSERT_THAT(from_bytes, IsOk());
+  EXPECT_EQ(*from_text, scene);
+  EXPECT_EQ(*from_bytes, scene);
+  // And so every byte, through the other form as well.
+  EXPECT_EQ(*FormatSceneBinary(*from_text), *bytes);
+  EXPECT_EQ(*FormatSceneJson(*from_bytes), *text);
+}
+
+TEST(SceneFiles, EmptySceneSurvivesBothForms) {
+  const Result<Scene> from_text = ParseSceneJson(*FormatSceneJson(Scene()));
+  const Result<Scene> from_bytes =
+      ParseSceneBinary(*FormatSceneBinary(Scene()));
+  ASSERT_THAT(from_text, IsOk());
+  ASSERT_THAT(from_bytes, IsOk());
+  EXPECT_EQ(*from_text, Scene());
+  EXPECT_EQ(*from_bytes, Scene());
+}
+
+TEST(SceneFiles, RandomScenesSurviveBothForms) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const auto size = static_cast<std::uint32_t>(seed);
+    const Scene scene = RandomScene(seed, 2 + size, 20 * size, 5 * size);
+    const Result<std::string> text = FormatSceneJson(scene);
+    const Result<std::string> bytes = FormatSceneBinary(scene);
+    ASSERT_THAT(text, IsOk());
+    ASSERT_THAT(bytes, IsOk());
+    EXPECT_EQ(*ParseSceneJson(*text), scene);
+    EXPECT_EQ(*ParseSceneBinary(*bytes), scene);
+  }
+}
+
+// Any finite pattern of bits, compared as bits.
+TEST(SceneFiles, RealsSurviveTheTextToTheLastBit) {
+  Random random(11);
+  Scene scene;
+  scene.views[0].filename = "a.jpg";
+  auto& points = scene.features[0].points_px;
+  const auto add = [&](double x) { points.emplace_back(x, -x); };
+  for (const double x :
+       {0.0, 1.0, 0.1, 1.0 / 3, 1e22, 1e23, 123456789012345680.0, 5e-324,
+        std::numeric_limits<double>::min(), std::numeric_limits<double>::max(),
+        9007199254740993.0, 18446744073709551616.0, 1e21, 1e-7}) {
+    add(x);
+  }
+  while (points.size() < 5000) {
+    const std::uint64_t bits = random.NextBits();
+    double x;
+    std::memcpy(&x, &bits, sizeof x);
+    if (std::isfinite(x)) add(x);
+  }
+  const Result<Scene> read = ParseSceneJson(*FormatSceneJson(scene));
+  ASSERT_THAT(read, IsOk());
+  const auto& restored = read->features.at(0).points_px;
+  ASSERT_EQ(restored.size(), points.size());
+  EXPECT_EQ(
+      std::memcmp(restored.data(), points.data(), points.size() * sizeof(Vec2)),
+      0);
+}
+
+TEST(SceneFiles, InvalidScenesAreNotWritten) {
+  Scene scene = FullScene();
+  scene.poses[100].rotation.setZero();
+  const std::string folder = ::testing::TempDir();
+  for (const auto write : {WriteSceneJson, WriteSceneBinary}) {
+    const std::string path = folder + "/lowlap_io_invalid_scene";
+    const Status status = write(scene, path);
+    EXPECT_THAT(status, IsError(ErrorCode::kInvalidScene,
+                                path + ": $.extrinsics[key=100].rotation"));
+    EXPECT_FALSE(std::filesystem::exists(path));
+  }
+}
+
+TEST(SceneFiles, FilesSurviveAndErrorsNameTheFile) {
+  const Scene scene = RandomScene(1, 4, 30, 10);
+  const std::string folder = ::testing::TempDir();
+  const std::string json = folder + "/lowlap_io_test.json";
+  const std::string binary = folder + "/lowlap_io_test.lowlap";
+  ASSERT_THAT(WriteSceneJson(scene, json), IsOk());
+  ASSERT_THAT(WriteSceneBinary(scene, binary), IsOk());
+  EXPECT_EQ(*ReadSceneJson(json), scene);
+  EXPECT_EQ(*ReadSceneBinary(binary), scene);
+  // Each form read as the other.
+  EXPECT_THAT(ReadSceneJson(binary), IsError(ErrorCode::kParse, binary));
+  EXPECT_THAT(ReadSceneBinary(json),
+              IsError(ErrorCode::kParse, "not a .lowlap file"));
+  std::filesystem::remove(json);
+  std::filesystem::remove(binary);
+  EXPECT_THAT(ReadSceneJson(json), IsError(ErrorCode::kNotFound, json));
+  EXPECT_THAT(ReadSceneBinary(binary), IsError(ErrorCode::kNotFound, binary));
+  EXPECT_THAT(ReadSceneJson(folder), IsError(ErrorCode::kIo, folder));
+  EXPECT_THAT(WriteSceneJson(scene, folder + "/no/such/folder/a.json"),
+              IsError(ErrorCode::kIo, "no/such/folder"));
+}
+
+}  // namespace
+}  // namespace lowlap
