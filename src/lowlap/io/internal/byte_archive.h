@@ -58,27 +58,21 @@ class ByteReader {
 
   /// `place` names the bytes in errors; `offset` is that of their beginning.
   ByteReader(std::string_view bytes, std::string place, std::size_t offset)
-      : bytes_(bytes), place_(std::move(place)), offset_(offset) {}
+      : bytes_(bytes), place_(std::move(place)), end_(offset + bytes.size()) {}
 
   [[noreturn]] void Fail(std::string message) const {
-    throw Failure{Error{ErrorCode::kParse,
-                        std::move(message),
-                        {},
-                        place_ + "byte " + std::to_string(offset_)}};
+    throw Failure{
+        Error{ErrorCode::kParse,
+              std::move(message),
+              {},
+              place_ + "byte " + std::to_string(end_ - bytes_.size())}};
   }
   std::size_t BytesLeft() const { return bytes_.size(); }
 
   template <class Unsigned>
   void Integer(Unsigned& value) {
     static_assert(std::is_unsigned_v<Unsigned>);
-    const std::string_view encoded = Take(sizeof(Unsigned));
-    Unsigned decoded = 0;
-    for (std::size_t n = 0; n < sizeof(Unsigned); ++n) {
-      decoded |= static_cast<Unsigned>(
-          static_cast<Unsigned>(static_cast<unsigned char>(encoded[n]))
-          << (8 * n));
-    }
-    value = decoded;
+    value = Decoded<Unsigned>(Take(sizeof(Unsigned)).data());
   }
   void Count(int& value) {
     std::uint32_t stored = 0;
@@ -88,13 +82,14 @@ class ByteReader {
     }
     value = static_cast<int>(stored);
   }
-  void Real(double& value) {
-    std::uint64_t bits = 0;
-    Integer(bits);
-    std::memcpy(&value, &bits, sizeof value);
-  }
+  void Real(double& value) { Reals(&value, 1); }
   void Reals(double* values, std::size_t count) {
-    for (std::size_t n = 0; n < count; ++n) Real(values[n]);
+    const char* encoded = Take(count * sizeof(double)).data();
+    for (std::size_t n = 0; n < count; ++n) {
+      const auto bits =
+          Decoded<std::uint64_t>(encoded + n * sizeof(std::uint64_t));
+      std::memcpy(values + n, &bits, sizeof bits);
+    }
   }
   void Text(std::string& text) { text = Take(Length(0, 1)); }
   /// The number of items that follow, each of at least `min_bytes`; no larger
@@ -112,14 +107,24 @@ class ByteReader {
     if (count > bytes_.size()) Fail("the data ends early");
     const std::string_view taken = bytes_.substr(0, count);
     bytes_.remove_prefix(count);
-    offset_ += count;
     return taken;
   }
 
  private:
+  template <class Unsigned>
+  static Unsigned Decoded(const char* encoded) {
+    Unsigned decoded = 0;
+    for (std::size_t n = 0; n < sizeof(Unsigned); ++n) {
+      const auto byte = static_cast<unsigned char>(encoded[n]);
+      decoded = static_cast<Unsigned>(decoded | static_cast<Unsigned>(byte)
+                                                    << (8 * n));
+    }
+    return decoded;
+  }
+
   std::string_view bytes_;
   std::string place_;
-  std::size_t offset_;
+  std::size_t end_;
 };
 
 }  // namespace lowlap::internal
