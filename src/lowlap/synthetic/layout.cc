@@ -119,13 +119,12 @@ void AddCorridor(const SyntheticOptions& options, Random* random,
   constexpr double kSection = 5.0, kHalfWidth = 1.2, kStep = 0.8;
   const int sections =
       static_cast<int>(std::ceil((kStep * options.num_views + 10) / kSection));
-  Vec3 start(0, 0, 0);
-  double heading = 0;
-  std::vector<Vec3> axis = {start};
+  std::vector<Vec3> axis = {Vec3::Zero()};
   for (int s = 0; s < sections; ++s) {
-    heading = RadFromDeg(random->Uniform(-4.0, 4.0));
-    axis.push_back(axis.back() +
-                   kSection * Vec3(std::sin(heading), 0, std::cos(heading)));
+    const double heading = RadFromDeg(random->Uniform(-4.0, 4.0));
+    const Vec3 along(std::sin(heading), 0, std::cos(heading));
+    const Vec3 end = axis.back() + kSection * along;
+    axis.push_back(end);
   }
   for (int s = 0; s < sections; ++s) {
     const Vec3 a = axis[s], along = axis[s + 1] - axis[s];
