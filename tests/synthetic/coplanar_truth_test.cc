@@ -93,8 +93,11 @@ std::map<FeatureIndex, PluckerLine> LinesInMiddle(const Scene& scene,
 // The two lines meet at exactly one ratio of the baselines; for lines of one
 // wall it is the true one. This ties tracks, poses, planes and the candidates'
 // truth together.
-TEST(CoplanarCandidates, RightPairsGiveTheTrueRatioAndWrongOnesDoNot) {
+class CandidatesOfKind : public ::testing::TestWithParam<SyntheticKind> {};
+
+TEST_P(CandidatesOfKind, RightPairsGiveTheTrueRatioAndWrongOnesDoNot) {
   SyntheticOptions options = NoOverlap();
+  options.kind = GetParam();
   options.wrong_candidate_share = 0.4;
   options.wrong_line_share = 0.1;
   const Result<SyntheticScene> synthetic = Simulate(options);
@@ -129,6 +132,12 @@ TEST(CoplanarCandidates, RightPairsGiveTheTrueRatioAndWrongOnesDoNot) {
   EXPECT_GT(wrong, 500);
   EXPECT_EQ(wrong_but_true, 0);
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, CandidatesOfKind,
+    ::testing::Values(SyntheticKind::kRoom, SyntheticKind::kCorridor,
+                      SyntheticKind::kRing, SyntheticKind::kPlanar),
+    [](const auto& kind) { return SyntheticKindName(kind.param); });
 
 TEST(CoplanarCandidates, NeverPairATrackWithItself) {
   const Result<SyntheticScene> synthetic = Simulate({});

@@ -113,10 +113,12 @@ void AddCollinearCameras(const SyntheticOptions& options, Random* random,
 }
 
 // Sections of 5 m, 2.4 m wide and 2.6 m high; the direction changes slightly
-// from section to section, so that no two walls share a plane.
+// from section to section: floor and ceiling are one plane each, the side walls
+// are not.
 void AddCorridor(const SyntheticOptions& options, Random* random,
                  World* world) {
   constexpr double kSection = 5.0, kHalfWidth = 1.2, kStep = 0.8;
+  constexpr int kFloorPlane = 2, kCeilingPlane = 3;  // after two side walls
   const int sections =
       static_cast<int>(std::ceil((kStep * options.num_views + 10) / kSection));
   std::vector<Vec3> axis = {Vec3::Zero()};
@@ -136,9 +138,11 @@ void AddCorridor(const SyntheticOptions& options, Random* random,
     const int right_wall =
         world->AddWall(a + right + floor, along, up, inside, 0.7);
     const int floor_wall =
-        world->AddWall(a - right + floor, along, 2 * right, inside, 0.7);
+        world->AddWall(a - right + floor, along, 2 * right, inside, 0.7,
+                       s == 0 ? -1 : kFloorPlane);
     const int ceiling_wall =
-        world->AddWall(a - right + floor + up, along, 2 * right, inside, 0.5);
+        world->AddWall(a - right + floor + up, along, 2 * right, inside, 0.5,
+                       s == 0 ? -1 : kCeilingPlane);
     const Vec3 left_low = a - right + floor, right_low = a + right + floor;
     AddEdge(left_low, left_low + along, left_wall, floor_wall, world);
     AddEdge(right_low, right_low + along, right_wall, floor_wall, world);
