@@ -23,7 +23,8 @@ Result<ScaleRatio> AContrarioScaleEstimator::Estimate(
   SupportWorkspace workspace;
   const auto nfa_of = [&](int index) {
     const Hypothesis& hypothesis = hypotheses[index];
-    return criterion.Evaluate(support.Count(hypothesis.log_ratio, &workspace),
+    return criterion.Evaluate(hypothesis.log_ratio,
+                              support.Count(hypothesis.log_ratio, &workspace),
                               hypothesis.kind);
   };
   const int best = SearchRatios(hypotheses, options_.exhaustive, nfa_of);

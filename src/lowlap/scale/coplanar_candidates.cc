@@ -84,13 +84,13 @@ class NeighborSearch {
       Consider(line_is_first ? PairIndex{line.index, others[n].index}
                              : PairIndex{others[n].index, line.index});
     }
-    for (CoplanarCandidate& pair : nearest_) {
+    for (CoplanarPairCandidate& pair : nearest_) {
       pair.distance_px *= geometry_.focal_j_px;
       result_.push_back(pair);
     }
   }
 
-  std::vector<CoplanarCandidate> TakeResult() { return std::move(result_); }
+  std::vector<CoplanarPairCandidate> TakeResult() { return std::move(result_); }
   std::vector<PairIndex> TakeNegative() { return std::move(negative_); }
 
  private:
@@ -99,7 +99,7 @@ class NeighborSearch {
     const MatchedLine& a = lines_ij_[index.first];
     const MatchedLine& b = lines_jk_[index.second];
     if (a.segment_in_middle == b.segment_in_middle) return;
-    CoplanarCandidate pair;
+    CoplanarPairCandidate pair;
     pair.first = index.first;
     pair.last = index.second;
     pair.distance_px =
@@ -112,8 +112,8 @@ class NeighborSearch {
     }
     if (pair.ratio.status != CandidateStatus::kValid) return;
     // Crossing segments are all at distance 0: the better ratio goes first.
-    const auto nearer = [](const CoplanarCandidate& p,
-                           const CoplanarCandidate& q) {
+    const auto nearer = [](const CoplanarPairCandidate& p,
+                           const CoplanarPairCandidate& q) {
       return std::tie(p.distance_px, p.ratio.log_ratio_stddev) <
              std::tie(q.distance_px, q.ratio.log_ratio_stddev);
     };
@@ -129,8 +129,8 @@ class NeighborSearch {
   const std::vector<MatchedLine>& lines_jk_;
   const int num_neighbors_;
   std::vector<std::pair<double, int>> bounds_;  // a heap, least bound first
-  std::vector<CoplanarCandidate> nearest_;
-  std::vector<CoplanarCandidate> result_;
+  std::vector<CoplanarPairCandidate> nearest_;
+  std::vector<CoplanarPairCandidate> result_;
   std::vector<PairIndex> negative_;
 };
 
@@ -149,10 +149,10 @@ double SegmentDistance(const NormalizedSegment& a, const NormalizedSegment& b) {
        PointSegmentDistance(b1, a1, a2), PointSegmentDistance(b2, a1, a2)});
 }
 
-CoplanarCandidates FindCoplanarCandidates(
+CoplanarPairCandidates FindCoplanarCandidates(
     const TripletGeometry& geometry, const std::vector<MatchedLine>& lines_ij,
     const std::vector<MatchedLine>& lines_jk, int num_neighbors) {
-  CoplanarCandidates candidates;
+  CoplanarPairCandidates candidates;
   const std::vector<UsableLine> first = UsableLines(
       geometry.cami_from_camj, lines_ij, &candidates.num_rejected_negative);
   const std::vector<UsableLine> last = UsableLines(
@@ -162,18 +162,18 @@ CoplanarCandidates FindCoplanarCandidates(
   for (const UsableLine& line : last) search.Visit(line, false, first);
 
   candidates.pairs = search.TakeResult();
-  const auto key = [](const CoplanarCandidate& pair) {
+  const auto key = [](const CoplanarPairCandidate& pair) {
     return PairIndex{pair.first, pair.last};
   };
   std::sort(candidates.pairs.begin(), candidates.pairs.end(),
-            [&](const CoplanarCandidate& p, const CoplanarCandidate& q) {
-              return key(p) < key(q);
-            });
+            [&](const CoplanarPairCandidate& p,
+                const CoplanarPairCandidate& q) { return key(p) < key(q); });
   candidates.pairs.erase(
-      std::unique(candidates.pairs.begin(), candidates.pairs.end(),
-                  [&](const CoplanarCandidate& p, const CoplanarCandidate& q) {
-                    return key(p) == key(q);
-                  }),
+      std::unique(
+          candidates.pairs.begin(), candidates.pairs.end(),
+          [&](const CoplanarPairCandidate& p, const CoplanarPairCandidate& q) {
+            return key(p) == key(q);
+          }),
       candidates.pairs.end());
   std::vector<PairIndex> negative = search.TakeNegative();
   std::sort(negative.begin(), negative.end());

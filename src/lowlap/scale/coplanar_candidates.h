@@ -8,15 +8,15 @@ namespace lowlap {
 
 /// A hypothesis that line `first` (an index into the lines matched in (i, j))
 /// and line `last` (an index into those of (j, k)) lie in one plane.
-struct CoplanarCandidate {
+struct CoplanarPairCandidate {
   int first = 0;
   int last = 0;
   double distance_px = 0;  // least distance of the two segments in view j
   RatioCandidate ratio;    // always kValid
 };
 
-struct CoplanarCandidates {
-  std::vector<CoplanarCandidate> pairs;  // sorted by (first, last)
+struct CoplanarPairCandidates {
+  std::vector<CoplanarPairCandidate> pairs;  // sorted by (first, last)
   /// Pairs that came near enough but ask for a negative depth.
   int num_rejected_negative = 0;
 };
@@ -28,10 +28,10 @@ struct CoplanarCandidates {
 ///
 /// A pair takes one of the N places only if it can say something: two segments
 /// of one index, pairs without a crossing or with a hopeless one
-/// (kMaxLogRatioStddev) and pairs with a negative depth are passed over. The
-/// distances are bounded by those of the mid-points first, so that exact ones
-/// are computed for few.
-CoplanarCandidates FindCoplanarCandidates(
+/// (kMaxCoplanarLogRatioStddev) and pairs with a negative depth are passed
+/// over. The distances are bounded by those of the mid-points first, so that
+/// exact ones are computed for few.
+CoplanarPairCandidates FindCoplanarCandidates(
     const TripletGeometry& geometry, const std::vector<MatchedLine>& lines_ij,
     const std::vector<MatchedLine>& lines_jk, int num_neighbors);
 

@@ -63,7 +63,8 @@ RatioCandidate CoplanarRatio(const TripletGeometry& geometry,
       EndPointVariance(a.in_middle, b_j.normal.cross(h), geometry.focal_j_px) +
       EndPointVariance(b.in_middle, h.cross(a_j.normal), geometry.focal_j_px);
   candidate.log_ratio_stddev = std::sqrt(variance);
-  if (!(candidate.log_ratio_stddev <= kMaxLogRatioStddev)) return candidate;
+  if (!(candidate.log_ratio_stddev <= kMaxCoplanarLogRatioStddev))
+    return candidate;
   if (!(z_a > 0) || !(z_b > 0)) {
     candidate.status = CandidateStatus::kNegativeDepth;
     return candidate;

@@ -51,7 +51,8 @@ Result<ScaleRatio> FixedThresholdScaleEstimator::Estimate(
   SupportWorkspace workspace;
   const RatioNfaCriterion criterion(support, triplet, options_);
   const RatioNfa nfa =
-      criterion.Evaluate(support.Count(hypotheses[best].log_ratio, &workspace),
+      criterion.Evaluate(hypotheses[best].log_ratio,
+                         support.Count(hypotheses[best].log_ratio, &workspace),
                          hypotheses[best].kind);
   ratio.log10_nfa = nfa.log10_nfa;
   ratio.points.log10_nfa = nfa.points.log10_nfa;

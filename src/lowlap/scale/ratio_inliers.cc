@@ -1,5 +1,7 @@
 #include "lowlap/scale/ratio_inliers.h"
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "lowlap/scale/ratio_refinement.h"
@@ -35,6 +37,36 @@ Inliers FindInliers(const RatioSupport& support,
                 thresholds.coplanar_px)};
 }
 
+Indices Within3Stddev(const RatioSupport& support, FeatureKind kind,
+                      double threshold_px, const RefinedRatio& refined) {
+  Indices indices;
+  if (!(threshold_px > 0)) return indices;
+  const std::size_t group = static_cast<std::size_t>(kind);
+  const double noise = group < refined.group_noise.size()
+                           ? std::max(1.0, refined.group_noise[group])
+                           : 1.0;
+  int index = 0;
+  for (const RatioCandidate& ratio : support.Ratios(kind)) {
+    if (std::abs(ratio.log_ratio - refined.log_ratio) <=
+        3.0 * noise * ratio.log_ratio_stddev) {
+      indices.push_back(index);
+    }
+    ++index;
+  }
+  return indices;
+}
+
+Inliers FindConsistent(const RatioSupport& support,
+                       const InlierThresholds& thresholds,
+                       const RefinedRatio& refined) {
+  return {
+      Within3Stddev(support, FeatureKind::kPoint, thresholds.points_px,
+                    refined),
+      Within3Stddev(support, FeatureKind::kLine, thresholds.lines_px, refined),
+      Within3Stddev(support, FeatureKind::kCoplanar, thresholds.coplanar_px,
+                    refined)};
+}
+
 std::vector<RatioInlier> InlierRatios(const RatioSupport& support,
                                       const TripletView& triplet,
                                       const Inliers& inliers) {
@@ -56,7 +88,7 @@ std::vector<RatioInlier> InlierRatios(const RatioSupport& support,
     ++last[support.Pair(index).last];
   }
   for (const int index : inliers.pairs) {
-    const CoplanarCandidate& pair = support.Pair(index);
+    const CoplanarPairCandidate& pair = support.Pair(index);
     add(FeatureKind::kCoplanar, index,
         0.5 * (first[pair.first] + last[pair.last]));
   }
@@ -79,13 +111,17 @@ void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
                      const InlierThresholds& thresholds, double log_ratio,
                      ScaleRatio* ratio) {
   constexpr int kRounds = 2;
-  Inliers inliers = FindInliers(support, thresholds, log_ratio);
-  RefinedRatio refined{log_ratio, 0};
+  RefinedRatio refined =
+      RefineRatio(InlierRatios(support, triplet,
+                               FindInliers(support, thresholds, log_ratio)),
+                  log_ratio);
   for (int round = 0; round < kRounds; ++round) {
     refined =
-        RefineRatio(InlierRatios(support, triplet, inliers), refined.log_ratio);
-    inliers = FindInliers(support, thresholds, refined.log_ratio);
+        RefineRatio(InlierRatios(support, triplet,
+                                 FindConsistent(support, thresholds, refined)),
+                    refined.log_ratio);
   }
+  const Inliers inliers = FindInliers(support, thresholds, refined.log_ratio);
   ratio->log_ratio = refined.log_ratio;
   ratio->log_ratio_stddev = refined.log_ratio_stddev;
   ratio->points.inliers = static_cast<int>(inliers.points.size());
@@ -96,7 +132,7 @@ void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
   ratio->coplanar.threshold_px = thresholds.coplanar_px;
   ratio->coplanar_inliers.clear();
   for (const int index : inliers.pairs) {
-    const CoplanarCandidate& pair = support.Pair(index);
+    const CoplanarPairCandidate& pair = support.Pair(index);
     ratio->coplanar_inliers.push_back(
         {triplet.lines_ij[pair.first].segment_in_middle,
          triplet.lines_jk[pair.last].segment_in_middle});

@@ -16,9 +16,12 @@ struct InlierThresholds {
 /// A ratio with the triplet's names and candidate counts, and no verdict yet.
 ScaleRatio EmptyRatio(const TripletView& triplet, const RatioSupport& support);
 
-/// Refines a log ratio on its inliers (RefineRatio, inliers found again after
-/// each of two rounds), and fills log_ratio, log_ratio_stddev, the inlier
-/// counts, thresholds and the coplanar inliers of `ratio`.
+/// Refines a log ratio (RefineRatio), first on its inliers within the
+/// thresholds, then on every feature of their kinds that agrees with the result
+/// within 3 standard deviations: a threshold that is best for telling right
+/// from wrong is too tight for an average, which it ties to where it started.
+/// Fills log_ratio and log_ratio_stddev, and for the refined ratio the inlier
+/// counts, thresholds and coplanar inliers of `ratio`.
 void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
                      const InlierThresholds& thresholds, double log_ratio,
                      ScaleRatio* ratio);

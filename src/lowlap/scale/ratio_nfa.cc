@@ -23,8 +23,7 @@ std::vector<double> BackgroundRatios(
     const int rank = static_cast<int>((2LL * m + 1) * n / (2LL * draws));
     const double turns = (std::min(m, draws - 1 - m) + 0.5) * kGolden;
     const double u = 0.5 + 0.5 * (turns - std::floor(turns));  // in [0.5, 1)
-    const double displacement =
-        RatioNfaCriterion::kBackgroundSpread * std::log(u / (1.0 - u));
+    const double displacement = RatioDensity::kSpread * std::log(u / (1.0 - u));
     background.push_back(sorted[rank] - displacement);
     background.push_back(sorted[rank] + displacement);
   }
@@ -51,6 +50,15 @@ LadderProbabilities Log10Law(const LadderSums& counts, double num_errors,
   return law;
 }
 
+// Every hypothesis, and every choice of the kinds that speak (are not capped).
+double Log10Tests(const RatioSupport& support) {
+  const int num_kinds = (support.num_points() > 0) + (support.num_lines() > 0) +
+                        (support.num_pairs() > 0);
+  const double num_hypotheses =
+      std::max<double>(1.0, static_cast<double>(support.hypotheses().size()));
+  return std::log10(num_hypotheses) + num_kinds * std::log10(2.0);
+}
+
 }  // namespace
 
 RatioNfaCriterion::RatioNfaCriterion(const RatioSupport& support,
@@ -61,12 +69,15 @@ RatioNfaCriterion::RatioNfaCriterion(const RatioSupport& support,
       num_neighbors_(options.num_neighbors),
       image_area_px2_(triplet.image_area_px2),
       image_diagonal_px_(triplet.image_diagonal_px),
-      log10_hypotheses_(std::log10(std::max<double>(
-          1.0, static_cast<double>(support.hypotheses().size())))),
+      log10_tests_(Log10Tests(support)),
       factorials_(std::max(
           {support.num_points(), support.num_lines(),
            support.num_coplanar_first() + support.num_coplanar_last()})) {
-  if (form_ == NfaForm::kCalibrated) MeasureBackground(triplet);
+  if (form_ == NfaForm::kPaper) return;
+  point_density_ = RatioDensity(support.Ratios(FeatureKind::kPoint));
+  line_density_ = RatioDensity(support.Ratios(FeatureKind::kLine));
+  coplanar_density_ = RatioDensity(support.Ratios(FeatureKind::kCoplanar));
+  MeasureBackground(triplet);
 }
 
 void RatioNfaCriterion::MeasureBackground(const TripletView& triplet) {
@@ -108,7 +119,8 @@ void RatioNfaCriterion::MeasureBackground(const TripletView& triplet) {
             &background_.coplanar_last}});
 }
 
-RatioNfa RatioNfaCriterion::Evaluate(const SupportCounts& counts,
+RatioNfa RatioNfaCriterion::Evaluate(double log_ratio,
+                                     const SupportCounts& counts,
                                      FeatureKind sampled) const {
   RatioNfa nfa;
   if (form_ == NfaForm::kPaper) {
@@ -125,19 +137,28 @@ RatioNfa RatioNfaCriterion::Evaluate(const SupportCounts& counts,
         support_.num_coplanar_first() + support_.num_coplanar_last(), coplanar,
         image_area_px2_, num_neighbors_);
   } else {
+    const auto law = [&](const LadderProbabilities& mean,
+                         const RatioDensity& density) {
+      const double log10_relative = density.Log10Relative(log_ratio);
+      LadderProbabilities scaled = mean;
+      for (double& log10_alpha : scaled) log10_alpha += log10_relative;
+      return scaled;
+    };
     nfa.points =
         CalibratedTerm(factorials_, support_.num_points(), counts.points,
-                       background_.points, sampled == FeatureKind::kPoint);
-    nfa.lines =
-        CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
-                       background_.lines, sampled == FeatureKind::kLine);
+                       law(background_.points, point_density_),
+                       sampled == FeatureKind::kPoint);
+    nfa.lines = CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
+                               law(background_.lines, line_density_),
+                               sampled == FeatureKind::kLine);
     nfa.coplanar = CalibratedPairTerm(
         factorials_, support_.num_coplanar_first(), counts.coplanar_first,
-        background_.coplanar_first, support_.num_coplanar_last(),
-        counts.coplanar_last, background_.coplanar_last,
+        law(background_.coplanar_first, coplanar_density_),
+        support_.num_coplanar_last(), counts.coplanar_last,
+        law(background_.coplanar_last, coplanar_density_),
         sampled == FeatureKind::kCoplanar);
-    nfa.log10_nfa = log10_hypotheses_;
-    nfa.uncapped = log10_hypotheses_;
+    nfa.log10_nfa = log10_tests_;
+    nfa.uncapped = nfa.log10_nfa;
   }
   for (const NfaTerm* term : {&nfa.points, &nfa.lines, &nfa.coplanar}) {
     nfa.log10_nfa += term->log10_nfa;

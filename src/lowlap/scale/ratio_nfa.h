@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lowlap/robust/nfa.h"
+#include "lowlap/scale/ratio_density.h"
 #include "lowlap/scale/ratio_support.h"
 #include "lowlap/scale/scale_options.h"
 
@@ -27,41 +28,45 @@ struct RatioNfa {
 ///  - The background probability that an unrelated feature is an inlier at
 ///    threshold e is measured on the triplet's own features: their errors at
 ///    ratios drawn (without chance, by ranks) from the ratios of their kind,
-///    each displaced by a logistic with scale kBackgroundSpread of log tau. A
-///    feature that has been verified by two epipolar geometries can only slide
-///    along its epipolar lines, and by no more than the depth of the scene; a
-///    fixed law such as 2 D e / A overlooks that, most of all for short
-///    baselines. Few draws say little about small e, so the law is continued
-///    in proportion to e from above, and it is never below 2 D e / A.
+///    each displaced by a logistic with scale RatioDensity::kSpread of log tau.
+///    A feature that has been verified by two epipolar geometries can only
+///    slide along its epipolar lines, and by no more than the depth of the
+///    scene; a fixed law such as 2 D e / A overlooks that, most of all for
+///    short baselines. Few draws say little about small e, so the law is
+///    continued in proportion to e from above, and it is never below 2 D e / A.
+///  - Where the hypotheses of a kind are dense, unrelated ones agree more
+///  often:
+///    the law is scaled by the density of the kind's ratios at tau, smoothed by
+///    the same logistic, over its mean.
 ///  - The least error of a line over its partners is measured as such, so that
 ///    the number of partners is paid for.
 ///  - A pair has two lines: see CalibratedPairTerm.
 ///  - Only the kind of the sampled feature loses one sample.
 ///  - Every probability, and the NFA of every kind, is at most 1: a kind with
 ///    nothing to say never outvotes the others.
-///  - The number of tests is the number of hypotheses.
+///  - The number of tests is the number of hypotheses, times 2 for every kind
+///    that may speak or be capped.
+/// So built, at most one ratio in a hundred comes out below NFA 1 on triplets
+/// of unrelated features (tests/scale).
 /// Paper form: the product of the three printed terms.
 class RatioNfaCriterion {
  public:
-  /// Scale of the logistic, in log tau: half of it lies within 32 %.
-  static constexpr double kBackgroundSpread = 0.25;
-
   RatioNfaCriterion(const RatioSupport& support, const TripletView& triplet,
                     const ScaleOptions& options);
 
-  /// The NFA of the ratio that was computed from a feature of kind `sampled`.
-  RatioNfa Evaluate(const SupportCounts& counts, FeatureKind sampled) const;
+  /// The NFA of the ratio that was computed from a feature of kind `sampled`,
+  /// from the inliers at that ratio.
+  RatioNfa Evaluate(double log_ratio, const SupportCounts& counts,
+                    FeatureKind sampled) const;
 
-  /// log10 of the background probability per threshold.
+ private:
+  // log10 of the background probability per threshold.
   struct Background {
     LadderProbabilities points{};
     LadderProbabilities lines{};
     LadderProbabilities coplanar_first{};
     LadderProbabilities coplanar_last{};
   };
-  const Background& background() const { return background_; }
-
- private:
   void MeasureBackground(const TripletView& triplet);
 
   const RatioSupport& support_;
@@ -69,9 +74,12 @@ class RatioNfaCriterion {
   int num_neighbors_;
   double image_area_px2_;
   double image_diagonal_px_;
-  double log10_hypotheses_;
+  double log10_tests_;
   LogFactorials factorials_;
   Background background_;
+  RatioDensity point_density_;
+  RatioDensity line_density_;
+  RatioDensity coplanar_density_;
 };
 
 }  // namespace lowlap

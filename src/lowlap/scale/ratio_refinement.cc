@@ -42,12 +42,13 @@ RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
   constexpr double kCauchy = 2.3849;
   constexpr int kMaxIterations = 20;
   if (inliers.empty()) {
-    return {initial, std::numeric_limits<double>::infinity()};
+    return {initial, std::numeric_limits<double>::infinity(), {}};
   }
   double log_ratio = initial;
   double information = 0;
+  std::vector<double> noise;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    const std::vector<double> noise = GroupNoise(inliers, log_ratio);
+    noise = GroupNoise(inliers, log_ratio);
     double sum = 0;
     information = 0;
     for (const RatioInlier& inlier : inliers) {
@@ -64,7 +65,8 @@ RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
     log_ratio += step;
     if (std::abs(step) < 1e-12) break;
   }
-  return {log_ratio, 1.0 / std::sqrt(information)};
+  for (double& group : noise) group = std::sqrt(group);
+  return {log_ratio, 1.0 / std::sqrt(information), noise};
 }
 
 }  // namespace lowlap

@@ -18,6 +18,8 @@ struct RatioInlier {
 struct RefinedRatio {
   double log_ratio = 0;
   double log_ratio_stddev = 0;
+  /// phi of every group, 1 where it is unknown.
+  std::vector<double> group_noise;
 };
 
 /// The robust weighted mean of the inliers' log ratios: to first order the

@@ -74,7 +74,7 @@ void RatioSupport::AddLines(const TripletView& triplet) {
 void RatioSupport::AddPairs(const TripletView& triplet) {
   num_rejected_negative_ += triplet.coplanar.num_rejected_negative;
   std::vector<int> first, last;
-  for (const CoplanarCandidate& pair : triplet.coplanar.pairs) {
+  for (const CoplanarPairCandidate& pair : triplet.coplanar.pairs) {
     const MatchedLine& a = triplet.lines_ij[pair.first];
     const MatchedLine& b = triplet.lines_jk[pair.last];
     if (coplanar_residual_ == CoplanarResidual::kPlane) {

@@ -58,7 +58,7 @@ class RatioSupport {
   /// The features of a kind at their own ratio, in the order of their index.
   const std::vector<RatioCandidate>& Ratios(FeatureKind kind) const;
   /// Indices into TripletView::lines_ij and lines_jk of a pair.
-  const CoplanarCandidate& Pair(int index) const { return pairs_[index]; }
+  const CoplanarPairCandidate& Pair(int index) const { return pairs_[index]; }
   /// Number of partners of every line in a pair: lines of (i, j), of (j, k).
   const std::vector<int>& PartnersOfFirst() const { return partners_; }
   const std::vector<int>& PartnersOfLast() const { return partners_last_; }
@@ -87,7 +87,7 @@ class RatioSupport {
   std::vector<RatioCandidate> point_ratios_;
   std::vector<RatioCandidate> line_ratios_;
   std::vector<RatioCandidate> pair_ratios_;
-  std::vector<CoplanarCandidate> pairs_;
+  std::vector<CoplanarPairCandidate> pairs_;
   // Of a pair, the rank of its lines among those in at least one pair.
   std::vector<int> pair_first_;
   std::vector<int> pair_last_;

@@ -3,49 +3,36 @@
 #include <cmath>
 
 #include "lowlap/geometry/closest_direction.h"
-#include "lowlap/scale/candidate_combination.h"
 
 namespace lowlap {
 namespace {
 
-struct OneEnd {
-  double tau = 0;
-  double variance = 0;  // from the end points in k
-};
-
-// d/d(log tau) of the signed distance of e to the line n(tau) = v + tau w.
-double DistanceSpeed(const Vec3& e, const Vec3& v, const Vec3& w, double tau) {
-  const Vec3 n = v + tau * w;
-  const double length = n.head<2>().norm();
-  const double distance = e.dot(n) / length;
-  const double length_speed = n.head<2>().dot(w.head<2>()) / length;
-  return tau * (e.dot(w) - distance * length_speed) / length;
+TrifocalLine Swapped(const TrifocalLine& line) {
+  return {line.segment_in_middle, line.in_k, line.in_j, line.in_i};
 }
 
-std::optional<OneEnd> FromOneEnd(const TripletGeometry& geometry,
-                                 const TrifocalLine& line,
-                                 CandidateStatus* status) {
-  const std::optional<PluckerLine> in_j = LineInMiddle(
-      geometry.cami_from_camj, line.in_j.segment, line.in_i.segment, status);
-  if (!in_j) return std::nullopt;
-  *status = CandidateStatus::kDegenerate;
-  const Mat3& rotation = geometry.camk_from_camj.rotation;
-  const Vec3 v = rotation * in_j->moment;
-  const Vec3 w =
-      geometry.camk_from_camj.translation.cross(rotation * in_j->direction);
-  const NormalizedSegment& in_k = line.in_k.segment;
-  const std::optional<double> tau = ClosestDirection(in_k.normal, v, w);
-  if (!tau) return std::nullopt;
-  if (!(*tau > 0)) {
-    *status = CandidateStatus::kNegativeDepth;
-    return std::nullopt;
-  }
-  const double start_speed = DistanceSpeed(in_k.start, v, w, *tau);
-  const double end_speed = DistanceSpeed(in_k.end, v, w, *tau);
-  const double stddev = line.in_k.stddev_px / geometry.focal_k_px;
-  *status = CandidateStatus::kValid;
-  return OneEnd{*tau, stddev * stddev /
-                          (start_speed * start_speed + end_speed * end_speed)};
+// (log tau_ijk - log tau_kji) / 2, and half the sum in `half_difference`.
+std::optional<double> CombinedLogTau(const TripletGeometry& geometry,
+                                     const TrifocalLine& line,
+                                     CandidateStatus* status,
+                                     double* half_difference) {
+  const std::optional<double> ijk = TrifocalLineTau(geometry, line, status);
+  if (!ijk) return std::nullopt;
+  const std::optional<double> kji =
+      TrifocalLineTau(geometry.Swapped(), Swapped(line), status);
+  if (!kji) return std::nullopt;
+  *half_difference = 0.5 * (std::log(*ijk) + std::log(*kji));
+  return 0.5 * (std::log(*ijk) - std::log(*kji));
+}
+
+// The segment with one end moved across it, in normalised coordinates.
+NormalizedSegment Moved(const NormalizedSegment& segment, bool start,
+                        double by) {
+  NormalizedSegment moved = segment;
+  Vec3& end = start ? moved.start : moved.end;
+  end.head<2>() += by * segment.normal.head<2>().normalized();
+  moved.normal = moved.start.cross(moved.end).normalized();
+  return moved;
 }
 
 }  // namespace
@@ -82,24 +69,60 @@ std::optional<PluckerLine> LineInMiddle(const RigidTransform& camn_from_camj,
 std::optional<double> TrifocalLineTau(const TripletGeometry& geometry,
                                       const TrifocalLine& line,
                                       CandidateStatus* status) {
-  const std::optional<OneEnd> end = FromOneEnd(geometry, line, status);
-  if (!end) return std::nullopt;
-  return end->tau;
+  const std::optional<PluckerLine> in_j = LineInMiddle(
+      geometry.cami_from_camj, line.in_j.segment, line.in_i.segment, status);
+  if (!in_j) return std::nullopt;
+  *status = CandidateStatus::kDegenerate;
+  if (!line.in_k.segment.IsValid()) return std::nullopt;
+  const Mat3& rotation = geometry.camk_from_camj.rotation;
+  const Vec3 v = rotation * in_j->moment;
+  const Vec3 w =
+      geometry.camk_from_camj.translation.cross(rotation * in_j->direction);
+  const std::optional<double> tau =
+      ClosestDirection(line.in_k.segment.normal, v, w);
+  if (!tau) return std::nullopt;
+  if (!(*tau > 0)) {
+    *status = CandidateStatus::kNegativeDepth;
+    return std::nullopt;
+  }
+  *status = CandidateStatus::kValid;
+  return tau;
 }
 
 RatioCandidate TrifocalLineRatio(const TripletGeometry& geometry,
                                  const TrifocalLine& line) {
   RatioCandidate candidate;
-  const std::optional<OneEnd> ijk =
-      FromOneEnd(geometry, line, &candidate.status);
-  if (!ijk) return candidate;
-  const TrifocalLine swapped{line.segment_in_middle, line.in_k, line.in_j,
-                             line.in_i};
-  const std::optional<OneEnd> kji =
-      FromOneEnd(geometry.Swapped(), swapped, &candidate.status);
-  if (!kji) return candidate;
-  return CombineEnds(std::log(ijk->tau), std::log(kji->tau),
-                     ijk->variance + kji->variance);
+  double half_difference = 0;
+  const std::optional<double> log_tau =
+      CombinedLogTau(geometry, line, &candidate.status, &half_difference);
+  if (!log_tau) return candidate;
+  candidate.status = CandidateStatus::kDegenerate;
+  double variance = half_difference * half_difference;
+  for (ObservedSegment TrifocalLine::*view :
+       {&TrifocalLine::in_i, &TrifocalLine::in_j, &TrifocalLine::in_k}) {
+    const double focal_px = view == &TrifocalLine::in_i   ? geometry.focal_i_px
+                            : view == &TrifocalLine::in_j ? geometry.focal_j_px
+                                                          : geometry.focal_k_px;
+    for (const bool start : {true, false}) {
+      constexpr double kStep = 0.1;  // of a standard deviation
+      TrifocalLine moved = line;
+      (moved.*view).segment = Moved((line.*view).segment, start,
+                                    kStep * (line.*view).stddev_px / focal_px);
+      CandidateStatus status;
+      double unused;
+      const std::optional<double> log_tau_moved =
+          CombinedLogTau(geometry, moved, &status, &unused);
+      if (!log_tau_moved) return candidate;
+      const double change = (*log_tau_moved - *log_tau) / kStep;
+      variance += change * change;
+    }
+  }
+  candidate.log_ratio = *log_tau;
+  candidate.log_ratio_stddev = std::sqrt(variance);
+  if (candidate.log_ratio_stddev <= kMaxLogRatioStddev) {
+    candidate.status = CandidateStatus::kValid;
+  }
+  return candidate;
 }
 
 }  // namespace lowlap

@@ -38,9 +38,8 @@ std::optional<double> TrifocalLineTau(const TripletGeometry& geometry,
                                       CandidateStatus* status);
 
 /// The same read from both ends, combined in the log; half their difference is
-/// part of the standard deviation. With r' the speeds of the distances of the
-/// two outer end points to the projected line, per unit of log tau:
-///   var(log tau) = sum over the outer views of stddev^2 / (r'_1^2 + r'_2^2).
+/// part of the standard deviation. The rest is to first order from all six end
+/// points, each moving across its segment by its stddev_px (differences).
 RatioCandidate TrifocalLineRatio(const TripletGeometry& geometry,
                                  const TrifocalLine& line);
 

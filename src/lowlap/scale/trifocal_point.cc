@@ -4,7 +4,6 @@
 
 #include "lowlap/geometry/closest_direction.h"
 #include "lowlap/geometry/triangulation.h"
-#include "lowlap/scale/candidate_combination.h"
 
 namespace lowlap {
 namespace {
@@ -64,9 +63,16 @@ RatioCandidate TrifocalPointRatio(const TripletGeometry& geometry,
   const std::optional<OneEnd> kji =
       FromOneEnd(geometry.Swapped(), swapped, &candidate.status);
   if (!kji) return candidate;
-  return CombineEnds(std::log(ijk->tau), std::log(kji->tau),
-                     1.0 / (ijk->speed_px * ijk->speed_px) +
-                         1.0 / (kji->speed_px * kji->speed_px));
+  const double half_difference =
+      0.5 * (std::log(ijk->tau) + std::log(kji->tau));
+  candidate.log_ratio = 0.5 * (std::log(ijk->tau) - std::log(kji->tau));
+  candidate.log_ratio_stddev = std::sqrt(1.0 / (ijk->speed_px * ijk->speed_px) +
+                                         1.0 / (kji->speed_px * kji->speed_px) +
+                                         half_difference * half_difference);
+  if (!(candidate.log_ratio_stddev <= kMaxLogRatioStddev)) {
+    candidate.status = CandidateStatus::kDegenerate;
+  }
+  return candidate;
 }
 
 }  // namespace lowlap

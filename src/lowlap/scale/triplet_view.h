@@ -25,7 +25,7 @@ struct TripletView {
   std::vector<TrifocalLine> lines;
   std::vector<MatchedLine> lines_ij;
   std::vector<MatchedLine> lines_jk;
-  CoplanarCandidates coplanar;
+  CoplanarPairCandidates coplanar;
 };
 
 using NormalizedFeaturesByView = std::map<ViewId, NormalizedFeatures>;
