@@ -1,5 +1,7 @@
 #include "lowlap/scene/validation.h"
 
+#include <algorithm>
+
 #include "lowlap/scene/internal/validation_parts.h"
 
 namespace lowlap {
@@ -22,21 +24,42 @@ std::string UnknownView(ViewId view) {
   return "there is no view " + std::to_string(view);
 }
 
-FeatureCounts CountFeatures(const Scene& scene, ViewId view) {
-  const auto found = scene.features.find(view);
-  return FeatureCounts(found == scene.features.end() ? nullptr
-                                                     : &found->second);
+ViewTable::ViewTable(const Scene& scene) {
+  entries_.reserve(scene.views.size());
+  auto features = scene.features.begin();
+  for (const auto& [view, unused] : scene.views) {
+    entries_.push_back({view, 0, 0});
+    while (features != scene.features.end() && features->first < view) {
+      ++features;
+    }
+    if (features != scene.features.end() && features->first == view) {
+      entries_.back().points = features->second.points_px.size();
+      entries_.back().segments = features->second.segments.size();
+    }
+  }
+}
+
+const ViewTable::Entry* ViewTable::Find(ViewId view) const {
+  // Mostly the ids are 0, 1, 2, ...
+  if (view < entries_.size() && entries_[view].view == view) {
+    return &entries_[view];
+  }
+  const auto found = std::lower_bound(
+      entries_.begin(), entries_.end(), view,
+      [](const Entry& entry, ViewId id) { return entry.view < id; });
+  return found != entries_.end() && found->view == view ? &*found : nullptr;
 }
 
 }  // namespace internal
 
 Status ValidateScene(const Scene& scene) {
+  const internal::ViewTable views(scene);
   for (const auto part :
        {internal::ValidateCameras, internal::ValidateStructure,
         internal::ValidateFeatures, internal::ValidateRelativePoses,
         internal::ValidateTracks, internal::ValidateScaleRatios,
         internal::ValidateLineStructure}) {
-    if (Status status = part(scene); !status) return status;
+    if (Status status = part(scene, views); !status) return status;
   }
   return {};
 }

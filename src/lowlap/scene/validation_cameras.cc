@@ -62,7 +62,7 @@ Status ValidateView(const Scene& scene, ViewId id, const View& view) {
 
 }  // namespace
 
-Status ValidateCameras(const Scene& scene) {
+Status ValidateCameras(const Scene& scene, const ViewTable&) {
   if (!IsUtf8(scene.root_path)) return Invalid("not UTF-8", "$.root_path");
   std::set<IntrinsicId> used_intrinsics;
   std::set<PoseId> used_poses;

@@ -51,12 +51,13 @@ Status ValidateMatches(const std::vector<FeatureMatch>& matches,
   return {};
 }
 
-Status ValidateRelativePose(const Scene& scene, const RelativePose& edge,
+Status ValidateRelativePose(const ViewTable& views, const RelativePose& edge,
                             const std::string& place) {
-  for (const ViewId view : {edge.views.first, edge.views.second}) {
-    if (scene.views.count(view) == 0) {
-      return Invalid(UnknownView(view), place + ".views");
-    }
+  const ViewTable::Entry* first = views.Find(edge.views.first);
+  const ViewTable::Entry* second = views.Find(edge.views.second);
+  if (!first || !second) {
+    return Invalid(UnknownView(first ? edge.views.second : edge.views.first),
+                   place + ".views");
   }
   if (!(edge.views.first < edge.views.second)) {
     return Invalid("the first view must have the smaller id", place + ".views");
@@ -86,24 +87,22 @@ Status ValidateRelativePose(const Scene& scene, const RelativePose& edge,
           place + ".covariance");
     }
   }
-  const FeatureCounts first = CountFeatures(scene, edge.views.first);
-  const FeatureCounts second = CountFeatures(scene, edge.views.second);
-  if (Status status = ValidateMatches(edge.point_inliers, first.points,
-                                      second.points, place + ".point_inliers");
+  if (Status status = ValidateMatches(edge.point_inliers, first->points,
+                                      second->points, place + ".point_inliers");
       !status) {
     return status;
   }
-  return ValidateMatches(edge.line_inliers, first.segments, second.segments,
+  return ValidateMatches(edge.line_inliers, first->segments, second->segments,
                          place + ".line_inliers");
 }
 
 }  // namespace
 
-Status ValidateFeatures(const Scene& scene) {
+Status ValidateFeatures(const Scene& scene, const ViewTable& views) {
   for (const auto& [view, features] : scene.features) {
     const std::string place =
         OwnItemPlace("features", "view", std::to_string(view));
-    if (scene.views.count(view) == 0) return Invalid(UnknownView(view), place);
+    if (!views.Find(view)) return Invalid(UnknownView(view), place);
     if (Status status = ValidateViewFeatures(features, place); !status) {
       return status;
     }
@@ -111,24 +110,24 @@ Status ValidateFeatures(const Scene& scene) {
   return {};
 }
 
-Status ValidateRelativePoses(const Scene& scene) {
-  for (const auto& [views, edge] : scene.relative_poses) {
+Status ValidateRelativePoses(const Scene& scene, const ViewTable& views) {
+  for (const auto& [pair, edge] : scene.relative_poses) {
     const std::string place = OwnItemPlace(
         "relative_poses", "views",
-        std::to_string(views.first) + "," + std::to_string(views.second));
-    if (views != edge.views) {
+        std::to_string(pair.first) + "," + std::to_string(pair.second));
+    if (pair != edge.views) {
       return Invalid("is stored under other views than its own",
                      place + ".views");
     }
-    if (Status status = ValidateRelativePose(scene, edge, place); !status) {
+    if (Status status = ValidateRelativePose(views, edge, place); !status) {
       return status;
     }
   }
   return {};
 }
 
-Status ValidateTrack(const Scene& scene, const Track& track, FeatureKind kind,
-                     const std::string& place) {
+Status ValidateTrack(const ViewTable& views, const Track& track,
+                     FeatureKind kind, const std::string& place) {
   const auto invalid = [&](std::string message, std::size_t flat_index) {
     return Invalid(std::move(message),
                    place + ".observations" + IndexPlace(flat_index));
@@ -139,13 +138,11 @@ Status ValidateTrack(const Scene& scene, const Track& track, FeatureKind kind,
   bool ascending = true;
   for (std::size_t n = 0; n < track.size(); ++n) {
     const FeatureRef& ref = track[n];
-    const FeatureCounts counts = CountFeatures(scene, ref.view);
+    const ViewTable::Entry* view = views.Find(ref.view);
+    if (!view) return invalid(UnknownView(ref.view), 2 * n);
     const std::size_t count =
-        kind == FeatureKind::kPoint ? counts.points : counts.segments;
+        kind == FeatureKind::kPoint ? view->points : view->segments;
     if (ref.feature >= count) {
-      if (scene.views.count(ref.view) == 0) {
-        return invalid(UnknownView(ref.view), 2 * n);
-      }
       return invalid("view " + std::to_string(ref.view) + " has only " +
                          std::to_string(count) + " features of this kind",
                      2 * n + 1);
@@ -175,12 +172,12 @@ Status ValidateTrack(const Scene& scene, const Track& track, FeatureKind kind,
   return {};
 }
 
-Status ValidateTracks(const Scene& scene) {
+Status ValidateTracks(const Scene& scene, const ViewTable& views) {
   const auto validate = [&](const auto& tracks, const char* section,
                             FeatureKind kind) -> Status {
     for (const auto& [id, track] : tracks) {
       // The place is spelt out only on failure: scenes have many tracks.
-      if (Status status = ValidateTrack(scene, track, kind, {}); !status) {
+      if (Status status = ValidateTrack(views, track, kind, {}); !status) {
         Error error = status.error();
         error.place =
             OwnItemPlace(section, "id", std::to_string(id)) + error.place;

@@ -24,11 +24,11 @@ Status ValidateSupport(const KindSupport& support, const std::string& place) {
   return {};
 }
 
-Status ValidateScaleRatio(const Scene& scene, const ScaleRatio& ratio,
-                          const std::string& place) {
+Status ValidateScaleRatio(const Scene& scene, const ViewTable& views,
+                          const ScaleRatio& ratio, const std::string& place) {
   const auto& [first, middle, last] = ratio.views;
   for (const ViewId view : {first, middle, last}) {
-    if (scene.views.count(view) == 0) {
+    if (!views.Find(view)) {
       return Invalid(UnknownView(view), place + ".views");
     }
   }
@@ -64,7 +64,7 @@ Status ValidateScaleRatio(const Scene& scene, const ScaleRatio& ratio,
   if (ratio.num_rejected_negative < 0) {
     return Invalid("must not be negative", place + ".num_rejected_negative");
   }
-  const std::size_t count = CountFeatures(scene, middle).segments;
+  const std::size_t count = views.Find(middle)->segments;
   for (std::size_t n = 0; n < ratio.coplanar_inliers.size(); ++n) {
     const CoplanarInlier& inlier = ratio.coplanar_inliers[n];
     if (inlier.line_in_first >= count || inlier.line_in_last >= count) {
@@ -77,7 +77,7 @@ Status ValidateScaleRatio(const Scene& scene, const ScaleRatio& ratio,
   return {};
 }
 
-Status ValidateLandmark(const Scene& scene, const Landmark& landmark,
+Status ValidateLandmark(const ViewTable& views, const Landmark& landmark,
                         bool has_features) {
   const auto invalid = [](std::string message, std::string place) {
     return Invalid(std::move(message), std::move(place));
@@ -89,7 +89,8 @@ Status ValidateLandmark(const Scene& scene, const Landmark& landmark,
       return ".observations[key=" + std::to_string(observation.view) + "]" +
              member;
     };
-    if (scene.views.count(observation.view) == 0) {
+    const ViewTable::Entry* view = views.Find(observation.view);
+    if (!view) {
       return invalid(UnknownView(observation.view), place(""));
     }
     if (previous && !(previous->view < observation.view)) {
@@ -103,16 +104,16 @@ Status ValidateLandmark(const Scene& scene, const Landmark& landmark,
       return invalid("must be finite", place(".x"));
     }
     if (!has_features || observation.feature == kInvalidId) continue;
-    const std::size_t count = CountFeatures(scene, observation.view).points;
-    if (count > 0 && observation.feature >= count) {
-      return invalid("the view has only " + std::to_string(count) + " points",
-                     place(".id_feat"));
+    if (view->points > 0 && observation.feature >= view->points) {
+      return invalid(
+          "the view has only " + std::to_string(view->points) + " points",
+          place(".id_feat"));
     }
   }
   return {};
 }
 
-Status ValidateLine(const Scene& scene, const LineLandmark& landmark) {
+Status ValidateLine(const ViewTable& views, const LineLandmark& landmark) {
   const PluckerLine& line = landmark.line;
   if (!IsUnit(line.direction)) {
     return Invalid("is not a unit vector", ".direction");
@@ -124,7 +125,7 @@ Status ValidateLine(const Scene& scene, const LineLandmark& landmark) {
   }
   if (!landmark.start.allFinite()) return Invalid("must be finite", ".start");
   if (!landmark.end.allFinite()) return Invalid("must be finite", ".end");
-  return ValidateTrack(scene, landmark.observations, FeatureKind::kSegment, {});
+  return ValidateTrack(views, landmark.observations, FeatureKind::kSegment, {});
 }
 
 // Puts the place of the record in front of that of its member.
@@ -137,23 +138,23 @@ Status Within(const std::string& record, const Status& status) {
 
 }  // namespace
 
-Status ValidateStructure(const Scene& scene) {
+Status ValidateStructure(const Scene& scene, const ViewTable& views) {
   for (const auto& [id, landmark] : scene.structure) {
-    Status status = ValidateLandmark(scene, landmark, true);
+    Status status = ValidateLandmark(views, landmark, true);
     if (status && landmark.observations.size() < 2) {
       status = Invalid("needs at least two observations", ".observations");
     }
     if (!status) return Within(ItemPlace("structure", id), status);
   }
   for (const auto& [id, point] : scene.control_points) {
-    if (Status status = ValidateLandmark(scene, point, false); !status) {
+    if (Status status = ValidateLandmark(views, point, false); !status) {
       return Within(ItemPlace("control_points", id), status);
     }
   }
   return {};
 }
 
-Status ValidateScaleRatios(const Scene& scene) {
+Status ValidateScaleRatios(const Scene& scene, const ViewTable& views) {
   std::set<std::tuple<ViewId, ViewId, ViewId>> seen;
   for (const ScaleRatio& ratio : scene.scale_ratios) {
     const auto& [first, middle, last] = ratio.views;
@@ -161,7 +162,8 @@ Status ValidateScaleRatios(const Scene& scene) {
         OwnItemPlace("scale_ratios", "views",
                      std::to_string(first) + "," + std::to_string(middle) +
                          "," + std::to_string(last));
-    if (Status status = ValidateScaleRatio(scene, ratio, place); !status) {
+    if (Status status = ValidateScaleRatio(scene, views, ratio, place);
+        !status) {
       return status;
     }
     // (i, j, k) and (k, j, i) are one triplet.
@@ -173,9 +175,9 @@ Status ValidateScaleRatios(const Scene& scene) {
   return {};
 }
 
-Status ValidateLineStructure(const Scene& scene) {
+Status ValidateLineStructure(const Scene& scene, const ViewTable& views) {
   for (const auto& [id, line] : scene.line_structure) {
-    if (Status status = ValidateLine(scene, line); !status) {
+    if (Status status = ValidateLine(views, line); !status) {
       return Within(OwnItemPlace("line_structure", "id", std::to_string(id)),
                     status);
     }

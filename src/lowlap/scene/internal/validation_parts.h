@@ -4,20 +4,37 @@
 #include <cstdint>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "lowlap/core/result.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap::internal {
 
+/// Every view with the numbers of its points and segments, quick to look up.
+class ViewTable {
+ public:
+  struct Entry {
+    ViewId view;
+    std::size_t points, segments;  // zero without features
+  };
+
+  explicit ViewTable(const Scene& scene);
+  /// nullptr: there is no such view.
+  const Entry* Find(ViewId view) const;
+
+ private:
+  std::vector<Entry> entries_;  // sorted by view
+};
+
 // The parts of ValidateScene, in its order.
-Status ValidateCameras(const Scene& scene);
-Status ValidateFeatures(const Scene& scene);
-Status ValidateRelativePoses(const Scene& scene);
-Status ValidateTracks(const Scene& scene);
-Status ValidateScaleRatios(const Scene& scene);
-Status ValidateStructure(const Scene& scene);
-Status ValidateLineStructure(const Scene& scene);
+Status ValidateCameras(const Scene& scene, const ViewTable& views);
+Status ValidateStructure(const Scene& scene, const ViewTable& views);
+Status ValidateFeatures(const Scene& scene, const ViewTable& views);
+Status ValidateRelativePoses(const Scene& scene, const ViewTable& views);
+Status ValidateTracks(const Scene& scene, const ViewTable& views);
+Status ValidateScaleRatios(const Scene& scene, const ViewTable& views);
+Status ValidateLineStructure(const Scene& scene, const ViewTable& views);
 
 /// How far from a rotation, or from unit length, a value may be.
 inline constexpr double kTolerance = 1e-6;
@@ -39,20 +56,11 @@ std::string IndexPlace(std::size_t index);  // "[index]"
 
 std::string UnknownView(ViewId view);  // the message
 
-/// How many points and segments a view has; zero without features.
-struct FeatureCounts {
-  explicit FeatureCounts(const ViewFeatures* features)
-      : points(features ? features->points_px.size() : 0),
-        segments(features ? features->segments.size() : 0) {}
-  std::size_t points, segments;
-};
-FeatureCounts CountFeatures(const Scene& scene, ViewId view);
-
 enum class FeatureKind { kPoint, kSegment };
 
 /// The rules for a track, or for the observations of a line landmark; `place`
 /// is that of the record that has the flat array "observations".
-Status ValidateTrack(const Scene& scene, const Track& track, FeatureKind kind,
-                     const std::string& place);
+Status ValidateTrack(const ViewTable& views, const Track& track,
+                     FeatureKind kind, const std::string& place);
 
 }  // namespace lowlap::internal
