@@ -1,5 +1,6 @@
 #include "lowlap/adjustment/bundle_adjuster.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <map>
@@ -27,6 +28,9 @@ using internal::PointTrackState;
 using internal::SolveOutcome;
 using internal::SolveRequest;
 using internal::StructureState;
+
+constexpr char kFinalStage[] = "final";
+constexpr double kRoughTolerance = 1e-5;
 
 struct KindRmse {
   double points_px = 0;
@@ -182,24 +186,32 @@ class Adjuster {
         summary_(summary) {}
 
   Status Run() {
+    // Before the observations are settled, a rough optimum will do.
+    const double rough = std::max(options_.function_tolerance, kRoughTolerance);
     noise_ = EstimateAllNoise(*cameras_, *state_, options_);
     if (options_.fixed_rotations_first) {
-      if (Status status = Solve("fixed rotations", true); !status) {
+      if (Status status = Solve("fixed rotations", true, rough); !status) {
         return status;
       }
     }
-    if (Status status = Solve("everything", false); !status) return status;
+    if (Status status = Solve("everything", false, rough); !status) {
+      return status;
+    }
     bool at_rest = options_.max_outlier_rounds == 0;
     for (int round = 1; round <= options_.max_outlier_rounds; ++round) {
-      Result<double> changed = Update();
+      const Result<double> changed = Update();
       if (!changed) return tl::unexpected<Error>(changed.error());
       at_rest = *changed <= options_.outlier_round_tolerance;
       if (at_rest) break;
       summary_->outlier_rounds = round;
-      if (Status status = Solve("round " + std::to_string(round), false);
+      if (Status status = Solve("round " + std::to_string(round), false, rough);
           !status) {
         return status;
       }
+    }
+    if (Status status = Solve(kFinalStage, false, options_.function_tolerance);
+        !status) {
+      return status;
     }
     summary_->converged = at_rest && summary_->solves.back().converged;
     for (LineTrackState& line : state_->lines) {
@@ -212,10 +224,11 @@ class Adjuster {
   const SolveOutcome& last() const { return last_; }
 
  private:
-  Status Solve(const std::string& stage, bool fixed_rotations) {
+  Status Solve(const std::string& stage, bool fixed_rotations,
+               double function_tolerance) {
     const SolveRequest request{
-        stage, fixed_rotations, noise_,
-        options_.compute_center_covariances && !fixed_rotations};
+        stage, fixed_rotations, function_tolerance, noise_,
+        stage == kFinalStage && options_.compute_center_covariances};
     Result<SolveOutcome> outcome =
         SolveOnce(options_, request, context_, cameras_, state_);
     if (!outcome) return tl::unexpected<Error>(outcome.error());

@@ -61,7 +61,8 @@ struct AdjustmentOptions {
   double min_two_view_line_overlap = 0.2;
 
   int max_iterations = 100;  // of each solve
-  /// A solve ends when the cost changes by less than this share.
+  /// The final solve ends when the cost changes by less than this share; those
+  /// before it at 1e-5.
   double function_tolerance = 1e-8;
 
   /// Covariances of the centres, from the Hessian at the solution.
@@ -86,7 +87,8 @@ struct KindAdjustment {
 
 /// One run of the solver.
 struct SolveReport {
-  std::string stage;  // "fixed rotations", "everything", "round 1", ...
+  std::string
+      stage;  // "fixed rotations", "everything", "round 1", ..., "final"
   std::size_t residuals = 0;
   std::size_t parameters = 0;
   double initial_cost = 0;  // in units of the noise, halved squares

@@ -47,7 +47,11 @@ class PointReprojectionCost final : public ceres::CostFunction {
       residual.setConstant(kBehindCameraErrorPx);
     } else {
       Vec2 pixel_px;
-      if (refined) {
+      if (jacobians == nullptr) {
+        ProjectPoint(intrinsic_->value,
+                     refined ? parameters[3] : intrinsic_->parameters.data(),
+                     x_cam.data(), pixel_px.data());
+      } else if (refined) {
         pixel_px = Project(parameters[3], x_cam, &by_x_cam, &by_intrinsic);
       } else {
         pixel_px = *ProjectWithJacobian(*intrinsic_, x_cam, &by_x_cam);

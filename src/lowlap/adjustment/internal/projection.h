@@ -99,6 +99,14 @@ inline std::optional<Vec2> ProjectWithJacobian(const IntrinsicState& intrinsic,
                                                const Vec3& x_cam,
                                                Mat23* jacobian) {
   if (!IsProjectable(intrinsic.value.model, x_cam)) return std::nullopt;
+  if (intrinsic.value.model == CameraModel::kPinhole) {
+    const IntrinsicParameters& k = intrinsic.parameters;
+    const double inverse_z = 1 / x_cam.z();
+    const double x = x_cam.x() * inverse_z, y = x_cam.y() * inverse_z;
+    *jacobian << k[0] * inverse_z, 0, -k[0] * inverse_z * x,  //
+        0, k[1] * inverse_z, -k[1] * inverse_z * y;
+    return Vec2(k[0] * x + k[2], k[1] * y + k[3]);
+  }
   using Jet = ceres::Jet<double, 3>;
   std::array<Jet, kMaxIntrinsicParameters> parameters;
   for (int n = 0; n < kMaxIntrinsicParameters; ++n) {

@@ -34,6 +34,7 @@ class ProgressCallback final : public ceres::IterationCallback {
 };
 
 ceres::Solver::Options SolverOptions(const AdjustmentOptions& options,
+                                     const SolveRequest& request,
                                      const ProblemBuilder& builder) {
   ceres::Solver::Options solver;
   // The dense reduced system of a hundred cameras factorises in milliseconds.
@@ -43,7 +44,7 @@ ceres::Solver::Options SolverOptions(const AdjustmentOptions& options,
                                   : ceres::SPARSE_SCHUR;
   solver.linear_solver_ordering = builder.Ordering();
   solver.max_num_iterations = options.max_iterations;
-  solver.function_tolerance = options.function_tolerance;
+  solver.function_tolerance = request.function_tolerance;
   solver.parameter_tolerance = 1e-10;
   solver.gradient_tolerance = 1e-14;
   // More threads would add up the reduced system in an order of chance.
@@ -98,7 +99,8 @@ Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
   const QuietLogging quiet;
   ProblemBuilder builder(options, request, selection, components, cameras,
                          state);
-  ceres::Solver::Options solver_options = SolverOptions(options, builder);
+  ceres::Solver::Options solver_options =
+      SolverOptions(options, request, builder);
   ProgressCallback progress(context, request.stage, options.max_iterations);
   solver_options.callbacks.push_back(&progress);
   ceres::Solver::Summary summary;

@@ -13,6 +13,7 @@ namespace lowlap::internal {
 struct SolveRequest {
   std::string stage;
   bool fixed_rotations = false;
+  double function_tolerance = 1e-8;
   NoiseLevels noise;
   bool center_covariances = false;
 };
