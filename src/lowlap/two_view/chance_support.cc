@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/two_view/refine_relative_pose.h"
@@ -56,6 +57,24 @@ double MotionAngle(const RigidTransform& pose, const Vec3& x1, const Vec3& x2) {
   return std::atan2(std::abs(cross), epipolar.dot(motion));
 }
 
+/// The rotation that takes the bearings x1 closest to x2, with Cauchy weights
+/// (iterated orthogonal Procrustes).
+Mat3 FitRotation(const PointPairs& pairs, const std::vector<int>& indices,
+                 const Mat3& start, double scale_rad) {
+  Mat3 rotation = start;
+  for (int iteration = 0; iteration < 10; ++iteration) {
+    Mat3 correlation = Mat3::Zero();
+    for (const int i : indices) {
+      const Vec3 a = pairs.x1[i].normalized();
+      const Vec3 b = pairs.x2[i].normalized();
+      const double ratio = (rotation * a - b).norm() / scale_rad;
+      correlation += b * a.transpose() / (1 + ratio * ratio);
+    }
+    rotation = NearestRotation(correlation);
+  }
+  return rotation;
+}
+
 }  // namespace
 
 std::vector<int> VisibleSteps(const EssentialKernel& kernel,
@@ -85,10 +104,24 @@ AContrarioScore ScoreAgainstChance(const EssentialKernel& kernel,
   return ladder.WithBackground(background).Best(counts);
 }
 
-double DirectionLog10Nfa(const PointPairs& pairs,
-                         const RigidTransform& cam2_from_cam1) {
+TranslationEvidence TestTranslation(const PointPairs& pairs,
+                                    const RigidTransform& cam2_from_cam1,
+                                    const std::vector<int>& inliers,
+                                    double threshold_px) {
+  TranslationEvidence evidence;
+  const double scale = 3 * threshold_px / pairs.focal2_px;
+  const Mat3 rotation =
+      FitRotation(pairs, inliers, cam2_from_cam1.rotation, scale);
+  for (const int i : inliers) {
+    if (AngleBetween(rotation * pairs.x1[i], pairs.x2[i]) <= scale) {
+      ++evidence.num_rotation_inliers;
+    }
+  }
+  if (2 * evidence.num_rotation_inliers < static_cast<int>(inliers.size())) {
+    evidence.log10_nfa = -std::numeric_limits<double>::infinity();
+    return evidence;
+  }
   const int n = pairs.size();
-  if (n < 2) return 0;
   // Five: the pose was fitted to the matches.
   const AContrarioLadder ladder(n, 5, 1, {1 / kPi, 1}, 1e-3, kPi / 2);
   const auto count = [&](int shift, std::vector<int>& counts) {
@@ -104,7 +137,8 @@ double DirectionLog10Nfa(const PointPairs& pairs,
   }
   std::vector<int> counts(ladder.NumSteps() + 1, 0);
   count(0, counts);
-  return ladder.WithBackground(background).Best(counts).log10_nfa;
+  evidence.log10_nfa = ladder.WithBackground(background).Best(counts).log10_nfa;
+  return evidence;
 }
 
 }  // namespace lowlap

@@ -49,6 +49,8 @@ RigidTransform RefineRelativePose(const RigidTransform& cam2_from_cam1,
 /// Covariance of (w, d) as above at the minimum of the same loss:
 ///   (sum psi^2 / (n - 5)) / (mean psi')^2 (sum J J^T)^-1
 /// (Huber, "Robust Statistics", section 7.6), psi the derivative of the loss.
+/// It covers independent errors of the points only: an imperfect calibration
+/// adds its own, which thousands of matches do not average down.
 /// nullopt: fewer than 6 matches, or a singular system.
 std::optional<Mat5> RelativePoseCovariance(const RigidTransform& cam2_from_cam1,
                                            const PointPairs& pairs,

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lowlap/core/random.h"
+#include "lowlap/geometry/rotation.h"
 #include "lowlap/robust/a_contrario.h"
 #include "lowlap/two_view/chance_support.h"
 #include "lowlap/two_view/planar_motion.h"
@@ -125,6 +126,12 @@ RelativePose ToRelativePose(const TwoViewInput& input,
   return pose;
 }
 
+/// To within the convergence of the refinement.
+bool SameMotion(const RigidTransform& a, const RigidTransform& b) {
+  return RotationAngleBetween(a.rotation, b.rotation) < 1e-4 &&
+         AngleBetween(a.translation, b.translation) < 1e-4;
+}
+
 /// The other explanation of a scene whose points lie mostly on one plane.
 std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
                                                const PointPairs& pairs,
@@ -144,7 +151,9 @@ std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
   const std::optional<RigidTransform> motion = OtherPlanarMotion(
       candidate.pose, plane->normal, pairs.x1[plane->inliers.front()]);
   if (!motion) return std::nullopt;
-  return search.Finish(*motion);
+  PoseCandidate other = search.Finish(*motion);
+  if (SameMotion(candidate.pose, other.pose)) return std::nullopt;
+  return other;
 }
 
 }  // namespace
@@ -221,8 +230,10 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
                           ? TwoViewGeometry::kAmbiguousPlane
                           : TwoViewGeometry::kPlanar;
   }
-  result.direction_log10_nfa = DirectionLog10Nfa(pairs, best->pose);
-  if (!(result.direction_log10_nfa < 0)) {
+  const TranslationEvidence translation =
+      TestTranslation(pairs, best->pose, best->inliers, best->score.threshold);
+  result.num_rotation_inliers = translation.num_rotation_inliers;
+  if (!(translation.log10_nfa < 0)) {
     result.geometry = TwoViewGeometry::kRotationOnly;
   }
   result.pose = ToRelativePose(input, matches, *best);

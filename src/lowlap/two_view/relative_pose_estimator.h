@@ -24,7 +24,7 @@ struct TwoViewInput {
 struct TwoViewOptions {
   /// Upper bound of the a-contrario threshold. It only has to be wide enough
   /// for the worst calibration that is to be accepted.
-  double max_threshold_px = 16;
+  double max_threshold_px = 4;
   /// Upper bound of the samples drawn; the count adapts to the inlier rate.
   int max_samples = 10000;
   /// Probability with which a sample of inliers only is drawn at least once.
@@ -36,11 +36,11 @@ struct TwoViewOptions {
 /// What kind of scene the matches show.
 enum class TwoViewGeometry {
   kGeneral,
-  /// The inliers lie on one plane, and the motion was told from its mirror
-  /// image by the few points that do not, or by visibility.
+  /// Most inliers lie on one plane, which two motions explain; the points off
+  /// the plane, or visibility, decided for `pose`.
   kPlanar,
-  /// The inliers lie on one plane and both motions that explain it fit equally
-  /// well: `pose` is one of them, `alternatives` holds the other.
+  /// The same, but both motions fit equally well: `pose` is one of them,
+  /// `alternatives` holds the other.
   kAmbiguousPlane,
   /// Rotation without translation that the noise would let us see: the
   /// rotation of `pose` is good, its direction means nothing.
@@ -59,10 +59,8 @@ struct TwoViewResult {
   // Diagnostics.
   int num_matches = 0;  // matches whose points could be normalised
   int num_samples = 0;
-  /// log10 NFA of the translation itself: that the motion of the points
-  /// relative to a pure rotation points along the epipolar lines. >= 0 for
-  /// kRotationOnly.
-  double direction_log10_nfa = 0;
+  /// Inliers that a rotation alone explains.
+  int num_rotation_inliers = 0;
   /// Inliers that lie on the dominant plane.
   int num_plane_inliers = 0;
 
