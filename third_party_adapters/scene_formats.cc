@@ -1,10 +1,13 @@
 #include "third_party_adapters/scene_formats.h"
 
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <memory>
+#include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "lowlap/io/ply.h"

@@ -84,6 +84,19 @@ TEST(SfmDataXml, EveryTruncationIsAnError) {
   }
 }
 
+TEST(SfmDataXml, EveryDamagedByteIsSurvived) {
+  const std::string xml = TwoViewsXml();
+  int num_errors = 0;
+  for (std::size_t n = 0; n < xml.size(); ++n) {
+    for (const char byte : {'<', '\0', '&', '\xFF'}) {
+      std::string damaged = xml;
+      damaged[n] = byte;
+      if (!ParseSfmDataXml(damaged)) ++num_errors;
+    }
+  }
+  EXPECT_GT(num_errors, static_cast<int>(xml.size()));
+}
+
 TEST(SfmDataXml, MalformedContentIsNamed) {
   const auto error = [](const std::string& xml) {
     const Result<Scene> scene = ParseSfmDataXml(xml, "a.xml");

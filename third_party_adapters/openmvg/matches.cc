@@ -1,5 +1,6 @@
 #include "third_party_adapters/openmvg/matches.h"
 
+#include <ostream>
 #include <utility>
 
 #include "lowlap/core/atomic_file.h"

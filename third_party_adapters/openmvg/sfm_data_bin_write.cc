@@ -1,4 +1,5 @@
 #include <map>
+#include <ostream>
 #include <utility>
 
 #include "lowlap/core/atomic_file.h"

@@ -1,5 +1,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <ostream>
 #include <utility>
 
 #include "lowlap/core/atomic_file.h"

@@ -1,9 +1,11 @@
 #include "third_party_adapters/strecha/strecha.h"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "lowlap/core/atomic_file.h"
