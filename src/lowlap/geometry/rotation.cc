@@ -14,8 +14,8 @@ Mat3 CrossMatrix(const Vec3& v) {
 
 Mat3 RotationFromAngleAxis(const Vec3& angle_axis_rad) {
   const double angle = angle_axis_rad.norm();
-  if (angle < 1e-12)
-    return NearestRotation(Mat3::Identity() + CrossMatrix(angle_axis_rad));
+  // The next term of the series is below the rounding of 1.
+  if (angle < 1e-12) return Mat3::Identity() + CrossMatrix(angle_axis_rad);
   return Eigen::AngleAxisd(angle, angle_axis_rad / angle).toRotationMatrix();
 }
 
