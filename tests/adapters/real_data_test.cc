@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <iostream>
 
 #include "adapters/temporary_folder.h"
 #include "lowlap/evaluation/pose_errors.h"
@@ -56,8 +57,6 @@ TEST_F(OpenMvgData, EvaluationGivesThePublishedErrors) {
     EXPECT_EQ(evaluation.num_total, expected.num_views);
     EXPECT_EQ(evaluation.num_solved, expected.num_views);
     EXPECT_NEAR(1000 * evaluation.position.mean, expected.mean_mm, 0.005);
-    RecordProperty("rotation_mean_deg",
-                   std::to_string(evaluation.rotation_deg.mean));
     std::cout << expected.solution << ": position mean "
               << 1000 * evaluation.position.mean << " mm, rotation mean "
               << evaluation.rotation_deg.mean << " deg, frame "
