@@ -50,7 +50,7 @@ LogFactorials::LogFactorials(int max_n)
   }
 }
 
-double BestOfPartners(double alpha, int num_partners) {
+double BestOfPartners(double alpha, double num_partners) {
   if (alpha >= 1.0) return 1.0;
   return -std::expm1(num_partners * std::log1p(-alpha));
 }

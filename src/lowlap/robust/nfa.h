@@ -30,7 +30,7 @@ struct NfaTerm {
 
 /// The probability that the least of `num_partners` independent errors is an
 /// inlier: 1 - (1 - alpha)^num_partners.
-double BestOfPartners(double alpha, int num_partners);
+double BestOfPartners(double alpha, double num_partners);
 
 /// log10 of C(n, k) alpha^k with alpha capped at 1.
 ///

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "lowlap/scale/pose_uncertainty.h"
 #include "lowlap/scale/ratio_refinement.h"
 
 namespace lowlap {
@@ -67,14 +68,20 @@ Inliers FindConsistent(const RatioSupport& support,
                     refined)};
 }
 
+// The inliers as measurements of the ratio, and as features with the weights
+// they have among each other.
 std::vector<RatioInlier> InlierRatios(const RatioSupport& support,
                                       const TripletView& triplet,
-                                      const Inliers& inliers) {
+                                      const Inliers& inliers,
+                                      std::vector<WeightedFeature>* features) {
   std::vector<RatioInlier> ratios;
+  features->clear();
   const auto add = [&](FeatureKind kind, int index, double multiplicity) {
     const RatioCandidate& ratio = support.Ratios(kind)[index];
-    ratios.push_back({ratio.log_ratio, ratio.log_ratio_stddev,
-                      static_cast<int>(kind), multiplicity});
+    const double stddev = ratio.log_ratio_stddev;
+    ratios.push_back(
+        {ratio.log_ratio, stddev, static_cast<int>(kind), multiplicity});
+    features->push_back({kind, index, 1.0 / (stddev * stddev * multiplicity)});
   };
   for (const int index : inliers.points) add(FeatureKind::kPoint, index, 1.0);
   for (const int index : inliers.lines) add(FeatureKind::kLine, index, 1.0);
@@ -111,19 +118,22 @@ void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
                      const InlierThresholds& thresholds, double log_ratio,
                      ScaleRatio* ratio) {
   constexpr int kRounds = 2;
-  RefinedRatio refined =
-      RefineRatio(InlierRatios(support, triplet,
-                               FindInliers(support, thresholds, log_ratio)),
-                  log_ratio);
+  std::vector<WeightedFeature> features;
+  RefinedRatio refined = RefineRatio(
+      InlierRatios(support, triplet,
+                   FindInliers(support, thresholds, log_ratio), &features),
+      log_ratio);
   for (int round = 0; round < kRounds; ++round) {
-    refined =
-        RefineRatio(InlierRatios(support, triplet,
-                                 FindConsistent(support, thresholds, refined)),
-                    refined.log_ratio);
+    refined = RefineRatio(
+        InlierRatios(support, triplet,
+                     FindConsistent(support, thresholds, refined), &features),
+        refined.log_ratio);
   }
   const Inliers inliers = FindInliers(support, thresholds, refined.log_ratio);
   ratio->log_ratio = refined.log_ratio;
-  ratio->log_ratio_stddev = refined.log_ratio_stddev;
+  ratio->log_ratio_stddev =
+      std::sqrt(refined.log_ratio_stddev * refined.log_ratio_stddev +
+                PoseVariance(triplet, support, features));
   ratio->points.inliers = static_cast<int>(inliers.points.size());
   ratio->lines.inliers = static_cast<int>(inliers.lines.size());
   ratio->coplanar.inliers = static_cast<int>(inliers.pairs.size());

@@ -20,8 +20,9 @@ ScaleRatio EmptyRatio(const TripletView& triplet, const RatioSupport& support);
 /// thresholds, then on every feature of their kinds that agrees with the result
 /// within 3 standard deviations: a threshold that is best for telling right
 /// from wrong is too tight for an average, which it ties to where it started.
-/// Fills log_ratio and log_ratio_stddev, and for the refined ratio the inlier
-/// counts, thresholds and coplanar inliers of `ratio`.
+/// Fills log_ratio and log_ratio_stddev (with the part that comes from the
+/// relative poses, where their covariance is known), and for the refined ratio
+/// the inlier counts, thresholds and coplanar inliers of `ratio`.
 void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
                      const InlierThresholds& thresholds, double log_ratio,
                      ScaleRatio* ratio);

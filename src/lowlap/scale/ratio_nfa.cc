@@ -32,15 +32,17 @@ std::vector<double> BackgroundRatios(
 
 using LadderSums = std::array<double, kNumThresholds>;
 
-// log10 probabilities from the inliers counted among `num_errors` > 0 errors.
+// log10 probabilities from the inliers counted among `num_errors` > 0 errors,
+// each the least of `mean_partners`.
 LadderProbabilities Log10Law(const LadderSums& counts, double num_errors,
-                             const TripletView& triplet) {
+                             double mean_partners, const TripletView& triplet) {
   LadderProbabilities law;
   double above = 0;  // probability per pixel at the next step
   for (int step = kNumThresholds - 1; step >= 0; --step) {
     const double e = LadderThresholdPx(step);
-    const double uniform =
-        2 * triplet.image_diagonal_px * e / triplet.image_area_px2;
+    const double uniform = BestOfPartners(
+        2 * triplet.image_diagonal_px * e / triplet.image_area_px2,
+        mean_partners);
     const double measured = counts[step] / num_errors;
     const double alpha =
         std::min(1.0, std::max({measured, above * e, uniform}));
@@ -101,11 +103,11 @@ void RatioNfaCriterion::MeasureBackground(const TripletView& triplet) {
       }
     }
     for (std::size_t l = 0; l < laws.size(); ++l) {
-      *laws[l].log10_alpha =
-          Log10Law(sums[l],
-                   static_cast<double>(laws[l].num_features) *
-                       static_cast<double>(ratios.size()),
-                   triplet);
+      const double num_features = laws[l].num_features;
+      const double num_ratios = static_cast<double>(ratios.size());
+      const double num_own = static_cast<double>(support_.Ratios(kind).size());
+      *laws[l].log10_alpha = Log10Law(sums[l], num_features * num_ratios,
+                                      num_own / num_features, triplet);
     }
   };
   measure(FeatureKind::kPoint, {{&SupportCounts::points, support_.num_points(),

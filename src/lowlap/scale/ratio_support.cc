@@ -52,22 +52,26 @@ RatioSupport::RatioSupport(const TripletView& triplet,
 }
 
 void RatioSupport::AddPoints(const TripletView& triplet) {
-  for (const TrifocalPoint& point : triplet.points) {
+  for (std::size_t n = 0; n < triplet.points.size(); ++n) {
+    const TrifocalPoint& point = triplet.points[n];
     const RatioCandidate ratio = TrifocalPointRatio(triplet.geometry, point);
     num_rejected_negative_ += ratio.status == CandidateStatus::kNegativeDepth;
     if (ratio.status != CandidateStatus::kValid) continue;
     points_.Add(triplet.geometry, point, ratio.log_ratio);
     point_ratios_.push_back(ratio);
+    point_of_.push_back(static_cast<int>(n));
   }
 }
 
 void RatioSupport::AddLines(const TripletView& triplet) {
-  for (const TrifocalLine& line : triplet.lines) {
+  for (std::size_t n = 0; n < triplet.lines.size(); ++n) {
+    const TrifocalLine& line = triplet.lines[n];
     const RatioCandidate ratio = TrifocalLineRatio(triplet.geometry, line);
     num_rejected_negative_ += ratio.status == CandidateStatus::kNegativeDepth;
     if (ratio.status != CandidateStatus::kValid) continue;
     lines_.Add(triplet.geometry, line, ratio.log_ratio);
     line_ratios_.push_back(ratio);
+    line_of_.push_back(static_cast<int>(n));
   }
 }
 

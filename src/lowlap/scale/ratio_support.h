@@ -57,11 +57,11 @@ class RatioSupport {
 
   /// The features of a kind at their own ratio, in the order of their index.
   const std::vector<RatioCandidate>& Ratios(FeatureKind kind) const;
+  /// The index of a feature in TripletView::points, or lines.
+  int PointOf(int index) const { return point_of_[index]; }
+  int LineOf(int index) const { return line_of_[index]; }
   /// Indices into TripletView::lines_ij and lines_jk of a pair.
   const CoplanarPairCandidate& Pair(int index) const { return pairs_[index]; }
-  /// Number of partners of every line in a pair: lines of (i, j), of (j, k).
-  const std::vector<int>& PartnersOfFirst() const { return partners_; }
-  const std::vector<int>& PartnersOfLast() const { return partners_last_; }
 
   /// Errors in pixels of all features of a kind at one ratio.
   void Errors(FeatureKind kind, double log_ratio,
@@ -87,6 +87,8 @@ class RatioSupport {
   std::vector<RatioCandidate> point_ratios_;
   std::vector<RatioCandidate> line_ratios_;
   std::vector<RatioCandidate> pair_ratios_;
+  std::vector<int> point_of_;
+  std::vector<int> line_of_;
   std::vector<CoplanarPairCandidate> pairs_;
   // Of a pair, the rank of its lines among those in at least one pair.
   std::vector<int> pair_first_;

@@ -78,6 +78,7 @@ std::optional<double> TrifocalLineTau(const TripletGeometry& geometry,
   const Vec3 v = rotation * in_j->moment;
   const Vec3 w =
       geometry.camk_from_camj.translation.cross(rotation * in_j->direction);
+  if (!(w.norm() > 1e-9)) return std::nullopt;  // parallel to the baseline
   const std::optional<double> tau =
       ClosestDirection(line.in_k.segment.normal, v, w);
   if (!tau) return std::nullopt;

@@ -3,6 +3,8 @@
 #include <string>
 #include <utility>
 
+#include "lowlap/scale/pose_uncertainty.h"
+
 namespace lowlap {
 namespace {
 
@@ -146,6 +148,12 @@ Result<TripletView> MakeTripletView(const Scene& scene,
   triplet.geometry.focal_i_px = i.features->focal_px;
   triplet.geometry.focal_j_px = middle.focal_px;
   triplet.geometry.focal_k_px = k.features->focal_px;
+  for (const Neighbor& neighbor : neighbors) {
+    for (const TripletGeometry& geometry :
+         PerturbPose(triplet.geometry, *neighbor.edge, views)) {
+      triplet.pose_perturbations.push_back(geometry);
+    }
+  }
   triplet.image_area_px2 = intrinsic->ImageArea();
   triplet.image_diagonal_px = intrinsic->ImageDiagonal();
 

@@ -1,0 +1,328 @@
+#pragma once
+
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "lowlap/core/random.h"
+#include "lowlap/geometry/rotation.h"
+#include "lowlap/scale/pose_uncertainty.h"
+#include "lowlap/scale/triplet_view.h"
+
+namespace lowlap::testing {
+
+struct SyntheticTripletOptions {
+  int num_points = 0;
+  int num_lines = 0;     // seen by all three views
+  int num_lines_ij = 0;  // seen by (i, j) alone, for coplanar pairs
+  int num_lines_jk = 0;  // seen by (j, k) alone
+  double noise_px = 0;
+  /// Share of the features that are wrong: a point or line whose match in k is
+  /// that of another depth, a line of a pair that is on no wall.
+  double wrong_share = 0;
+  /// Every feature has a depth of its own in either pair: there is no ratio.
+  bool pure_noise = false;
+  double rotation_error_deg = 0;
+  double direction_error_deg = 0;
+  bool want_coplanar = true;
+};
+
+struct SyntheticTriplet {
+  TripletView view;
+  double true_log_ratio = 0;
+  /// Wall of each line of view.lines_ij and lines_jk; -1: on none.
+  std::vector<int> wall_ij;
+  std::vector<int> wall_jk;
+
+  double WrongPairShare() const {
+    int wrong = 0;
+    for (const CoplanarPairCandidate& pair : view.coplanar.pairs) {
+      const int a = wall_ij[pair.first], b = wall_jk[pair.last];
+      wrong += a < 0 || a != b;
+    }
+    return static_cast<double>(wrong) / view.coplanar.pairs.size();
+  }
+};
+
+inline NormalizedSegment MakeSegment(const Vec3& start, const Vec3& end) {
+  NormalizedSegment segment;
+  segment.start = start / start.z();
+  segment.end = end / end.z();
+  segment.normal = segment.start.cross(segment.end).normalized();
+  return segment;
+}
+
+/// A bland room of 6 x 3 x 6 m around the middle camera, which looks along +z;
+/// the others stand 0.4 to 1.2 m beside it. 1200 x 800 pixels, f = 900.
+class SyntheticRoom {
+ public:
+  static constexpr double kFocalPx = 900;
+  static constexpr double kWidthPx = 1200;
+  static constexpr double kHeightPx = 800;
+
+  SyntheticRoom(const SyntheticTripletOptions& options, std::uint64_t seed)
+      : options_(options), random_(seed) {
+    i_from_j_ = RandomNeighbor(-1);
+    k_from_j_ = RandomNeighbor(1);
+  }
+
+  SyntheticTriplet Make() {
+    SyntheticTriplet triplet;
+    TripletView& view = triplet.view;
+    view.views = {0, 1, 2};
+    view.geometry = {Estimated(i_from_j_), Estimated(k_from_j_), kFocalPx,
+                     kFocalPx, kFocalPx};
+    AddPosePerturbations(&view);
+    view.image_area_px2 = kWidthPx * kHeightPx;
+    view.image_diagonal_px = std::hypot(kWidthPx, kHeightPx);
+    triplet.true_log_ratio =
+        std::log(k_from_j_.translation.norm() / i_from_j_.translation.norm());
+    for (int n = 0; n < options_.num_points; ++n) AddPoint(n, &view);
+    for (int n = 0; n < options_.num_lines; ++n) AddLine(n, &view);
+    FeatureIndex segment = 0;
+    AddMatchedLines(i_from_j_, options_.num_lines_ij, &segment, &view.lines_ij,
+                    &triplet.wall_ij);
+    AddMatchedLines(k_from_j_, options_.num_lines_jk, &segment, &view.lines_jk,
+                    &triplet.wall_jk);
+    if (options_.want_coplanar) {
+      view.coplanar = FindCoplanarCandidates(view.geometry, view.lines_ij,
+                                             view.lines_jk, 10);
+    }
+    return triplet;
+  }
+
+  const RigidTransform& i_from_j() const { return i_from_j_; }
+  const RigidTransform& k_from_j() const { return k_from_j_; }
+
+ private:
+  struct Segment3 {
+    Vec3 start, end;
+    int wall = -1;
+  };
+
+  RigidTransform RandomNeighbor(int side) {
+    const Vec3 center(side * random_.Uniform(0.4, 1.2),
+                      random_.Uniform(-0.2, 0.2), random_.Uniform(-0.4, 0.4));
+    const Vec3 turn(random_.Uniform(-0.05, 0.05),
+                    -side * random_.Uniform(-0.1, 0.2),
+                    random_.Uniform(-0.05, 0.05));
+    return RigidTransform::FromRotationAndCenter(RotationFromAngleAxis(turn),
+                                                 center);
+  }
+
+  Vec3 RandomAngles(double stddev_deg) {
+    const double s = RadFromDeg(stddev_deg);
+    const double x = random_.Gaussian(s), y = random_.Gaussian(s);
+    return {x, y, random_.Gaussian(s)};
+  }
+
+  // What a two-view step would say of its own errors.
+  void AddPosePerturbations(TripletView* view) const {
+    if (!(options_.rotation_error_deg > 0) &&
+        !(options_.direction_error_deg > 0)) {
+      return;
+    }
+    const double rotation = RadFromDeg(options_.rotation_error_deg);
+    const double direction = RadFromDeg(options_.direction_error_deg);
+    Eigen::Matrix<double, 5, 1> variances;
+    variances << Vec3::Constant(rotation * rotation),
+        Vec2::Constant(direction * direction);
+    for (const ViewId neighbor : {view->views.first, view->views.last}) {
+      const RigidTransform& n_from_j = neighbor == view->views.first
+                                           ? view->geometry.cami_from_camj
+                                           : view->geometry.camk_from_camj;
+      RelativePose edge;
+      edge.views = {view->views.middle, neighbor};
+      edge.rotation = n_from_j.rotation;
+      edge.direction = n_from_j.translation;
+      edge.covariance = variances.asDiagonal();
+      for (const TripletGeometry& geometry :
+           PerturbPose(view->geometry, edge, view->views)) {
+        view->pose_perturbations.push_back(geometry);
+      }
+    }
+  }
+
+  // At unit baseline, with the errors of the two-view step.
+  RigidTransform Estimated(const RigidTransform& truth) {
+    const Mat3 turn =
+        RotationFromAngleAxis(RandomAngles(options_.rotation_error_deg));
+    const Mat3 tilt =
+        RotationFromAngleAxis(RandomAngles(options_.direction_error_deg));
+    return {turn * truth.rotation, tilt * truth.translation.normalized()};
+  }
+
+  Vec3 Noisy(const Vec3& point_in_cam) {
+    const double s = options_.noise_px / kFocalPx;
+    const double x = random_.Gaussian(s), y = random_.Gaussian(s);
+    return point_in_cam / point_in_cam.z() + Vec3(x, y, 0);
+  }
+
+  static bool IsVisible(const Vec3& point_in_cam) {
+    return point_in_cam.z() > 0.2 &&
+           std::abs(point_in_cam.x() / point_in_cam.z()) <
+               0.5 * kWidthPx / kFocalPx &&
+           std::abs(point_in_cam.y() / point_in_cam.z()) <
+               0.5 * kHeightPx / kFocalPx;
+  }
+
+  // A random point of a random wall: back, left, right, floor, ceiling.
+  Vec3 OnWall(int* wall) {
+    *wall = static_cast<int>(random_.Index(5));
+    const double u = random_.Uniform(-1, 1), v = random_.Uniform(-1, 1);
+    switch (*wall) {
+      case 0:
+        return {3 * u, 1.5 * v, 4};
+      case 1:
+        return {-3, 1.5 * u, 1 + 3 * std::abs(v)};
+      case 2:
+        return {3, 1.5 * u, 1 + 3 * std::abs(v)};
+      case 3:
+        return {3 * u, -1.5, 1 + 3 * std::abs(v)};
+      default:
+        return {3 * u, 1.5, 1 + 3 * std::abs(v)};
+    }
+  }
+
+  Vec3 InSpace() {
+    const double z = random_.Uniform(1.5, 6);
+    const double x = random_.Uniform(-0.6, 0.6);
+    return {x * z, random_.Uniform(-0.4, 0.4) * z, z};
+  }
+
+  bool InBoth(const Vec3& x, const RigidTransform& camn_from_camj) const {
+    return IsVisible(x) && IsVisible(camn_from_camj * x);
+  }
+
+  Vec3 VisiblePoint(const RigidTransform& camn_from_camj, bool on_wall) {
+    while (true) {
+      int wall = 0;
+      const Vec3 x = on_wall ? OnWall(&wall) : InSpace();
+      if (InBoth(x, i_from_j_) && InBoth(x, k_from_j_) &&
+          IsVisible(camn_from_camj * x)) {
+        return x;
+      }
+    }
+  }
+
+  // x at another depth on its ray in camera j, visible in the neighbour.
+  Vec3 OtherDepth(const Vec3& x, const RigidTransform& camn_from_camj) {
+    while (true) {
+      const Vec3 y = x * (random_.Uniform(1.2, 6) / x.z());
+      if (IsVisible(camn_from_camj * y)) return y;
+    }
+  }
+
+  bool IsWrong(int n, int count) const {
+    return options_.pure_noise || n < options_.wrong_share * count;
+  }
+
+  void AddPoint(int n, TripletView* view) {
+    const Vec3 x = VisiblePoint(k_from_j_, true);
+    const bool wrong = IsWrong(n, options_.num_points);
+    const Vec3 x_i = options_.pure_noise ? OtherDepth(x, i_from_j_) : x;
+    const Vec3 x_k = wrong ? OtherDepth(x, k_from_j_) : x;
+    view->points.push_back({static_cast<FeatureIndex>(n),
+                            Noisy(i_from_j_ * x_i), Noisy(x),
+                            Noisy(k_from_j_ * x_k)});
+  }
+
+  Segment3 RandomSegment(const RigidTransform& camn_from_camj, bool on_wall) {
+    while (true) {
+      Segment3 segment;
+      Vec3 direction(random_.Uniform(-1, 1), random_.Uniform(-1, 1),
+                     random_.Uniform(-1, 1));
+      segment.start = on_wall ? OnWall(&segment.wall) : InSpace();
+      if (on_wall) {
+        const int normal_axis =
+            segment.wall == 0 ? 2 : (segment.wall <= 2 ? 0 : 1);
+        direction(normal_axis) = 0;
+      }
+      segment.end =
+          segment.start + random_.Uniform(0.4, 1.2) * direction.normalized();
+      if (InBoth(segment.start, camn_from_camj) &&
+          InBoth(segment.end, camn_from_camj)) {
+        return segment;
+      }
+    }
+  }
+
+  // As one view sees it; the ends are broken off at random.
+  ObservedSegment Observe(const RigidTransform& cam_from_camj,
+                          const Segment3& segment) {
+    const Vec3 along = segment.end - segment.start;
+    const Vec3 start = segment.start + random_.Uniform(0, 0.15) * along;
+    const Vec3 end = segment.end - random_.Uniform(0, 0.15) * along;
+    const Vec3 start_seen = Noisy(cam_from_camj * start);
+    return {MakeSegment(start_seen, Noisy(cam_from_camj * end)),
+            std::max(options_.noise_px, 0.1)};
+  }
+
+  void AddLine(int n, TripletView* view) {
+    const bool wrong = IsWrong(n, options_.num_lines);
+    while (true) {
+      const Segment3 segment = RandomSegment(i_from_j_, true);
+      if (!IsVisible(k_from_j_ * segment.start) ||
+          !IsVisible(k_from_j_ * segment.end)) {
+        continue;
+      }
+      const auto moved = [&](const RigidTransform& camn_from_camj) {
+        return Segment3{OtherDepth(segment.start, camn_from_camj),
+                        OtherDepth(segment.end, camn_from_camj), -1};
+      };
+      const Segment3 in_i = options_.pure_noise ? moved(i_from_j_) : segment;
+      const Segment3 in_k = wrong ? moved(k_from_j_) : segment;
+      TrifocalLine line;
+      line.segment_in_middle = static_cast<FeatureIndex>(n);
+      line.in_i = Observe(i_from_j_, in_i);
+      line.in_j = Observe(RigidTransform(), segment);
+      line.in_k = Observe(k_from_j_, in_k);
+      view->lines.push_back(line);
+      return;
+    }
+  }
+
+  void AddMatchedLines(const RigidTransform& camn_from_camj, int count,
+                       FeatureIndex* next_segment,
+                       std::vector<MatchedLine>* lines,
+                       std::vector<int>* walls) {
+    for (int n = 0; n < count; ++n) {
+      const Segment3 segment =
+          RandomSegment(camn_from_camj, !IsWrong(n, count));
+      MatchedLine line;
+      line.segment_in_middle = (*next_segment)++;
+      line.in_middle = Observe(RigidTransform(), segment);
+      line.in_neighbor = Observe(camn_from_camj, segment);
+      lines->push_back(line);
+      walls->push_back(segment.wall);
+    }
+  }
+
+  SyntheticTripletOptions options_;
+  Random random_;
+  RigidTransform i_from_j_;  // true, in metres
+  RigidTransform k_from_j_;
+};
+
+inline SyntheticTriplet MakeSyntheticTriplet(
+    const SyntheticTripletOptions& options, std::uint64_t seed) {
+  return SyntheticRoom(options, seed).Make();
+}
+
+/// The same triplet read from the other end.
+inline TripletView SwapEnds(const TripletView& view) {
+  TripletView swapped = view;
+  swapped.views = {view.views.last, view.views.middle, view.views.first};
+  swapped.geometry = view.geometry.Swapped();
+  for (TrifocalPoint& point : swapped.points) std::swap(point.in_i, point.in_k);
+  for (TrifocalLine& line : swapped.lines) std::swap(line.in_i, line.in_k);
+  for (TripletGeometry& geometry : swapped.pose_perturbations) {
+    geometry = geometry.Swapped();
+  }
+  std::swap(swapped.lines_ij, swapped.lines_jk);
+  swapped.coplanar = FindCoplanarCandidates(swapped.geometry, swapped.lines_ij,
+                                            swapped.lines_jk, 10);
+  return swapped;
+}
+
+}  // namespace lowlap::testing
