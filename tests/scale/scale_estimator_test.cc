@@ -1,0 +1,328 @@
+#include "lowlap/scale/scale_estimator.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "scale/synthetic_triplet.h"
+
+namespace lowlap {
+namespace {
+
+using testing::MakeSyntheticTriplet;
+using testing::SwapEnds;
+using testing::SyntheticTriplet;
+using testing::SyntheticTripletOptions;
+
+ScaleRatio Estimate(const TripletView& view, const ScaleOptions& options = {}) {
+  const Result<ScaleRatio> ratio = MakeScaleEstimator(options)->Estimate(view);
+  EXPECT_TRUE(ratio.has_value()) << ratio.error().ToString();
+  return *ratio;
+}
+
+SyntheticTripletOptions Mixed(double noise_px, double wrong_share) {
+  SyntheticTripletOptions options;
+  options.num_points = 40;
+  options.num_lines = 25;
+  options.num_lines_ij = options.num_lines_jk = 50;
+  options.noise_px = noise_px;
+  options.wrong_share = wrong_share;
+  return options;
+}
+
+SyntheticTripletOptions Pairs(int num_lines, double noise_px,
+                              double wrong_share) {
+  SyntheticTripletOptions options;
+  options.num_lines_ij = options.num_lines_jk = num_lines;
+  options.noise_px = noise_px;
+  options.wrong_share = wrong_share;
+  return options;
+}
+
+double Median(std::vector<double> values) {
+  std::nth_element(values.begin(), values.begin() + values.size() / 2,
+                   values.end());
+  return values[values.size() / 2];
+}
+
+struct KindCase {
+  std::string name;
+  bool points, lines, coplanar;
+  ScaleCriterion criterion = ScaleCriterion::kAContrario;
+  CoplanarResidual residual = CoplanarResidual::kTransfer;
+  NfaForm form = NfaForm::kCalibrated;
+};
+
+class EveryKind : public ::testing::TestWithParam<KindCase> {
+ protected:
+  static ScaleOptions Options() {
+    ScaleOptions options;
+    options.use_points = GetParam().points;
+    options.use_lines = GetParam().lines;
+    options.use_coplanar = GetParam().coplanar;
+    options.criterion = GetParam().criterion;
+    options.coplanar_residual = GetParam().residual;
+    options.nfa_form = GetParam().form;
+    return options;
+  }
+};
+
+TEST_P(EveryKind, IsExactWithoutNoise) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const SyntheticTriplet triplet = MakeSyntheticTriplet(Mixed(0, 0), seed);
+    const ScaleRatio ratio = Estimate(triplet.view, Options());
+    EXPECT_EQ(ratio.verdict, RatioVerdict::kMeaningful);
+    EXPECT_NEAR(ratio.log_ratio, triplet.true_log_ratio, 1e-4);
+    EXPECT_EQ(ratio.points.candidates > 0, GetParam().points);
+    EXPECT_EQ(ratio.lines.candidates > 0, GetParam().lines);
+    EXPECT_EQ(ratio.coplanar.candidates > 0, GetParam().coplanar);
+    EXPECT_EQ(ratio.coplanar.inliers,
+              static_cast<int>(ratio.coplanar_inliers.size()));
+  }
+}
+
+TEST_P(EveryKind, SurvivesNoiseAndWrongMatches) {
+  int good = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const SyntheticTriplet triplet =
+        MakeSyntheticTriplet(Mixed(0.5, 0.3), seed);
+    const ScaleRatio ratio = Estimate(triplet.view, Options());
+    good += ratio.verdict == RatioVerdict::kMeaningful &&
+            std::abs(ratio.log_ratio - triplet.true_log_ratio) < 0.03;
+  }
+  EXPECT_GE(good, 18);
+}
+
+TEST_P(EveryKind, NegatesTheLogRatioWhenTheEndsAreSwapped) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const SyntheticTriplet triplet =
+        MakeSyntheticTriplet(Mixed(0.5, 0.3), seed);
+    const ScaleRatio ratio = Estimate(triplet.view, Options());
+    const ScaleRatio swapped = Estimate(SwapEnds(triplet.view), Options());
+    EXPECT_NEAR(ratio.log_ratio, -swapped.log_ratio,
+                0.2 * ratio.log_ratio_stddev);
+    EXPECT_NEAR(ratio.log10_nfa, swapped.log10_nfa,
+                0.05 * std::abs(ratio.log10_nfa));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, EveryKind,
+    ::testing::Values(KindCase{"Points", true, false, false},
+                      KindCase{"Lines", false, true, false},
+                      KindCase{"Coplanar", false, false, true},
+                      KindCase{"All", true, true, true},
+                      KindCase{"CoplanarInTheMiddleView", false, false, true,
+                               ScaleCriterion::kAContrario,
+                               CoplanarResidual::kPlane},
+                      KindCase{"AllInTheFormOfThePaper", true, true, true,
+                               ScaleCriterion::kAContrario,
+                               CoplanarResidual::kTransfer, NfaForm::kPaper},
+                      KindCase{"AllByFixedThreshold", true, true, true,
+                               ScaleCriterion::kFixedThreshold}),
+    [](const auto& kind) { return kind.param.name; });
+
+TEST(ScaleEstimator, ErrorGrowsInProportionToTheNoise) {
+  std::vector<double> medians;
+  for (const double noise_px : {0.25, 1.0}) {
+    std::vector<double> errors;
+    for (std::uint64_t seed = 0; seed < 60; ++seed) {
+      const SyntheticTriplet triplet =
+          MakeSyntheticTriplet(Pairs(50, noise_px, 0.1), seed);
+      errors.push_back(
+          std::abs(Estimate(triplet.view).log_ratio - triplet.true_log_ratio));
+    }
+    medians.push_back(Median(errors));
+  }
+  EXPECT_LT(medians[1], 0.005);
+  EXPECT_GT(medians[1] / medians[0], 2);
+  EXPECT_LT(medians[1] / medians[0], 8);
+}
+
+TEST(ScaleEstimator, SurvivesSeventyPercentWrongCoplanarPairs) {
+  std::vector<double> errors;
+  double wrong_share = 0;
+  int meaningful = 0;
+  constexpr int kTriplets = 40;
+  for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
+    const SyntheticTriplet triplet =
+        MakeSyntheticTriplet(Pairs(80, 1.0, 0.45), seed);
+    wrong_share += triplet.WrongPairShare() / kTriplets;
+    const ScaleRatio ratio = Estimate(triplet.view);
+    meaningful += ratio.verdict == RatioVerdict::kMeaningful;
+    errors.push_back(std::abs(ratio.log_ratio - triplet.true_log_ratio));
+  }
+  EXPECT_GE(wrong_share, 0.7);
+  EXPECT_GE(meaningful, kTriplets * 8 / 10);
+  EXPECT_LT(Median(errors), 0.01);
+  EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.1);
+}
+
+// The promise: on features that have nothing in common, at most one ratio in a
+// hundred is called meaningful.
+class PureNoise : public ::testing::TestWithParam<
+                      std::pair<const char*, std::vector<int>>> {};
+
+TEST_P(PureNoise, IsMeaningfulAtMostOnceInAHundredTriplets) {
+  const std::vector<int>& counts = GetParam().second;
+  SyntheticTripletOptions options;
+  options.pure_noise = true;
+  options.noise_px = 1;
+  options.num_points = counts[0];
+  options.num_lines = counts[1];
+  options.num_lines_ij = options.num_lines_jk = counts[2];
+  constexpr int kTriplets = 600;
+  int meaningful = 0;
+  for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
+    const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 5000 + seed);
+    meaningful += Estimate(triplet.view).verdict == RatioVerdict::kMeaningful;
+  }
+  EXPECT_LE(meaningful, kTriplets / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, PureNoise,
+    ::testing::Values(std::make_pair("Points", std::vector<int>{40, 0, 0}),
+                      std::make_pair("FewPoints", std::vector<int>{8, 0, 0}),
+                      std::make_pair("Lines", std::vector<int>{0, 30, 0}),
+                      std::make_pair("Pairs", std::vector<int>{0, 0, 40}),
+                      std::make_pair("FewPairs", std::vector<int>{0, 0, 12}),
+                      std::make_pair("Mixed", std::vector<int>{20, 15, 30})),
+    [](const auto& kind) { return kind.param.first; });
+
+TEST(ScaleEstimator, ThePaperFormTakesNoiseForACertainty) {
+  SyntheticTripletOptions options = Pairs(60, 1.0, 0);
+  options.pure_noise = true;
+  const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 1);
+  ScaleOptions paper;
+  paper.nfa_form = NfaForm::kPaper;
+  EXPECT_LT(Estimate(triplet.view, paper).log10_nfa, -80);
+  EXPECT_EQ(Estimate(triplet.view).verdict, RatioVerdict::kNotMeaningful);
+}
+
+TEST(ScaleEstimator, StatedDeviationsHoldTheTruth) {
+  for (const bool pose_errors : {false, true}) {
+    SyntheticTripletOptions options = Mixed(0.7, 0.2);
+    if (pose_errors) {
+      options.rotation_error_deg = 0.05;
+      options.direction_error_deg = 0.2;
+    }
+    int inside = 0;
+    std::vector<double> normalized;
+    constexpr int kTriplets = 150;
+    for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
+      const SyntheticTriplet triplet = MakeSyntheticTriplet(options, seed);
+      const ScaleRatio ratio = Estimate(triplet.view);
+      normalized.push_back(std::abs(ratio.log_ratio - triplet.true_log_ratio) /
+                           ratio.log_ratio_stddev);
+      inside += normalized.back() < 1.96;
+    }
+    EXPECT_GE(inside, kTriplets * 85 / 100) << pose_errors;
+    EXPECT_GT(Median(normalized), 0.3) << pose_errors;
+    EXPECT_LT(Median(normalized), 1.0) << pose_errors;
+  }
+}
+
+TEST(ScaleEstimator, TheOrderOfTheFeaturesChangesNothing) {
+  SyntheticTriplet triplet = MakeSyntheticTriplet(Mixed(0.5, 0.3), 3);
+  const ScaleRatio before = Estimate(triplet.view);
+  TripletView& view = triplet.view;
+  std::reverse(view.points.begin(), view.points.end());
+  std::reverse(view.lines.begin(), view.lines.end());
+  std::reverse(view.lines_ij.begin(), view.lines_ij.end());
+  std::reverse(view.lines_jk.begin(), view.lines_jk.end());
+  view.coplanar =
+      FindCoplanarCandidates(view.geometry, view.lines_ij, view.lines_jk, 10);
+  const ScaleRatio after = Estimate(view);
+  EXPECT_NEAR(before.log_ratio, after.log_ratio, 1e-9);
+  EXPECT_NEAR(before.log_ratio_stddev, after.log_ratio_stddev, 1e-9);
+  EXPECT_NEAR(before.log10_nfa, after.log10_nfa, 1e-9);
+  EXPECT_EQ(before.points, after.points);
+  EXPECT_EQ(before.coplanar.inliers, after.coplanar.inliers);
+}
+
+// Large triplets try a subset; it must be as good as trying all.
+TEST(ScaleEstimator, TheSubsetFindsWhatTheExhaustiveSearchFinds) {
+  for (std::uint64_t seed = 0; seed < 8; ++seed) {
+    SyntheticTripletOptions options = Pairs(80, 1.0, 0.3);
+    options.num_points = 250;
+    const SyntheticTriplet triplet = MakeSyntheticTriplet(options, seed);
+    ScaleOptions exhaustive;
+    exhaustive.exhaustive = true;
+    const ScaleRatio reference = Estimate(triplet.view, exhaustive);
+    const ScaleRatio ratio = Estimate(triplet.view);
+    EXPECT_LE(reference.log10_nfa, ratio.log10_nfa + 1e-9);
+    EXPECT_LT(ratio.log10_nfa, 0.95 * reference.log10_nfa);
+    EXPECT_NEAR(ratio.log_ratio, reference.log_ratio,
+                reference.log_ratio_stddev);
+  }
+}
+
+TEST(ScaleEstimator, OneFeatureIsNotMeaningful) {
+  SyntheticTripletOptions options;
+  options.num_points = 1;
+  const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 1);
+  const ScaleRatio ratio = Estimate(triplet.view);
+  EXPECT_EQ(ratio.verdict, RatioVerdict::kNotMeaningful);
+  EXPECT_NEAR(ratio.log_ratio, triplet.true_log_ratio, 1e-6);
+}
+
+TEST(ScaleEstimator, NothingToGoByIsAVerdict) {
+  const SyntheticTriplet triplet = MakeSyntheticTriplet({}, 1);
+  for (const ScaleCriterion criterion :
+       {ScaleCriterion::kAContrario, ScaleCriterion::kFixedThreshold}) {
+    ScaleOptions options;
+    options.criterion = criterion;
+    EXPECT_EQ(Estimate(triplet.view, options).verdict,
+              RatioVerdict::kNoCandidates);
+  }
+}
+
+TEST(ScaleEstimator, ReversedDirectionsAreRejectedAndCounted) {
+  SyntheticTriplet triplet = MakeSyntheticTriplet(Mixed(0, 0), 2);
+  TripletView& view = triplet.view;
+  view.geometry.cami_from_camj.translation *= -1;
+  view.coplanar =
+      FindCoplanarCandidates(view.geometry, view.lines_ij, view.lines_jk, 10);
+  const ScaleRatio ratio = Estimate(view);
+  EXPECT_EQ(ratio.verdict, RatioVerdict::kNoCandidates);
+  EXPECT_GE(ratio.num_rejected_negative, 100);
+}
+
+TEST(ScaleEstimator, BadInputIsAnError) {
+  const SyntheticTriplet triplet = MakeSyntheticTriplet(Mixed(0, 0), 2);
+  const auto error_of = [](const TripletView& view) {
+    const Result<ScaleRatio> ratio =
+        MakeScaleEstimator(ScaleOptions())->Estimate(view);
+    return ratio ? std::string() : ratio.error().message;
+  };
+  TripletView view = triplet.view;
+  view.geometry.camk_from_camj.translation *= 2;
+  EXPECT_THAT(error_of(view), ::testing::HasSubstr("unit direction"));
+  view = triplet.view;
+  view.geometry.cami_from_camj.rotation(0, 0) = std::nan("");
+  EXPECT_THAT(error_of(view), ::testing::HasSubstr("rotation"));
+  view = triplet.view;
+  view.geometry.focal_j_px = 0;
+  EXPECT_THAT(error_of(view), ::testing::HasSubstr("focal"));
+}
+
+TEST(ScaleOptions, AreValidated) {
+  EXPECT_TRUE(ScaleOptions().Validate());
+  ScaleOptions options;
+  options.use_points = options.use_lines = options.use_coplanar = false;
+  EXPECT_FALSE(options.Validate());
+  options = {};
+  options.threshold_px = 0;
+  EXPECT_FALSE(options.Validate());
+  options = {};
+  options.num_neighbors = 0;
+  EXPECT_FALSE(options.Validate());
+}
+
+}  // namespace
+}  // namespace lowlap
