@@ -71,7 +71,7 @@ bool IsPlausible(const NormalizedSegment& first,
   // The two segments as intervals of the line, in camera 1.
   const auto interval = [&](const Vec3& a, const Vec3& b) {
     const double pa = line->direction.dot(a), pb = line->direction.dot(b);
-    return std::minmax(pa, pb);
+    return std::minmax({pa, pb});
   };
   const auto [low1, high1] = interval(ends1->start, ends1->end);
   const auto [low2, high2] =

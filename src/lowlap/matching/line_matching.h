@@ -11,12 +11,12 @@ namespace lowlap {
 
 struct LineMatchOptions {
   /// Greatest Hamming distance of two descriptors of 256 bits.
-  int max_distance_bits = 64;
+  int max_distance_bits = 80;
   /// Partners that a segment may have before the neighbours decide.
-  int max_candidates = 4;
+  int max_candidates = 2;
   /// Least agreement with the neighbours, relative to the best match; in [0,
   /// 1].
-  double min_score = 0.3;
+  double min_score = 0.2;
   /// The longer segment is at most this many times the shorter one.
   double max_length_ratio = 4.0;
 
