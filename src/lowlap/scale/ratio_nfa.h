@@ -45,7 +45,7 @@ struct RatioNfa {
 ///  - Every probability, and the NFA of every kind, is at most 1: a kind with
 ///    nothing to say never outvotes the others.
 ///  - The number of tests is the number of hypotheses, times 2 for every kind
-///    that may speak or be capped.
+///    that may speak or be capped, times 2 as a margin for the background.
 /// So built, at most one ratio in a hundred comes out below NFA 1 on triplets
 /// of unrelated features (tests/scale).
 /// Paper form: the product of the three printed terms.
