@@ -199,7 +199,7 @@ void AddRing(const SyntheticOptions& options, Random* random, World* world) {
   const int n = options.num_views;
   for (int i = 0; i < n; ++i) {
     const double angle = LoopStep(n) * (i + random->Uniform(-0.15, 0.15));
-    const double radius = random->Uniform(4.6, 5.4);
+    const double radius = random->Uniform(3.7, 4.3);
     const Vec3 center(radius * std::cos(angle), random->Uniform(-1.8, -1.2),
                       radius * std::sin(angle));
     const Vec3 aim{random->Uniform(-0.2, 0.2), 0.4, random->Uniform(-0.2, 0.2)};
