@@ -127,6 +127,17 @@ Polynomial Difference(Polynomial a, const Polynomial& b) {
   return a;
 }
 
+/// sum of p_i z^i w^(degree - i), where z or w is 1.
+double Homogeneous(const Polynomial& p, double z, double w) {
+  double value = 0;
+  if (w == 1) {
+    for (auto c = p.rbegin(); c != p.rend(); ++c) value = value * z + *c;
+  } else {
+    for (const double c : p) value = value * w + c;
+  }
+  return value;
+}
+
 /// B(z) with B(z) (x, y, 1)^T = 0 at every solution: each row is one
 /// eliminated equation minus z times the next, which cancels their heads.
 using PolynomialMatrix = std::array<std::array<Polynomial, 3>, 3>;
@@ -213,18 +224,13 @@ std::vector<Mat3> EssentialFromFivePoints(const FivePoints& x1,
         null_space->col(k).data());
   }
   std::vector<Mat3> essentials;
-  const auto add_root = [&](double z, double w) {  // the root z / w
+  // The root z / w, with z or w = 1: the polynomials of degree d homogenised,
+  // z^i w^(d-i), give B (x w, y w, 1)^T = 0 and w E = x w X + y w Y + z Z + w
+  // W.
+  const auto add_root = [&](double z, double w) {
     Mat3 at_root;
     for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) {
-        double value = 0;
-        double power = 1;
-        const Polynomial& p = b[r][c];
-        for (std::size_t i = 0; i < p.size(); ++i, power *= z / w) {
-          value += p[i] * power;
-        }
-        at_root(r, c) = value;
-      }
+      for (int c = 0; c < 3; ++c) at_root(r, c) = Homogeneous(b[r][c], z, w);
     }
     Vec3 best = at_root.row(0).cross(at_root.row(1));
     for (int r = 1; r < 3; ++r) {
@@ -234,8 +240,8 @@ std::vector<Mat3> EssentialFromFivePoints(const FivePoints& x1,
     best.normalize();
     if (!best.allFinite()) return;
     const Mat3 e =
-        Polish(basis, Vec4(best[0] * w, best[1] * w, best[2] * z, best[2] * w));
-    if (!(Defect(e).cwiseAbs().maxCoeff() < 1e-10)) return;
+        Polish(basis, Vec4(best[0], best[1], best[2] * z, best[2] * w));
+    if (!(Defect(e).norm() < 1e-10)) return;
     const Mat3 scaled = e * (std::sqrt(2.0) / e.norm());
     for (const Mat3& other : essentials) {
       if (std::abs(std::abs(other.cwiseProduct(scaled).sum()) - 2) < 1e-14) {
@@ -251,7 +257,7 @@ std::vector<Mat3> EssentialFromFivePoints(const FivePoints& x1,
   }
   const Polynomial reversed(determinant.rbegin(), determinant.rend());
   for (const double w : RealRootsInInterval(reversed, -1, 1)) {
-    if (w != 0 && std::abs(w) < 1) add_root(1, w);
+    if (std::abs(w) < 1) add_root(1, w);
   }
   return essentials;
 }

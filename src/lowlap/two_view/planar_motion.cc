@@ -74,15 +74,21 @@ std::optional<ScenePlane> DominantPlane(const RigidTransform& cam2_from_cam1,
     }
   }
   if (!best) return std::nullopt;
-  for (int iteration = 0; iteration < 2; ++iteration) {
-    Mat3 normal_matrix = Mat3::Zero();
-    Vec3 rhs = Vec3::Zero();
+  // Gauss-Newton on the transfer error of the members.
+  for (int iteration = 0; iteration < 5; ++iteration) {
+    Mat3 information = Mat3::Zero();
+    Vec3 gradient = Vec3::Zero();
     for (const int k : members(*best, indices.size())) {
-      const Vec3& x = pairs.x1[indices[k]];
-      normal_matrix += x * x.transpose();
-      rhs += inverse_depth[k] * x;
+      const Vec3& x1 = pairs.x1[indices[k]];
+      const Vec3 y = r * x1 + t * best->dot(x1);
+      const Vec2 transferred = y.head<2>() / y.z();
+      const Vec2 error = transferred - pairs.x2[indices[k]].head<2>();
+      // d transferred / d n = slope x1^T.
+      const Vec2 slope = (t.head<2>() - transferred * t.z()) / y.z();
+      information += slope.squaredNorm() * x1 * x1.transpose();
+      gradient += slope.dot(error) * x1;
     }
-    const Vec3 refined = normal_matrix.ldlt().solve(rhs);
+    const Vec3 refined = *best - information.ldlt().solve(gradient);
     if (!refined.allFinite()) break;
     best = refined;
   }

@@ -38,7 +38,7 @@ std::optional<PoseCandidate> PoseSearch::Search(Random& random,
   const SharpenedPose sharp =
       SharpenPose(kernel_, *found.model, found.score.threshold, random);
   // Wide enough for the tail of the precision found, not for repetitions.
-  max_threshold_px_ = std::min(options_.max_threshold_px, 6 * sharp.scale_px);
+  max_threshold_px_ = std::min(options_.max_threshold_px, 10 * sharp.scale_px);
   return Finish(sharp.cam2_from_cam1);
 }
 

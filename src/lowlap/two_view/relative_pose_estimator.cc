@@ -20,9 +20,9 @@ namespace {
 constexpr int kMinMatches = 6;
 /// A plane that holds this share of the inliers is worth a second motion.
 constexpr double kPlaneShare = 0.5;
-/// Two motions are told apart by an advantage worth five points that fit one
-/// perfectly and the other not at all: 5 log(10).
-constexpr double kDecisiveScore = 11.5;
+/// Two motions are told apart by an advantage worth ten points that fit one
+/// perfectly and the other not at all, 10 log(10): noise alone reaches half.
+constexpr double kDecisiveScore = 23;
 
 /// The Sampson distance is the point's distance to its epipolar line divided by
 /// the square root of two (equal focal lengths), so that its law is that much
@@ -132,24 +132,25 @@ bool SameMotion(const RigidTransform& a, const RigidTransform& b) {
          AngleBetween(a.translation, b.translation) < 1e-4;
 }
 
-/// The other explanation of a scene whose points lie mostly on one plane.
+std::optional<ScenePlane> DominantPlaneOf(const PoseCandidate& candidate,
+                                          const PointPairs& pairs,
+                                          Random& random) {
+  // Transfer errors have two components, each with the noise of both views.
+  return DominantPlane(candidate.pose, pairs, candidate.inliers,
+                       3 * candidate.score.threshold, random);
+}
+
+/// The other explanation of a scene whose points lie mostly on `plane`.
 std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
                                                const PointPairs& pairs,
                                                const PoseCandidate& candidate,
-                                               Random& random,
-                                               int& num_plane_inliers) {
-  // Transfer errors have two components, each with the noise of both views.
-  const std::optional<ScenePlane> plane =
-      DominantPlane(candidate.pose, pairs, candidate.inliers,
-                    2 * candidate.score.threshold, random);
-  if (!plane) return std::nullopt;
-  num_plane_inliers = static_cast<int>(plane->inliers.size());
-  if (num_plane_inliers <
+                                               const ScenePlane& plane) {
+  if (static_cast<double>(plane.inliers.size()) <
       kPlaneShare * static_cast<double>(candidate.inliers.size())) {
     return std::nullopt;
   }
   const std::optional<RigidTransform> motion = OtherPlanarMotion(
-      candidate.pose, plane->normal, pairs.x1[plane->inliers.front()]);
+      candidate.pose, plane.normal, pairs.x1[plane.inliers.front()]);
   if (!motion) return std::nullopt;
   PoseCandidate other = search.Finish(*motion);
   if (SameMotion(candidate.pose, other.pose)) return std::nullopt;
@@ -219,16 +220,23 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
             (best ? " (log10 NFA " + Decimal(best->score.log10_nfa) + ")"
                   : ""));
   }
-  std::optional<PoseCandidate> other =
-      PlanarAlternative(search, pairs, *best, random, result.num_plane_inliers);
+  std::optional<ScenePlane> plane = DominantPlaneOf(*best, pairs, random);
+  std::optional<PoseCandidate> other;
+  if (plane) other = PlanarAlternative(search, pairs, *best, *plane);
   if (other) {
     const double scale_px = PoseSearch::LossScalePx(*best);
     const double advantage = search.CoreScore(best->pose, scale_px) -
                              search.CoreScore(other->pose, scale_px);
-    if (advantage < 0) std::swap(*best, *other);
+    if (advantage < 0) {
+      std::swap(*best, *other);
+      plane = DominantPlaneOf(*best, pairs, random);
+    }
     result.geometry = std::abs(advantage) < kDecisiveScore
                           ? TwoViewGeometry::kAmbiguousPlane
                           : TwoViewGeometry::kPlanar;
+  }
+  if (plane) {
+    result.num_plane_inliers = static_cast<int>(plane->inliers.size());
   }
   const TranslationEvidence translation =
       TestTranslation(pairs, best->pose, best->inliers, best->score.threshold);

@@ -1,0 +1,221 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "lowlap/two_view/relative_pose_estimator.h"
+#include "tests/support/matchers.h"
+#include "tests/two_view/two_view_scene.h"
+
+namespace lowlap {
+namespace {
+
+using testing::DirectionErrorDeg;
+using testing::IsError;
+using testing::IsOk;
+using testing::MakeTwoViewScene;
+using testing::RotationErrorDeg;
+using testing::TwoViewScene;
+using testing::TwoViewSceneOptions;
+
+double PoseErrorDeg(const RelativePose& pose, const TwoViewScene& scene) {
+  return RotationErrorDeg(pose.rotation, scene.cam2_from_cam1.rotation) +
+         DirectionErrorDeg(pose.direction, scene.cam2_from_cam1.translation);
+}
+
+TEST(EstimateRelativePose, PlanarSceneIsDecidedByVisibility) {
+  // The mirror motion would put part of the points behind a camera.
+  for (int seed = 0; seed < 8; ++seed) {
+    TwoViewSceneOptions options;
+    options.planar = true;
+    options.noise_px = 0.3;
+    const TwoViewScene scene = MakeTwoViewScene(options, seed);
+    const auto result = EstimateRelativePose(scene.Input(), {}, seed);
+    ASSERT_THAT(result, IsOk());
+    EXPECT_EQ(result->geometry, TwoViewGeometry::kPlanar) << seed;
+    EXPECT_GT(result->num_plane_inliers, 180);
+    EXPECT_LT(PoseErrorDeg(result->pose, scene), 1) << seed;
+  }
+}
+
+/// A motion towards a slanted plane, whose mirror image keeps all of it in
+/// front of both cameras.
+TwoViewSceneOptions AmbiguousOptions() {
+  TwoViewSceneOptions options;
+  options.planar = true;
+  options.noise_px = 0.3;
+  options.cam2_from_cam1 = {RotationFromAngleAxis(Vec3(0.1, -0.1, 0)),
+                            Vec3(0, 0.3, -1).normalized()};
+  return options;
+}
+
+TEST(EstimateRelativePose, AmbiguousPlanarSceneKeepsBothMotions) {
+  for (int seed = 0; seed < 8; ++seed) {
+    const TwoViewScene scene = MakeTwoViewScene(AmbiguousOptions(), seed);
+    const auto result = EstimateRelativePose(scene.Input(), {}, seed);
+    ASSERT_THAT(result, IsOk());
+    EXPECT_EQ(result->geometry, TwoViewGeometry::kAmbiguousPlane) << seed;
+    ASSERT_EQ(result->alternatives.size(), 1u) << seed;
+    EXPECT_LT(std::min(PoseErrorDeg(result->pose, scene),
+                       PoseErrorDeg(result->alternatives[0], scene)),
+              1)
+        << seed;
+    EXPECT_GT(RotationErrorDeg(result->pose.rotation,
+                               result->alternatives[0].rotation),
+              3);
+  }
+}
+
+TEST(EstimateRelativePose, AFewPointsOffThePlaneDecide) {
+  for (int seed = 0; seed < 8; ++seed) {
+    TwoViewSceneOptions options = AmbiguousOptions();
+    options.num_off_plane = 40;
+    const TwoViewScene scene = MakeTwoViewScene(options, 100 + seed);
+    const auto result = EstimateRelativePose(scene.Input(), {}, seed);
+    ASSERT_THAT(result, IsOk());
+    EXPECT_EQ(result->geometry, TwoViewGeometry::kPlanar) << seed;
+    EXPECT_TRUE(result->alternatives.empty());
+    EXPECT_LT(PoseErrorDeg(result->pose, scene), 1.5) << seed;
+  }
+}
+
+TEST(EstimateRelativePose, PureRotationIsRecognised) {
+  for (int seed = 0; seed < 5; ++seed) {
+    TwoViewSceneOptions options;
+    options.baseline = 0;
+    options.num_wrong = 60;
+    options.noise_px = 0.4;
+    const TwoViewScene scene = MakeTwoViewScene(options, 200 + seed);
+    const auto result = EstimateRelativePose(scene.Input(), {}, seed);
+    ASSERT_THAT(result, IsOk());
+    EXPECT_EQ(result->geometry, TwoViewGeometry::kRotationOnly) << seed;
+    EXPECT_FALSE(result->HasDirection());
+    EXPECT_LT(
+        RotationErrorDeg(result->pose.rotation, scene.cam2_from_cam1.rotation),
+        0.2);
+  }
+}
+
+TEST(EstimateRelativePose, BaselineBelowTheNoiseIsPureRotation) {
+  TwoViewSceneOptions options;
+  options.baseline = 0.0005;  // a tenth of a pixel of parallax
+  options.noise_px = 0.5;
+  const TwoViewScene scene = MakeTwoViewScene(options, 210);
+  const auto result = EstimateRelativePose(scene.Input(), {}, 1);
+  ASSERT_THAT(result, IsOk());
+  EXPECT_EQ(result->geometry, TwoViewGeometry::kRotationOnly);
+}
+
+TEST(EstimateRelativePose, AShortBaselineAboveTheNoiseHasADirection) {
+  TwoViewSceneOptions options;
+  options.baseline = 0.03;  // five to ten pixels of parallax
+  options.noise_px = 0.3;
+  const TwoViewScene scene = MakeTwoViewScene(options, 220);
+  const auto result = EstimateRelativePose(scene.Input(), {}, 1);
+  ASSERT_THAT(result, IsOk());
+  EXPECT_TRUE(result->HasDirection());
+  EXPECT_LT(DirectionErrorDeg(result->pose.direction,
+                              scene.cam2_from_cam1.translation),
+            10);
+}
+
+TEST(EstimateRelativePose, MatchesOfChanceAreInsufficientData) {
+  for (int seed = 0; seed < 6; ++seed) {
+    TwoViewSceneOptions options;
+    options.num_right = 0;
+    options.num_wrong = 80;
+    const TwoViewScene scene = MakeTwoViewScene(options, 300 + seed);
+    TwoViewOptions quick;
+    quick.max_samples = 2000;
+    EXPECT_THAT(EstimateRelativePose(scene.Input(), quick, seed),
+                IsError(ErrorCode::kInsufficientData, "better than chance"));
+  }
+}
+
+TEST(EstimateRelativePose, FiveMatchesAreInsufficientData) {
+  TwoViewSceneOptions options;
+  options.num_right = 5;
+  const TwoViewScene scene = MakeTwoViewScene(options, 310);
+  EXPECT_THAT(EstimateRelativePose(scene.Input(), {}, 1),
+              IsError(ErrorCode::kInsufficientData, "5 usable point matches"));
+}
+
+TEST(EstimateRelativePose, PointsThatCannotBeNormalisedAreNotUsed) {
+  TwoViewSceneOptions options;
+  options.num_right = 40;
+  TwoViewScene scene = MakeTwoViewScene(options, 320);
+  for (int n = 0; n < 10; ++n) scene.features1.points[n].setZero();
+  const auto result = EstimateRelativePose(scene.Input(), {}, 1);
+  ASSERT_THAT(result, IsOk());
+  EXPECT_EQ(result->num_matches, 30);
+  EXPECT_LT(PoseErrorDeg(result->pose, scene), 1e-5);
+  EXPECT_EQ(result->pose.point_inliers.front().first, 10u);
+}
+
+TEST(EstimateRelativePose, CollinearPointsAreInsufficientData) {
+  TwoViewSceneOptions options;
+  options.num_right = 60;
+  TwoViewScene scene = MakeTwoViewScene(options, 330);
+  for (int n = 0; n < 60; ++n) {
+    const Vec3 x = Vec3(-1, 0.3, 5) + 0.03 * n * Vec3(1, 0.2, 0.5);
+    const Vec3 y = scene.cam2_from_cam1 * x;
+    scene.features1.points[n] = x / x.z();
+    scene.features2.points[n] = y / y.z();
+  }
+  const auto result = EstimateRelativePose(scene.Input(), {}, 1);
+  if (result) {
+    // Any pose through the line would do; none may claim certainty.
+    EXPECT_FALSE(result->pose.covariance &&
+                 result->pose.covariance->trace() < 1e-4);
+  } else {
+    EXPECT_EQ(result.error().code, ErrorCode::kInsufficientData);
+  }
+}
+
+TEST(EstimateRelativePose, OnePointManyTimesIsInsufficientData) {
+  TwoViewSceneOptions options;
+  options.num_right = 60;
+  TwoViewScene scene = MakeTwoViewScene(options, 340);
+  for (int n = 1; n < 60; ++n) {
+    scene.features1.points[n] = scene.features1.points[0];
+    scene.features2.points[n] = scene.features2.points[0];
+  }
+  EXPECT_THAT(EstimateRelativePose(scene.Input(), {}, 1),
+              IsError(ErrorCode::kInsufficientData, "relative pose"));
+}
+
+TEST(EstimateRelativePose, BadArgumentsAreNamed) {
+  const TwoViewScene scene = MakeTwoViewScene({}, 350);
+  TwoViewInput input = scene.Input();
+  input.point_matches.push_back({100000, 0});
+  EXPECT_THAT(EstimateRelativePose(input, {}, 1),
+              IsError(ErrorCode::kInvalidArgument, "100000-0"));
+  input = scene.Input();
+  input.features2 = nullptr;
+  EXPECT_THAT(EstimateRelativePose(input, {}, 1),
+              IsError(ErrorCode::kInvalidArgument, "no features"));
+  input = scene.Input();
+  input.image_size1_px = Vec2::Zero();
+  EXPECT_THAT(EstimateRelativePose(input, {}, 1),
+              IsError(ErrorCode::kInvalidArgument, "no size"));
+  TwoViewOptions options;
+  options.confidence = 1;
+  EXPECT_THAT(EstimateRelativePose(scene.Input(), options, 1),
+              IsError(ErrorCode::kInvalidArgument, "confidence"));
+  options = {};
+  options.max_threshold_px = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(options.Validate(),
+              IsError(ErrorCode::kInvalidArgument, "max_threshold_px"));
+}
+
+TEST(TwoViewGeometryName, NamesEveryGeometry) {
+  EXPECT_STREQ(TwoViewGeometryName(TwoViewGeometry::kGeneral), "general");
+  EXPECT_STREQ(TwoViewGeometryName(TwoViewGeometry::kPlanar), "planar");
+  EXPECT_STREQ(TwoViewGeometryName(TwoViewGeometry::kAmbiguousPlane),
+               "ambiguous_plane");
+  EXPECT_STREQ(TwoViewGeometryName(TwoViewGeometry::kRotationOnly),
+               "rotation_only");
+}
+
+}  // namespace
+}  // namespace lowlap
