@@ -189,8 +189,8 @@ TEST(PlaneResiduals, AreBlindToAFrontalWallAndTransferResidualsAreNot) {
     plane.Add(geometry, a, b, log_ratio);
     transfer.Add(geometry, a, b, log_ratio);
     std::pair<float, float> result;
-    plane.Evaluate(1.5 * 1.05, &result.first);
-    transfer.Evaluate(1.5 * 1.05, &result.second);
+    plane.Evaluate(1.5 * 1.05, 1, &result.first);
+    transfer.Evaluate(1.5 * 1.05, 1, &result.second);
     return result;
   };
   const auto [plane_frontal, transfer_frontal] = errors(0.0);

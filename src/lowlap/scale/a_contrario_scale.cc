@@ -23,9 +23,8 @@ Result<ScaleRatio> AContrarioScaleEstimator::Estimate(
   SupportWorkspace workspace;
   const auto nfa_of = [&](int index) {
     const Hypothesis& hypothesis = hypotheses[index];
-    return criterion.Evaluate(hypothesis.log_ratio,
-                              support.Count(hypothesis.log_ratio, &workspace),
-                              hypothesis.kind);
+    return criterion.Evaluate(hypothesis,
+                              support.Count(hypothesis.log_ratio, &workspace));
   };
   const int best = SearchRatios(hypotheses, options_.exhaustive, nfa_of);
   const RatioNfa nfa = nfa_of(best);
@@ -44,7 +43,8 @@ Result<ScaleRatio> AContrarioScaleEstimator::Estimate(
   const InlierThresholds thresholds{
       threshold_px(nfa.points, support.num_points()),
       threshold_px(nfa.lines, support.num_lines()),
-      threshold_px(nfa.coplanar, support.num_pairs())};
+      threshold_px(nfa.coplanar, support.num_pairs()),
+      support.Tier(nfa.coplanar_tier).num_pairs};
   RefineOnInliers(triplet, support, thresholds, hypotheses[best].log_ratio,
                   &ratio);
   return ratio;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -17,6 +19,18 @@ double PointSegmentDistance(const Vec2& p, const Vec2& a, const Vec2& b) {
   const double along =
       length2 > 0 ? std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) : 0.0;
   return (p - a - along * ab).norm();
+}
+
+// From the crossing of two lines to the farther of the two segments.
+double CrossingDistance(const NormalizedSegment& a,
+                        const NormalizedSegment& b) {
+  const std::optional<Vec3> x = CrossingInMiddle(a, b);
+  if (!x) return std::numeric_limits<double>::infinity();
+  const auto to = [&](const NormalizedSegment& segment) {
+    return PointSegmentDistance(x->head<2>(), segment.start.head<2>(),
+                                segment.end.head<2>());
+  };
+  return std::max(to(a), to(b));
 }
 
 double Cross2(const Vec2& a, const Vec2& b) {
@@ -86,6 +100,10 @@ class NeighborSearch {
     }
     for (CoplanarPairCandidate& pair : nearest_) {
       pair.distance_px *= geometry_.focal_j_px;
+      pair.crossing_px =
+          geometry_.focal_j_px *
+          CrossingDistance(lines_ij_[pair.first].in_middle.segment,
+                           lines_jk_[pair.last].in_middle.segment);
       result_.push_back(pair);
     }
   }

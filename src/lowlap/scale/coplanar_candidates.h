@@ -12,7 +12,10 @@ struct CoplanarPairCandidate {
   int first = 0;
   int last = 0;
   double distance_px = 0;  // least distance of the two segments in view j
-  RatioCandidate ratio;    // always kValid
+  /// How far the crossing of the two lines in view j is from the farther of
+  /// the two segments: near 0 where they meet or cross.
+  double crossing_px = 0;
+  RatioCandidate ratio;  // always kValid
 };
 
 struct CoplanarPairCandidates {

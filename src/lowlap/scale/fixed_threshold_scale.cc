@@ -50,18 +50,17 @@ Result<ScaleRatio> FixedThresholdScaleEstimator::Estimate(
 
   SupportWorkspace workspace;
   const RatioNfaCriterion criterion(support, triplet, options_);
-  const RatioNfa nfa =
-      criterion.Evaluate(hypotheses[best].log_ratio,
-                         support.Count(hypotheses[best].log_ratio, &workspace),
-                         hypotheses[best].kind);
+  const RatioNfa nfa = criterion.Evaluate(
+      hypotheses[best], support.Count(hypotheses[best].log_ratio, &workspace));
   ratio.log10_nfa = nfa.log10_nfa;
   ratio.points.log10_nfa = nfa.points.log10_nfa;
   ratio.lines.log10_nfa = nfa.lines.log10_nfa;
   ratio.coplanar.log10_nfa = nfa.coplanar.log10_nfa;
   ratio.verdict = agreement_of(best).inliers > 1 ? RatioVerdict::kMeaningful
                                                  : RatioVerdict::kNotMeaningful;
-  const InlierThresholds thresholds{
-      options_.threshold_px, options_.threshold_px, options_.threshold_px};
+  const InlierThresholds thresholds{options_.threshold_px,
+                                    options_.threshold_px,
+                                    options_.threshold_px, support.num_pairs()};
   RefineOnInliers(triplet, support, thresholds, hypotheses[best].log_ratio,
                   &ratio);
   return ratio;

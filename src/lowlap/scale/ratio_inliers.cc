@@ -18,13 +18,20 @@ struct Inliers {
   Indices pairs;
 };
 
+// The features of a kind that are considered.
+std::size_t NumOf(const RatioSupport& support, FeatureKind kind,
+                  const InlierThresholds& thresholds) {
+  return kind == FeatureKind::kCoplanar ? thresholds.num_pairs
+                                        : support.Ratios(kind).size();
+}
+
 Indices Below(const RatioSupport& support, FeatureKind kind, double log_ratio,
-              double threshold_px) {
+              double threshold_px, const InlierThresholds& thresholds) {
   Indices indices;
   if (!(threshold_px > 0)) return indices;
   std::vector<float> errors_px;
   support.Errors(kind, log_ratio, &errors_px);
-  for (std::size_t n = 0; n < errors_px.size(); ++n) {
+  for (std::size_t n = 0; n < NumOf(support, kind, thresholds); ++n) {
     if (errors_px[n] < threshold_px) indices.push_back(static_cast<int>(n));
   }
   return indices;
@@ -32,27 +39,29 @@ Indices Below(const RatioSupport& support, FeatureKind kind, double log_ratio,
 
 Inliers FindInliers(const RatioSupport& support,
                     const InlierThresholds& thresholds, double log_ratio) {
-  return {Below(support, FeatureKind::kPoint, log_ratio, thresholds.points_px),
-          Below(support, FeatureKind::kLine, log_ratio, thresholds.lines_px),
-          Below(support, FeatureKind::kCoplanar, log_ratio,
-                thresholds.coplanar_px)};
+  const auto below = [&](FeatureKind kind, double threshold_px) {
+    return Below(support, kind, log_ratio, threshold_px, thresholds);
+  };
+  return {below(FeatureKind::kPoint, thresholds.points_px),
+          below(FeatureKind::kLine, thresholds.lines_px),
+          below(FeatureKind::kCoplanar, thresholds.coplanar_px)};
 }
 
 Indices Within3Stddev(const RatioSupport& support, FeatureKind kind,
-                      double threshold_px, const RefinedRatio& refined) {
+                      double threshold_px, const InlierThresholds& thresholds,
+                      const RefinedRatio& refined) {
   Indices indices;
   if (!(threshold_px > 0)) return indices;
   const std::size_t group = static_cast<std::size_t>(kind);
   const double noise = group < refined.group_noise.size()
                            ? std::max(1.0, refined.group_noise[group])
                            : 1.0;
-  int index = 0;
-  for (const RatioCandidate& ratio : support.Ratios(kind)) {
+  for (std::size_t n = 0; n < NumOf(support, kind, thresholds); ++n) {
+    const RatioCandidate& ratio = support.Ratios(kind)[n];
     if (std::abs(ratio.log_ratio - refined.log_ratio) <=
         3.0 * noise * ratio.log_ratio_stddev) {
-      indices.push_back(index);
+      indices.push_back(static_cast<int>(n));
     }
-    ++index;
   }
   return indices;
 }
@@ -60,12 +69,12 @@ Indices Within3Stddev(const RatioSupport& support, FeatureKind kind,
 Inliers FindConsistent(const RatioSupport& support,
                        const InlierThresholds& thresholds,
                        const RefinedRatio& refined) {
-  return {
-      Within3Stddev(support, FeatureKind::kPoint, thresholds.points_px,
-                    refined),
-      Within3Stddev(support, FeatureKind::kLine, thresholds.lines_px, refined),
-      Within3Stddev(support, FeatureKind::kCoplanar, thresholds.coplanar_px,
-                    refined)};
+  const auto within = [&](FeatureKind kind, double threshold_px) {
+    return Within3Stddev(support, kind, threshold_px, thresholds, refined);
+  };
+  return {within(FeatureKind::kPoint, thresholds.points_px),
+          within(FeatureKind::kLine, thresholds.lines_px),
+          within(FeatureKind::kCoplanar, thresholds.coplanar_px)};
 }
 
 // The inliers as measurements of the ratio, and as features with the weights

@@ -73,101 +73,136 @@ RatioNfaCriterion::RatioNfaCriterion(const RatioSupport& support,
       image_area_px2_(triplet.image_area_px2),
       image_diagonal_px_(triplet.image_diagonal_px),
       log10_tests_(Log10Tests(support)),
-      factorials_(std::max(
-          {support.num_points(), support.num_lines(),
-           support.num_coplanar_first() + support.num_coplanar_last()})) {
-  if (form_ == NfaForm::kPaper) return;
-  point_density_ = RatioDensity(support.Ratios(FeatureKind::kPoint));
-  line_density_ = RatioDensity(support.Ratios(FeatureKind::kLine));
-  coplanar_density_ = RatioDensity(support.Ratios(FeatureKind::kCoplanar));
-  MeasureBackground(triplet);
+      factorials_(std::max({support.num_points(), support.num_lines(),
+                            support.Tier(kPairTiers - 1).num_first +
+                                support.Tier(kPairTiers - 1).num_last})) {
+  if (form_ == NfaForm::kCalibrated) MeasureBackground(triplet);
 }
 
 void RatioNfaCriterion::MeasureBackground(const TripletView& triplet) {
-  struct Law {
-    LadderCounts SupportCounts::*counts;
-    int num_features;
-    LadderProbabilities* log10_alpha;
-  };
   SupportWorkspace workspace;
-  const auto measure = [&](FeatureKind kind, const std::vector<Law>& laws) {
-    if (support_.Ratios(kind).empty()) return;
-    const std::vector<double> ratios = BackgroundRatios(support_.Ratios(kind));
-    std::vector<LadderSums> sums(laws.size(), LadderSums{});
-    for (const double log_ratio : ratios) {
-      const SupportCounts counts =
-          support_.CountKind(kind, log_ratio, &workspace);
-      for (std::size_t l = 0; l < laws.size(); ++l) {
-        for (int step = 0; step < kNumThresholds; ++step) {
-          sums[l][step] += (counts.*laws[l].counts)[step];
-        }
-      }
-    }
-    for (std::size_t l = 0; l < laws.size(); ++l) {
-      const double num_features = laws[l].num_features;
-      const double num_ratios = static_cast<double>(ratios.size());
-      const double num_own = static_cast<double>(support_.Ratios(kind).size());
-      *laws[l].log10_alpha = Log10Law(sums[l], num_features * num_ratios,
-                                      num_own / num_features, triplet);
+  const auto add = [](const LadderCounts& counts, LadderSums* sums) {
+    for (int step = 0; step < kNumThresholds; ++step) {
+      (*sums)[step] += counts[step];
     }
   };
-  measure(FeatureKind::kPoint, {{&SupportCounts::points, support_.num_points(),
-                                 &background_.points}});
-  measure(FeatureKind::kLine,
-          {{&SupportCounts::lines, support_.num_lines(), &background_.lines}});
-  measure(FeatureKind::kCoplanar,
-          {{&SupportCounts::coplanar_first, support_.num_coplanar_first(),
-            &background_.coplanar_first},
-           {&SupportCounts::coplanar_last, support_.num_coplanar_last(),
-            &background_.coplanar_last}});
+  const auto measure = [&](FeatureKind kind, int num_features,
+                           Background* background) {
+    if (num_features == 0) return;
+    background->density = RatioDensity(support_.Ratios(kind));
+    LadderSums sums{};
+    double num_errors = 0;
+    for (const double log_ratio : BackgroundRatios(support_.Ratios(kind))) {
+      add(kind == FeatureKind::kPoint
+              ? support_.CountPoints(log_ratio, &workspace)
+              : support_.CountLines(log_ratio, &workspace),
+          &sums);
+      num_errors += num_features;
+    }
+    background->log10_alpha = Log10Law(sums, num_errors, 1, triplet);
+  };
+  measure(FeatureKind::kPoint, support_.num_points(), &points_);
+  measure(FeatureKind::kLine, support_.num_lines(), &lines_);
+
+  const std::vector<RatioCandidate>& all =
+      support_.Ratios(FeatureKind::kCoplanar);
+  for (int t = 0; t < kPairTiers; ++t) {
+    const PairTier& tier = support_.Tier(t);
+    if (tier.num_pairs == 0) continue;
+    const std::vector<RatioCandidate> ratios(all.begin(),
+                                             all.begin() + tier.num_pairs);
+    pairs_[t].density = RatioDensity(ratios);
+    LadderSums first{}, last{};
+    double num_draws = 0;
+    for (const double log_ratio : BackgroundRatios(ratios)) {
+      const PairCounts counts =
+          support_.CountPairs(log_ratio, t, &workspace)[t];
+      add(counts.first, &first);
+      add(counts.last, &last);
+      ++num_draws;
+    }
+    const double num_pairs = tier.num_pairs;
+    pairs_[t].log10_alpha_first = Log10Law(first, num_draws * tier.num_first,
+                                           num_pairs / tier.num_first, triplet);
+    pairs_[t].log10_alpha_last = Log10Law(last, num_draws * tier.num_last,
+                                          num_pairs / tier.num_last, triplet);
+  }
 }
 
-RatioNfa RatioNfaCriterion::Evaluate(double log_ratio,
-                                     const SupportCounts& counts,
-                                     FeatureKind sampled) const {
+RatioNfa RatioNfaCriterion::Evaluate(const Hypothesis& hypothesis,
+                                     const SupportCounts& counts) const {
   RatioNfa nfa;
   if (form_ == NfaForm::kPaper) {
-    LadderCounts coplanar{};
-    for (int step = 0; step < kNumThresholds; ++step) {
-      coplanar[step] = counts.coplanar_first[step] + counts.coplanar_last[step];
-    }
-    nfa.points = PaperPointTerm(factorials_, support_.num_points(),
-                                counts.points, image_area_px2_);
-    nfa.lines = PaperLineTerm(factorials_, support_.num_lines(), counts.lines,
-                              image_area_px2_, image_diagonal_px_);
-    nfa.coplanar = PaperCoplanarTerm(
-        factorials_,
-        support_.num_coplanar_first() + support_.num_coplanar_last(), coplanar,
-        image_area_px2_, num_neighbors_);
+    EvaluatePaper(counts, &nfa);
   } else {
-    const auto law = [&](const LadderProbabilities& mean,
-                         const RatioDensity& density) {
-      const double log10_relative = density.Log10Relative(log_ratio);
-      LadderProbabilities scaled = mean;
-      for (double& log10_alpha : scaled) log10_alpha += log10_relative;
-      return scaled;
-    };
-    nfa.points =
-        CalibratedTerm(factorials_, support_.num_points(), counts.points,
-                       law(background_.points, point_density_),
-                       sampled == FeatureKind::kPoint);
-    nfa.lines = CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
-                               law(background_.lines, line_density_),
-                               sampled == FeatureKind::kLine);
-    nfa.coplanar = CalibratedPairTerm(
-        factorials_, support_.num_coplanar_first(), counts.coplanar_first,
-        law(background_.coplanar_first, coplanar_density_),
-        support_.num_coplanar_last(), counts.coplanar_last,
-        law(background_.coplanar_last, coplanar_density_),
-        sampled == FeatureKind::kCoplanar);
-    nfa.log10_nfa = log10_tests_;
-    nfa.uncapped = nfa.log10_nfa;
+    EvaluateCalibrated(hypothesis, counts, &nfa);
   }
   for (const NfaTerm* term : {&nfa.points, &nfa.lines, &nfa.coplanar}) {
     nfa.log10_nfa += term->log10_nfa;
     nfa.uncapped += term->uncapped;
   }
   return nfa;
+}
+
+void RatioNfaCriterion::EvaluatePaper(const SupportCounts& counts,
+                                      RatioNfa* nfa) const {
+  constexpr int kAll = kPairTiers - 1;
+  LadderCounts coplanar{};
+  for (int step = 0; step < kNumThresholds; ++step) {
+    coplanar[step] =
+        counts.coplanar[kAll].first[step] + counts.coplanar[kAll].last[step];
+  }
+  nfa->points = PaperPointTerm(factorials_, support_.num_points(),
+                               counts.points, image_area_px2_);
+  nfa->lines = PaperLineTerm(factorials_, support_.num_lines(), counts.lines,
+                             image_area_px2_, image_diagonal_px_);
+  nfa->coplanar = PaperCoplanarTerm(
+      factorials_, support_.Tier(kAll).num_first + support_.Tier(kAll).num_last,
+      coplanar, image_area_px2_, num_neighbors_);
+  nfa->coplanar_tier = kAll;
+}
+
+void RatioNfaCriterion::EvaluateCalibrated(const Hypothesis& hypothesis,
+                                           const SupportCounts& counts,
+                                           RatioNfa* nfa) const {
+  const auto law = [&](const LadderProbabilities& mean,
+                       const RatioDensity& density) {
+    const double log10_relative = density.Log10Relative(hypothesis.log_ratio);
+    LadderProbabilities scaled = mean;
+    for (double& log10_alpha : scaled) log10_alpha += log10_relative;
+    return scaled;
+  };
+  nfa->points =
+      CalibratedTerm(factorials_, support_.num_points(), counts.points,
+                     law(points_.log10_alpha, points_.density),
+                     hypothesis.kind == FeatureKind::kPoint);
+  nfa->lines = CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
+                              law(lines_.log10_alpha, lines_.density),
+                              hypothesis.kind == FeatureKind::kLine);
+  const bool is_pair = hypothesis.kind == FeatureKind::kCoplanar;
+  const int tier_of_sample =
+      is_pair ? support_.TierOfPair(hypothesis.index) : kPairTiers;
+  bool first_tier = true;
+  for (int t = 0; t < kPairTiers; ++t) {
+    const PairTier& tier = support_.Tier(t);
+    if (tier.num_pairs == 0) continue;
+    const PairBackground& background = pairs_[t];
+    NfaTerm term = CalibratedPairTerm(
+        factorials_, tier.num_first, counts.coplanar[t].first,
+        law(background.log10_alpha_first, background.density), tier.num_last,
+        counts.coplanar[t].last,
+        law(background.log10_alpha_last, background.density),
+        t >= tier_of_sample);
+    term.uncapped += std::log10(static_cast<double>(kPairTiers));
+    term.log10_nfa = std::min(0.0, term.uncapped);
+    if (first_tier || term.uncapped < nfa->coplanar.uncapped) {
+      nfa->coplanar = term;
+      nfa->coplanar_tier = t;
+    }
+    first_tier = false;
+  }
+  nfa->log10_nfa = log10_tests_;
+  nfa->uncapped = log10_tests_;
 }
 
 }  // namespace lowlap

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+
 #include "lowlap/robust/nfa.h"
 #include "lowlap/scale/ratio_density.h"
 #include "lowlap/scale/ratio_support.h"
@@ -15,6 +17,7 @@ struct RatioNfa {
   NfaTerm points;
   NfaTerm lines;
   NfaTerm coplanar;
+  int coplanar_tier = 0;  // the tier of pairs that `coplanar` counts
 
   bool BetterThan(const RatioNfa& other) const {
     return log10_nfa != other.log10_nfa ? log10_nfa < other.log10_nfa
@@ -41,6 +44,9 @@ struct RatioNfa {
 ///  - The least error of a line over its partners is measured as such, so that
 ///    the number of partners is paid for.
 ///  - A pair has two lines: see CalibratedPairTerm.
+///  - Of the tiers of pairs (ratio_support.h) the best counts, which is paid
+///  for
+///    by their number.
 ///  - Only the kind of the sampled feature loses one sample.
 ///  - Every probability, and the NFA of every kind, is at most 1: a kind with
 ///    nothing to say never outvotes the others.
@@ -54,20 +60,25 @@ class RatioNfaCriterion {
   RatioNfaCriterion(const RatioSupport& support, const TripletView& triplet,
                     const ScaleOptions& options);
 
-  /// The NFA of the ratio that was computed from a feature of kind `sampled`,
-  /// from the inliers at that ratio.
-  RatioNfa Evaluate(double log_ratio, const SupportCounts& counts,
-                    FeatureKind sampled) const;
+  /// The NFA of a hypothesis, from the inliers at its ratio.
+  RatioNfa Evaluate(const Hypothesis& hypothesis,
+                    const SupportCounts& counts) const;
 
  private:
-  // log10 of the background probability per threshold.
+  // What unrelated features of one kind do.
   struct Background {
-    LadderProbabilities points{};
-    LadderProbabilities lines{};
-    LadderProbabilities coplanar_first{};
-    LadderProbabilities coplanar_last{};
+    LadderProbabilities log10_alpha{};
+    RatioDensity density;
+  };
+  struct PairBackground {
+    LadderProbabilities log10_alpha_first{};
+    LadderProbabilities log10_alpha_last{};
+    RatioDensity density;
   };
   void MeasureBackground(const TripletView& triplet);
+  void EvaluatePaper(const SupportCounts& counts, RatioNfa* nfa) const;
+  void EvaluateCalibrated(const Hypothesis& hypothesis,
+                          const SupportCounts& counts, RatioNfa* nfa) const;
 
   const RatioSupport& support_;
   NfaForm form_;
@@ -76,10 +87,9 @@ class RatioNfaCriterion {
   double image_diagonal_px_;
   double log10_tests_;
   LogFactorials factorials_;
-  Background background_;
-  RatioDensity point_density_;
-  RatioDensity line_density_;
-  RatioDensity coplanar_density_;
+  Background points_;
+  Background lines_;
+  std::array<PairBackground, kPairTiers> pairs_;
 };
 
 }  // namespace lowlap

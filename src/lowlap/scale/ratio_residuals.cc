@@ -21,6 +21,10 @@ Eigen::Map<const Eigen::ArrayXf> View(const Column& column) {
   return {column.data(), static_cast<Eigen::Index>(column.size())};
 }
 
+Eigen::Map<const Eigen::ArrayXf> View(const Column& column, int count) {
+  return {column.data(), static_cast<Eigen::Index>(count)};
+}
+
 void Push(Column& column, double value) {
   column.push_back(static_cast<float>(value));
 }
@@ -80,9 +84,9 @@ void PushTransferSide(Column* column, const Vec3& v, const Vec3& w,
   Push(column[3], w.z() / depth);
 }
 
-auto TransferSide(const Column* c, float tau) {
-  return (View(c[0]) + tau * View(c[1])).abs() /
-         (View(c[2]) + tau * View(c[3])).cwiseMax(kMinDepth);
+auto TransferSide(const Column* c, float tau, int n) {
+  return (View(c[0], n) + tau * View(c[1], n)).abs() /
+         (View(c[2], n) + tau * View(c[3], n)).cwiseMax(kMinDepth);
 }
 
 }  // namespace
@@ -154,10 +158,12 @@ void TransferResiduals::Add(const TripletGeometry& geometry,
                    normal_a, geometry.focal_i_px, tau);
 }
 
-void TransferResiduals::Evaluate(double tau, float* errors_px) const {
+void TransferResiduals::Evaluate(double tau, int count,
+                                 float* errors_px) const {
   const float t = static_cast<float>(tau);
-  Eigen::Map<Eigen::ArrayXf>(errors_px, size()) =
-      0.5f * (TransferSide(column_, t) + TransferSide(column_ + kSide, t));
+  Eigen::Map<Eigen::ArrayXf>(errors_px, count) =
+      0.5f * (TransferSide(column_, t, count) +
+              TransferSide(column_ + kSide, t, count));
 }
 
 void PlaneResiduals::Add(const TripletGeometry& geometry, const MatchedLine& a,
@@ -197,9 +203,9 @@ void PlaneResiduals::Add(const TripletGeometry& geometry, const MatchedLine& a,
   }
 }
 
-void PlaneResiduals::Evaluate(double tau, float* errors_px) const {
+void PlaneResiduals::Evaluate(double tau, int count, float* errors_px) const {
   const float t = static_cast<float>(tau);
-  for (int n = 0; n < size(); ++n) {
+  for (int n = 0; n < count; ++n) {
     const auto at = [&](int column) {
       return column_[column][n] + t * column_[column + 3][n];
     };

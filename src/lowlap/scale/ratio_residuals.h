@@ -55,7 +55,8 @@ class TransferResiduals {
   void Add(const TripletGeometry& geometry, const MatchedLine& a,
            const MatchedLine& b, double log_ratio);
   int size() const { return static_cast<int>(column_[0].size()); }
-  void Evaluate(double tau, float* errors_px) const;
+  /// Writes the errors of the first `count` pairs.
+  void Evaluate(double tau, int count, float* errors_px) const;
 
  private:
   static constexpr int kSide = 4;
@@ -74,7 +75,8 @@ class PlaneResiduals {
   void Add(const TripletGeometry& geometry, const MatchedLine& a,
            const MatchedLine& b, double log_ratio);
   int size() const { return static_cast<int>(column_[0].size()); }
-  void Evaluate(double tau, float* errors_px) const;
+  /// Writes the errors of the first `count` pairs.
+  void Evaluate(double tau, int count, float* errors_px) const;
 
  private:
   static constexpr int kColumns = 12;

@@ -11,21 +11,29 @@
 namespace lowlap {
 namespace {
 
-// Ranks of the values that occur in `line_of_pair`, and how often each does.
-std::vector<int> RankLines(const std::vector<int>& line_of_pair, int num_lines,
-                           std::vector<int>* rank_of_pair) {
-  std::vector<int> occurrences(num_lines, 0);
-  for (const int line : line_of_pair) ++occurrences[line];
-  std::vector<int> rank(num_lines, 0);
-  std::vector<int> partners;
-  for (int line = 0; line < num_lines; ++line) {
-    if (occurrences[line] == 0) continue;
-    rank[line] = static_cast<int>(partners.size());
-    partners.push_back(occurrences[line]);
+// Numbers lines in the order in which they come.
+class LineRanks {
+ public:
+  explicit LineRanks(std::size_t num_lines) : rank_(num_lines, kNone) {}
+  int Rank(int line) {
+    if (rank_[line] == kNone) rank_[line] = size_++;
+    return rank_[line];
   }
-  rank_of_pair->clear();
-  for (const int line : line_of_pair) rank_of_pair->push_back(rank[line]);
-  return partners;
+  int size() const { return size_; }
+
+ private:
+  static constexpr int kNone = -1;
+  std::vector<int> rank_;
+  int size_ = 0;
+};
+
+int TierOfCrossing(double crossing_px, double image_diagonal_px) {
+  int tier = 0;
+  while (tier < kPairTiers - 1 &&
+         crossing_px > kTierOfDiagonal[tier] * image_diagonal_px) {
+    ++tier;
+  }
+  return tier;
 }
 
 }  // namespace
@@ -77,24 +85,32 @@ void RatioSupport::AddLines(const TripletView& triplet) {
 
 void RatioSupport::AddPairs(const TripletView& triplet) {
   num_rejected_negative_ += triplet.coplanar.num_rejected_negative;
-  std::vector<int> first, last;
-  for (const CoplanarPairCandidate& pair : triplet.coplanar.pairs) {
-    const MatchedLine& a = triplet.lines_ij[pair.first];
-    const MatchedLine& b = triplet.lines_jk[pair.last];
-    if (coplanar_residual_ == CoplanarResidual::kPlane) {
-      plane_.Add(triplet.geometry, a, b, pair.ratio.log_ratio);
-    } else {
-      transfer_.Add(triplet.geometry, a, b, pair.ratio.log_ratio);
+  LineRanks first(triplet.lines_ij.size()), last(triplet.lines_jk.size());
+  for (int tier = 0; tier < kPairTiers; ++tier) {
+    for (const CoplanarPairCandidate& pair : triplet.coplanar.pairs) {
+      if (TierOfCrossing(pair.crossing_px, triplet.image_diagonal_px) != tier) {
+        continue;
+      }
+      const MatchedLine& a = triplet.lines_ij[pair.first];
+      const MatchedLine& b = triplet.lines_jk[pair.last];
+      if (coplanar_residual_ == CoplanarResidual::kPlane) {
+        plane_.Add(triplet.geometry, a, b, pair.ratio.log_ratio);
+      } else {
+        transfer_.Add(triplet.geometry, a, b, pair.ratio.log_ratio);
+      }
+      pairs_.push_back(pair);
+      pair_ratios_.push_back(pair.ratio);
+      pair_first_.push_back(first.Rank(pair.first));
+      pair_last_.push_back(last.Rank(pair.last));
     }
-    pairs_.push_back(pair);
-    pair_ratios_.push_back(pair.ratio);
-    first.push_back(pair.first);
-    last.push_back(pair.last);
+    tiers_[tier] = {num_pairs(), first.size(), last.size()};
   }
-  partners_ =
-      RankLines(first, static_cast<int>(triplet.lines_ij.size()), &pair_first_);
-  partners_last_ =
-      RankLines(last, static_cast<int>(triplet.lines_jk.size()), &pair_last_);
+}
+
+int RatioSupport::TierOfPair(int index) const {
+  int tier = 0;
+  while (index >= tiers_[tier].num_pairs) ++tier;
+  return tier;
 }
 
 const std::vector<RatioCandidate>& RatioSupport::Ratios(
@@ -113,60 +129,67 @@ void RatioSupport::Errors(FeatureKind kind, double log_ratio,
     points_.Evaluate(tau, errors_px->data());
   } else if (kind == FeatureKind::kLine) {
     lines_.Evaluate(tau, errors_px->data());
-  } else if (coplanar_residual_ == CoplanarResidual::kPlane) {
-    plane_.Evaluate(tau, errors_px->data());
   } else {
-    transfer_.Evaluate(tau, errors_px->data());
+    PairErrors(log_ratio, num_pairs(), errors_px->data());
+  }
+}
+
+void RatioSupport::PairErrors(double log_ratio, int num_pairs,
+                              float* errors_px) const {
+  const double tau = std::exp(log_ratio);
+  if (coplanar_residual_ == CoplanarResidual::kPlane) {
+    plane_.Evaluate(tau, num_pairs, errors_px);
+  } else {
+    transfer_.Evaluate(tau, num_pairs, errors_px);
   }
 }
 
 SupportCounts RatioSupport::Count(double log_ratio,
                                   SupportWorkspace* workspace) const {
   SupportCounts counts;
-  CountInto(FeatureKind::kPoint, log_ratio, workspace, &counts);
-  CountInto(FeatureKind::kLine, log_ratio, workspace, &counts);
-  CountInto(FeatureKind::kCoplanar, log_ratio, workspace, &counts);
+  counts.points = CountPoints(log_ratio, workspace);
+  counts.lines = CountLines(log_ratio, workspace);
+  counts.coplanar = CountPairs(log_ratio, kPairTiers - 1, workspace);
   return counts;
 }
 
-SupportCounts RatioSupport::CountKind(FeatureKind kind, double log_ratio,
+LadderCounts RatioSupport::CountPoints(double log_ratio,
+                                       SupportWorkspace* workspace) const {
+  Errors(FeatureKind::kPoint, log_ratio, &workspace->errors_px);
+  return CountOnLadder(workspace->errors_px.data(), num_points());
+}
+
+LadderCounts RatioSupport::CountLines(double log_ratio,
                                       SupportWorkspace* workspace) const {
-  SupportCounts counts;
-  CountInto(kind, log_ratio, workspace, &counts);
-  return counts;
+  Errors(FeatureKind::kLine, log_ratio, &workspace->errors_px);
+  return CountOnLadder(workspace->errors_px.data(), num_lines());
 }
 
-void RatioSupport::CountInto(FeatureKind kind, double log_ratio,
-                             SupportWorkspace* workspace,
-                             SupportCounts* counts) const {
-  Errors(kind, log_ratio, &workspace->errors_px);
-  const float* const errors_px = workspace->errors_px.data();
-  if (workspace->errors_px.empty()) return;
-  if (kind == FeatureKind::kPoint) {
-    counts->points = CountOnLadder(errors_px, num_points());
-  } else if (kind == FeatureKind::kLine) {
-    counts->lines = CountOnLadder(errors_px, num_lines());
-  } else {
-    CountCoplanar(workspace, counts);
-  }
-}
-
-void RatioSupport::CountCoplanar(SupportWorkspace* workspace,
-                                 SupportCounts* counts) const {
+std::array<PairCounts, kPairTiers> RatioSupport::CountPairs(
+    double log_ratio, int last_tier, SupportWorkspace* workspace) const {
+  std::array<PairCounts, kPairTiers> counts{};
+  const PairTier& all = tiers_[last_tier];
+  if (all.num_pairs == 0) return counts;
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  workspace->least_first_px.assign(partners_.size(), kInfinity);
-  workspace->least_last_px.assign(partners_last_.size(), kInfinity);
+  workspace->errors_px.resize(all.num_pairs);
+  workspace->least_first_px.assign(all.num_first, kInfinity);
+  workspace->least_last_px.assign(all.num_last, kInfinity);
+  const float* const errors_px = workspace->errors_px.data();
   float* const least_first = workspace->least_first_px.data();
   float* const least_last = workspace->least_last_px.data();
-  for (int pair = 0; pair < num_pairs(); ++pair) {
-    const float error_px = workspace->errors_px[pair];
-    float& first = least_first[pair_first_[pair]];
-    float& last = least_last[pair_last_[pair]];
-    first = std::min(first, error_px);
-    last = std::min(last, error_px);
+  PairErrors(log_ratio, all.num_pairs, workspace->errors_px.data());
+  int pair = 0;
+  for (int tier = 0; tier <= last_tier; ++tier) {
+    for (; pair < tiers_[tier].num_pairs; ++pair) {
+      float& first = least_first[pair_first_[pair]];
+      float& last = least_last[pair_last_[pair]];
+      first = std::min(first, errors_px[pair]);
+      last = std::min(last, errors_px[pair]);
+    }
+    counts[tier].first = CountOnLadder(least_first, tiers_[tier].num_first);
+    counts[tier].last = CountOnLadder(least_last, tiers_[tier].num_last);
   }
-  counts->coplanar_first = CountOnLadder(least_first, num_coplanar_first());
-  counts->coplanar_last = CountOnLadder(least_last, num_coplanar_last());
+  return counts;
 }
 
 }  // namespace lowlap
