@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "lowlap/scale/coplanar_ratio.h"
 #include "lowlap/scale/pose_uncertainty.h"
 #include "lowlap/scale/ratio_refinement.h"
 
@@ -77,6 +78,34 @@ Inliers FindConsistent(const RatioSupport& support,
           within(FeatureKind::kCoplanar, thresholds.coplanar_px)};
 }
 
+// A cell of the middle view, an eighth of its diagonal wide: of a point, of the
+// middle of a segment, of the crossing of a pair.
+int CellOf(const RatioSupport& support, const TripletView& triplet,
+           FeatureKind kind, int index) {
+  constexpr double kCellsPerDiagonal = 8;
+  Vec3 at = Vec3::Zero();
+  if (kind == FeatureKind::kPoint) {
+    at = triplet.points[support.PointOf(index)].in_j;
+  } else if (kind == FeatureKind::kLine) {
+    const NormalizedSegment& segment =
+        triplet.lines[support.LineOf(index)].in_j.segment;
+    at = 0.5 * (segment.start + segment.end);
+  } else {
+    const CoplanarPairCandidate& pair = support.Pair(index);
+    at = CrossingInMiddle(triplet.lines_ij[pair.first].in_middle.segment,
+                          triplet.lines_jk[pair.last].in_middle.segment)
+             .value_or(at);
+  }
+  const double cells_per_unit = triplet.geometry.focal_j_px *
+                                kCellsPerDiagonal / triplet.image_diagonal_px;
+  // Crossings far outside the image share the cells at the border.
+  const auto cell = [&](double coordinate) {
+    return static_cast<int>(
+        std::lround(std::clamp(coordinate * cells_per_unit, -32.0, 32.0)));
+  };
+  return 100 * cell(at.x()) + cell(at.y());
+}
+
 // The inliers as measurements of the ratio, and as features with the weights
 // they have among each other.
 std::vector<RatioInlier> InlierRatios(const RatioSupport& support,
@@ -88,8 +117,8 @@ std::vector<RatioInlier> InlierRatios(const RatioSupport& support,
   const auto add = [&](FeatureKind kind, int index, double multiplicity) {
     const RatioCandidate& ratio = support.Ratios(kind)[index];
     const double stddev = ratio.log_ratio_stddev;
-    ratios.push_back(
-        {ratio.log_ratio, stddev, static_cast<int>(kind), multiplicity});
+    ratios.push_back({ratio.log_ratio, stddev, static_cast<int>(kind),
+                      multiplicity, CellOf(support, triplet, kind, index)});
     features->push_back({kind, index, 1.0 / (stddev * stddev * multiplicity)});
   };
   for (const int index : inliers.points) add(FeatureKind::kPoint, index, 1.0);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace lowlap {
 namespace {
@@ -34,12 +35,40 @@ std::vector<double> GroupNoise(const std::vector<RatioInlier>& inliers,
   return noise;
 }
 
+double Weight(const RatioInlier& inlier, const std::vector<double>& noise,
+              double log_ratio) {
+  // Cauchy's constant for 95 % efficiency on normal residuals.
+  constexpr double kCauchy = 2.3849;
+  const double residual = inlier.log_ratio - log_ratio;
+  const double variance =
+      noise[inlier.group] * inlier.log_ratio_stddev * inlier.log_ratio_stddev;
+  const double robust =
+      1.0 / (1.0 + residual * residual / (kCauchy * kCauchy * variance));
+  return robust / (variance * inlier.multiplicity);
+}
+
+// Of the weighted mean, from the sums over cells; 0 with too few of them.
+double CellVariance(const std::vector<RatioInlier>& inliers,
+                    const std::vector<double>& noise, double log_ratio,
+                    double information) {
+  constexpr std::size_t kMinCells = 4;
+  std::map<int, double> sums;
+  for (const RatioInlier& inlier : inliers) {
+    sums[inlier.cell] +=
+        Weight(inlier, noise, log_ratio) * (inlier.log_ratio - log_ratio);
+  }
+  if (sums.size() < kMinCells) return 0;
+  double sum_of_squares = 0;
+  for (const auto& [cell, sum] : sums) sum_of_squares += sum * sum;
+  const double num_cells = static_cast<double>(sums.size());
+  return num_cells / (num_cells - 1) * sum_of_squares /
+         (information * information);
+}
+
 }  // namespace
 
 RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
                          double initial) {
-  // Cauchy's constant for 95 % efficiency on normal residuals.
-  constexpr double kCauchy = 2.3849;
   constexpr int kMaxIterations = 20;
   if (inliers.empty()) {
     return {initial, std::numeric_limits<double>::infinity(), {}};
@@ -52,21 +81,18 @@ RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
     double sum = 0;
     information = 0;
     for (const RatioInlier& inlier : inliers) {
-      const double residual = inlier.log_ratio - log_ratio;
-      const double variance = noise[inlier.group] * inlier.log_ratio_stddev *
-                              inlier.log_ratio_stddev;
-      const double robust =
-          1.0 / (1.0 + residual * residual / (kCauchy * kCauchy * variance));
-      const double weight = robust / (variance * inlier.multiplicity);
-      sum += weight * residual;
+      const double weight = Weight(inlier, noise, log_ratio);
+      sum += weight * (inlier.log_ratio - log_ratio);
       information += weight;
     }
     const double step = sum / information;
     log_ratio += step;
     if (std::abs(step) < 1e-12) break;
   }
+  const double variance = std::max(
+      1.0 / information, CellVariance(inliers, noise, log_ratio, information));
   for (double& group : noise) group = std::sqrt(group);
-  return {log_ratio, 1.0 / std::sqrt(information), noise};
+  return {log_ratio, std::sqrt(variance), noise};
 }
 
 }  // namespace lowlap

@@ -13,6 +13,8 @@ struct RatioInlier {
   /// How many inliers repeat the same measurement (a line occurs in several
   /// pairs); the weight is divided by it.
   double multiplicity = 1;
+  /// Where in the image it is; inliers of one cell may err together.
+  int cell = 0;
 };
 
 struct RefinedRatio {
@@ -30,7 +32,10 @@ struct RefinedRatio {
 /// where s is the inlier's standard deviation, m its multiplicity, and phi_g
 /// the noise of its group in units of s, estimated from the median of |r| / s
 /// and drawn towards 1 as if by two more inliers. The variance is
-/// 1 / sum w, which for normal residuals is some 10 % on the safe side.
+/// 1 / sum w, which for normal residuals is some 10 % on the safe side, or that
+/// of the sums over cells, sum over cells (sum w r)^2 / (sum w)^2, if it is
+/// larger: errors of the two-view step or of the lens are the same for
+/// neighbours, and do not fall with the number of features.
 /// Without inliers: `initial`, with an infinite standard deviation.
 RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
                          double initial);
