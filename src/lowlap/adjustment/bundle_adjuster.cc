@@ -213,6 +213,11 @@ class Adjuster {
         !status) {
       return status;
     }
+    if (Status status =
+            FollowPoses(options_, noise_.lines, context_, *cameras_, state_);
+        !status) {
+      return status;
+    }
     summary_->converged = at_rest && summary_->solves.back().converged;
     for (LineTrackState& line : state_->lines) {
       if (line.IsLandmark()) UpdateLineExtent(*cameras_, &line);
@@ -247,6 +252,11 @@ class Adjuster {
   // The share of the observations whose use changed.
   Result<double> Update() {
     if (!options_.refine_intrinsics.empty()) RefreshRays();
+    if (Status status =
+            FollowPoses(options_, noise_.lines, context_, *cameras_, state_);
+        !status) {
+      return tl::unexpected<Error>(status.error());
+    }
     noise_ = EstimateAllNoise(*cameras_, *state_, options_);
     const Result<internal::ObservationChanges> changes =
         UpdateObservations(options_, noise_, context_, *cameras_, state_);

@@ -132,25 +132,32 @@ double TwoViewOverlap(const CameraSet& cameras, const LineTrackState& track) {
   return common / std::min(a.high - a.low, b.high - b.low);
 }
 
+std::optional<Eigen::Matrix4d> UnitCovariance(
+    const std::vector<LineMeasurement>& measurements, const Vec3& point,
+    const Vec3& direction) {
+  Eigen::Matrix4d hessian;
+  LineNormalEquations(measurements, point, direction, &hessian, nullptr);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(hessian);
+  if (!(eigen.eigenvalues()(0) > 1e-15 * eigen.eigenvalues()(3))) {
+    return std::nullopt;
+  }
+  return Eigen::Matrix4d(eigen.eigenvectors() *
+                         eigen.eigenvalues().cwiseInverse().asDiagonal() *
+                         eigen.eigenvectors().transpose());
+}
+
 // Standard deviation of the line across itself, over the distance from the
 // nearest camera, at the worse end of its extent.
 double RelativeStddev(const std::vector<LineMeasurement>& measurements,
                       const LineTrackState& track, double noise_px) {
-  Eigen::Matrix4d hessian;
-  LineNormalEquations(measurements, track.point, track.direction, &hessian,
-                      nullptr);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(hessian);
-  if (!(eigen.eigenvalues()(0) > 1e-15 * eigen.eigenvalues()(3))) {
-    return kInfinity;
-  }
-  const Eigen::Matrix4d covariance =
-      eigen.eigenvectors() * eigen.eigenvalues().cwiseInverse().asDiagonal() *
-      eigen.eigenvectors().transpose();
+  const std::optional<Eigen::Matrix4d> covariance =
+      UnitCovariance(measurements, track.point, track.direction);
+  if (!covariance) return kInfinity;
   double worst = 0;
   for (const double at : {track.low, track.high}) {
     Eigen::Matrix<double, 2, 4> across;
     across << Mat2::Identity(), at * Mat2::Identity();
-    const Mat2 spread = across * covariance * across.transpose();
+    const Mat2 spread = across * *covariance * across.transpose();
     const double variance =
         Eigen::SelfAdjointEigenSolver<Mat2>(spread, Eigen::EigenvaluesOnly)
             .eigenvalues()(1);
@@ -197,6 +204,25 @@ double LineErrorPx(const CameraSet& cameras, const LineCandidate& candidate,
   }
   const double error = candidate.weight * std::sqrt(0.5 * squares);
   return std::isfinite(error) ? error : kInfinity;
+}
+
+std::optional<LineEstimate> EstimateFromSegments(const CameraSet& cameras,
+                                                 const LineTrackState& track) {
+  std::vector<char> used;
+  for (const LineCandidate& candidate : track.candidates) {
+    used.push_back(candidate.used);
+  }
+  const std::vector<LineMeasurement> measurements =
+      Measurements(cameras, track, used);
+  LineEstimate estimate;
+  estimate.point = track.point;
+  estimate.direction = track.direction;
+  RefineLine(measurements, &estimate.point, &estimate.direction);
+  const std::optional<Eigen::Matrix4d> covariance =
+      UnitCovariance(measurements, estimate.point, estimate.direction);
+  if (!covariance) return std::nullopt;
+  estimate.unit_covariance = *covariance;
+  return estimate;
 }
 
 void UpdateLineExtent(const CameraSet& cameras, LineTrackState* track) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "lowlap/adjustment/internal/landmark_fate.h"
@@ -64,6 +65,19 @@ struct LineTriangulationLimits {
 void TriangulateLineTrack(const CameraSet& cameras,
                           const LineTriangulationLimits& limits,
                           LineTrackState* track);
+
+/// A line from the segments in use alone, with the covariance of its four
+/// unknowns (LineNormalEquations) for end points with 1 px of noise.
+struct LineEstimate {
+  Vec3 point;
+  Vec3 direction;
+  Eigen::Matrix4d unit_covariance;
+};
+
+/// Refines the track's line, whatever else it was adjusted to. nullopt: the
+/// segments do not determine it.
+std::optional<LineEstimate> EstimateFromSegments(const CameraSet& cameras,
+                                                 const LineTrackState& track);
 
 /// Lifts the segments in use onto the line: sets low and high, and moves
 /// `point` to their middle. Rays almost along the line have no say.

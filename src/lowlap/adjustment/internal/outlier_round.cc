@@ -1,6 +1,9 @@
 #include "lowlap/adjustment/internal/outlier_round.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
 #include <utility>
 
 #include "lowlap/adjustment/internal/pair_terms.h"
@@ -67,34 +70,113 @@ PointTrackState UpdatePoint(const CameraSet& cameras,
 }
 
 LineTrackState UpdateLine(const CameraSet& cameras,
-                          const LineTriangulationLimits& limits, bool solved,
+                          const LineTriangulationLimits& limits,
                           const LineTrackState& before) {
   LineTrackState kept = before;
-  if (kept.IsLandmark() && solved) {
-    const bool all = MarkFitting(cameras, limits.threshold_px, &kept);
-    if (kept.PoseCount(cameras) < 2) {
-      Abandon(Fate::kInconsistent, &kept);
-    } else if (all) {
-      return kept;
-    }
-  } else {
-    Abandon(kept.fate, &kept);
+  const bool all = MarkFitting(cameras, limits.threshold_px, &kept);
+  if (kept.PoseCount(cameras) < 2) {
+    Abandon(Fate::kInconsistent, &kept);
+  } else if (all) {
+    return kept;
   }
   LineTrackState fresh = before;
   TriangulateLineTrack(cameras, limits, &fresh);
-  return (fresh.IsLandmark() && fresh.UsedCount() > kept.UsedCount()) || !solved
-             ? fresh
-             : kept;
+  return fresh.IsLandmark() && fresh.UsedCount() > kept.UsedCount() ? fresh
+                                                                    : kept;
+}
+
+PointTriangulationLimits PointLimits(const AdjustmentOptions& options,
+                                     const NoiseScale& noise) {
+  return {noise.threshold_px, noise.stddev_px,
+          options.max_relative_depth_stddev};
+}
+
+LineTriangulationLimits LineLimits(const AdjustmentOptions& options,
+                                   const NoiseScale& noise) {
+  return {noise.threshold_px, noise.stddev_px,
+          options.max_relative_depth_stddev, options.min_two_view_line_overlap};
+}
+
+NoiseBounds BoundsOf(const AdjustmentOptions& options) {
+  NoiseBounds bounds;
+  bounds.min_threshold_px = options.min_threshold_px;
+  bounds.max_threshold_px = options.max_threshold_px;
+  return bounds;
+}
+
+std::vector<std::size_t> AllOf(std::size_t count) {
+  std::vector<std::size_t> indices(count);
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  return indices;
+}
+
+std::vector<char> SolvedLines(const AdjustmentOptions& options,
+                              const CameraSet& cameras,
+                              const StructureState& state) {
+  std::vector<char> solved(state.lines.size(), 0);
+  for (const int n : SelectForSolve(cameras, state, options).lines) {
+    solved[n] = 1;
+  }
+  return solved;
+}
+
+// A pair in use was free to bend its lines within their noise: what is left
+// must be small. One out of use comes back if noise explains its gap.
+bool BelievePair(const CameraSet& cameras, const StructureState& state,
+                 const PairState& pair, double gap_px,
+                 const AdjustmentOptions& options, double threshold_px) {
+  if (!std::isfinite(gap_px)) return false;  // a line is lost
+  if (pair.used && options.use_lines && options.use_coplanar) {
+    return PairErrorPx(cameras, state, pair, options.coplanar_residual) <=
+           threshold_px;
+  }
+  constexpr int kMaxTimesDropped = 2;  // in and out for ever helps nobody
+  return pair.times_dropped < kMaxTimesDropped && gap_px <= threshold_px;
 }
 
 }  // namespace
 
+Status FollowPoses(const AdjustmentOptions& options,
+                   const NoiseScale& line_noise, const RunContext& context,
+                   const CameraSet& cameras, StructureState* state) {
+  // The errors of a kind that is off are known once it has followed: first at
+  // any error, then at the threshold that these errors have.
+  const NoiseScale any{1, std::numeric_limits<double>::infinity()};
+  const NoiseBounds bounds = BoundsOf(options);
+  if (!options.use_points) {
+    std::vector<PointTrackState>& points = state->points;
+    const std::vector<std::size_t> all = AllOf(points.size());
+    Status status = TriangulatePoints(cameras, PointLimits(options, any),
+                                      context, all, &points);
+    if (!status) return status;
+    const NoiseScale noise = EstimatePointNoise(cameras, points, bounds);
+    status = TriangulatePoints(cameras, PointLimits(options, noise), context,
+                               all, &points);
+    if (!status) return status;
+  }
+  std::vector<LineTrackState>& lines = state->lines;
+  if (!options.use_lines) {
+    const std::vector<std::size_t> all = AllOf(lines.size());
+    Status status = TriangulateLines(cameras, LineLimits(options, any), context,
+                                     all, &lines);
+    if (!status) return status;
+    const NoiseScale noise = EstimateLineNoise(cameras, lines, bounds);
+    return TriangulateLines(cameras, LineLimits(options, noise), context, all,
+                            &lines);
+  }
+  const std::vector<char> solved = SolvedLines(options, cameras, *state);
+  std::vector<std::size_t> unsolved;
+  for (std::size_t n = 0; n < solved.size(); ++n) {
+    if (!solved[n]) unsolved.push_back(n);
+  }
+  return TriangulateLines(cameras, LineLimits(options, line_noise), context,
+                          unsolved, &lines);
+}
+
 NoiseLevels EstimateAllNoise(const CameraSet& cameras,
                              const StructureState& state,
                              const AdjustmentOptions& options) {
-  NoiseBounds bounds;
-  bounds.min_threshold_px = options.min_threshold_px;
-  bounds.max_threshold_px = options.max_threshold_px;
+  NoiseBounds bounds = BoundsOf(options);
   NoiseLevels noise;
   noise.points = EstimatePointNoise(cameras, state.points, bounds);
   // Few lines of three views: they are taken to be about as good as points.
@@ -103,7 +185,7 @@ NoiseLevels EstimateAllNoise(const CameraSet& cameras,
   bounds.fallback.threshold_px =
       std::max(bounds.fallback.threshold_px, noise.points.threshold_px);
   noise.lines = EstimateLineNoise(cameras, state.lines, bounds);
-  noise.coplanar = EstimatePairNoise(cameras, state, options.coplanar_residual,
+  noise.coplanar = EstimatePairNoise(cameras, PairGapsPx(cameras, state),
                                      noise.lines, bounds);
   return noise;
 }
@@ -114,50 +196,48 @@ Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
                                               const CameraSet& cameras,
                                               StructureState* state) {
   ObservationChanges changes;
-  PointTriangulationLimits point_limits;
-  point_limits.threshold_px = noise.points.threshold_px;
-  point_limits.noise_px = noise.points.stddev_px;
-  point_limits.max_relative_depth_stddev = options.max_relative_depth_stddev;
-  std::vector<PointTrackState> points(state->points.size());
-  Status status = ParallelFor(context, {}, points.size(), [&](std::size_t n) {
-    points[n] = UpdatePoint(cameras, point_limits, state->points[n]);
-  });
-  if (!status) return tl::unexpected<Error>(status.error());
-
-  LineTriangulationLimits line_limits;
-  line_limits.threshold_px = noise.lines.threshold_px;
-  line_limits.noise_px = noise.lines.stddev_px;
-  line_limits.max_relative_depth_stddev = options.max_relative_depth_stddev;
-  line_limits.min_two_view_overlap = options.min_two_view_line_overlap;
-  std::vector<char> solved(state->lines.size(), 0);
-  for (const int n : SelectForSolve(cameras, *state, options).lines) {
-    solved[n] = 1;
+  Status status;
+  if (options.use_points) {
+    const PointTriangulationLimits limits = PointLimits(options, noise.points);
+    std::vector<PointTrackState> points(state->points.size());
+    status = ParallelFor(context, {}, points.size(), [&](std::size_t n) {
+      points[n] = UpdatePoint(cameras, limits, state->points[n]);
+    });
+    if (!status) return tl::unexpected<Error>(status.error());
+    for (std::size_t n = 0; n < points.size(); ++n) {
+      changes.changed += CountChanges(state->points[n], points[n]);
+      changes.total += points[n].candidates.size();
+    }
+    state->points = std::move(points);
   }
-  std::vector<LineTrackState> lines(state->lines.size());
+  if (!options.use_lines) return changes;
+
+  const LineTriangulationLimits limits = LineLimits(options, noise.lines);
+  const std::vector<char> solved = SolvedLines(options, cameras, *state);
+  std::vector<LineTrackState> lines = state->lines;
   status = ParallelFor(context, {}, lines.size(), [&](std::size_t n) {
-    lines[n] =
-        UpdateLine(cameras, line_limits, solved[n] != 0, state->lines[n]);
+    if (solved[n]) {
+      lines[n] = UpdateLine(cameras, limits, state->lines[n]);
+    } else {
+      TriangulateLineTrack(cameras, limits, &lines[n]);
+    }
   });
   if (!status) return tl::unexpected<Error>(status.error());
-
-  for (std::size_t n = 0; n < points.size(); ++n) {
-    changes.changed += CountChanges(state->points[n], points[n]);
-    changes.total += points[n].candidates.size();
-  }
   for (std::size_t n = 0; n < lines.size(); ++n) {
-    if (solved[n]) changes.changed += CountChanges(state->lines[n], lines[n]);
-    changes.total += lines[n].candidates.size();
+    if (solved[n] || lines[n].PoseCount(cameras) > 2) {
+      changes.changed += CountChanges(state->lines[n], lines[n]);
+      changes.total += lines[n].candidates.size();
+    }
   }
-  state->points = std::move(points);
   state->lines = std::move(lines);
 
-  for (PairState& pair : state->pairs) {
-    const bool used =
-        state->lines[pair.first].IsLandmark() &&
-        state->lines[pair.second].IsLandmark() &&
-        PairErrorPx(cameras, *state, pair, options.coplanar_residual) <=
-            noise.coplanar.threshold_px;
+  const std::vector<double> gaps_px = PairGapsPx(cameras, *state);
+  for (std::size_t n = 0; n < gaps_px.size(); ++n) {
+    PairState& pair = state->pairs[n];
+    const bool used = BelievePair(cameras, *state, pair, gaps_px[n], options,
+                                  noise.coplanar.threshold_px);
     changes.changed += used != pair.used ? 1 : 0;
+    if (pair.used && !used) ++pair.times_dropped;
     pair.used = used;
   }
   changes.total += state->pairs.size();

@@ -7,6 +7,13 @@
 
 namespace lowlap::internal {
 
+/// Triangulates anew what the solver leaves out (SelectForSolve): tracks of
+/// kinds that are not used, and lines of two views without a pair. They follow
+/// the poses and have no say. `line_noise` is that of the lines that are used.
+Status FollowPoses(const AdjustmentOptions& options,
+                   const NoiseScale& line_noise, const RunContext& context,
+                   const CameraSet& cameras, StructureState* state);
+
 /// Noise of every kind from the present residuals of all candidates.
 NoiseLevels EstimateAllNoise(const CameraSet& cameras,
                              const StructureState& state,
@@ -17,11 +24,12 @@ struct ObservationChanges {
   std::size_t total = 0;
 };
 
-/// Decides anew which candidates are in use: those within the threshold of
-/// their kind at the present landmarks. A landmark that not all candidates fit
-/// is also triangulated afresh, and so is a track without one; what more
-/// candidates fit is taken. Lines that the solver leaves out (SelectForSolve)
-/// always follow the poses. Pairs are in use within their threshold.
+/// Decides anew which candidates of the used kinds are in use: those within the
+/// threshold of their kind at the present landmarks. A landmark that not all
+/// candidates fit is also triangulated afresh, and so is a track without one;
+/// what more candidates fit is taken. Then the pairs: one in use stays if its
+/// residual is within the threshold, one out of use comes back if its gap
+/// (PairGapPx) is.
 Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
                                               const NoiseLevels& noise,
                                               const RunContext& context,

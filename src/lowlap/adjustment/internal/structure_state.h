@@ -15,6 +15,7 @@ struct PairState {
   int first = -1;  // indices into StructureState::lines
   int second = -1;
   bool used = false;
+  int times_dropped = 0;
 };
 
 /// All tracks and landmarks of a scene, in the form in which they are worked
