@@ -75,10 +75,13 @@ struct TwoViewResult {
 ///
 /// Residual: the Sampson distance of x2^T [t]x R x1 = 0 in pixels. The
 /// threshold that separates inliers is the one of least NFA; there is none to
-/// set. Local optimisation and final refinement minimise a Cauchy loss whose
-/// scale follows the a-contrario threshold. The sign of t and the choice of R
+/// set. Of the poses that explain the inliers, the one with the sharpest core
+/// of small residuals is taken (see SharpenPose), and refined with a Cauchy
+/// loss whose scale follows the threshold. The sign of t and the choice of R
 /// come from the visibility (positive depths) of all inliers; matches behind a
-/// camera are no inliers.
+/// camera are no inliers. log10_nfa counts chance support as these very images
+/// give it (see ScoreAgainstChance). Two different places that look alike, as
+/// two equal facades do, still pass: only further views tell.
 ///
 /// `pose` carries rotation, direction, point inliers in the order of
 /// `point_matches`, log10_nfa, point_threshold_px and covariance; its line
