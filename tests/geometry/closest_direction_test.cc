@@ -95,7 +95,9 @@ TEST(ClosestDirection, TheOtherRootIsTheMaximum) {
 
 TEST(ClosestDirection, DegenerateCases) {
   const Vec3 u(1, 2, 3), v(0.5, -1, 2);
-  EXPECT_FALSE(ClosestDirection(u, v, 2 * v));          // v along w
+  EXPECT_FALSE(ClosestDirection(u, v, 2 * v));  // v along w
+  const Vec3 across = 1e-10 * v.norm() * v.unitOrthogonal();
+  EXPECT_FALSE(ClosestDirection(u, v, v + across));     // almost
   EXPECT_FALSE(ClosestDirection(u, v, Vec3::Zero()));   // no baseline
   EXPECT_FALSE(ClosestDirection(u, Vec3::Zero(), v));   // no point
   EXPECT_FALSE(ClosestDirection(Vec3::Zero(), v, u));   // no direction
