@@ -103,8 +103,9 @@ void AddAdjust(CLI::App* program, Action* action) {
       ->delimiter(',');
   command->add_flag("--retriangulate", flags->retriangulate,
                     "Build the structure anew from the tracks first");
-  command->add_option("--gt", flags->ground_truth,
-                      "Folder of true cameras to evaluate against");
+  command->add_option(
+      "--gt", flags->ground_truth,
+      "True cameras to evaluate against (folder or scene file)");
   AddCommonFlags(command, &flags->common);
   command->callback(
       [flags, action] { *action = [flags] { return Adjust(*flags); }; });

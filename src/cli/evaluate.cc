@@ -40,7 +40,7 @@ void AddEvaluate(CLI::App* program, Action* action) {
   command
       ->add_option("ground_truth", flags->ground_truth,
                    "Folder of Strecha's .camera files, or the one that holds "
-                   "it as gt_dense_cameras")
+                   "it as gt_dense_cameras; or a scene file with true poses")
       ->required();
   command->add_flag("--json", flags->json, "Print JSON instead of a table");
   command->callback(

@@ -49,7 +49,7 @@ void PrintContent(const Scene& scene) {
               scene.coplanar_pairs.size());
 }
 
-void PrintRigidity(const RigidityReport& report, const Scene& scene) {
+void PrintConnections(const RigidityReport& report, const Scene& scene) {
   if (!report.isolated_views.empty()) {
     std::printf("views without a relative pose: %s\n",
                 Names(scene, report.isolated_views).c_str());
@@ -61,29 +61,32 @@ void PrintRigidity(const RigidityReport& report, const Scene& scene) {
       std::printf("  %s\n", Names(scene, component).c_str());
     }
   }
-  if (report.groups.empty()) return;
-  if (report.groups.size() == 1) {
-    std::printf("rigid: directions alone fix one common scale for all views\n");
+}
+
+// Groups that keep a scale of their own, and the cameras they meet in.
+void PrintGroups(const RigidityReport& report, const Scene& scene) {
+  if (report.groups.empty()) {
+    std::printf("  none\n");
     return;
   }
-  std::printf(
-      "%zu groups of views, each with a scale of its own (directions "
-      "alone do not join them):\n",
-      report.groups.size());
+  if (report.groups.size() == 1) {
+    std::printf("  one scale for all of: %s\n",
+                Names(scene, report.groups[0].views).c_str());
+    return;
+  }
   for (std::size_t g = 0; g < report.groups.size(); ++g) {
     std::printf("  group %zu: %s\n", g + 1,
                 Names(scene, report.groups[g].views).c_str());
   }
-  std::printf(
-      "groups that share only one camera; their common scale can come "
-      "only from scale ratios across it:\n");
   for (const Hinge& hinge : report.hinges) {
     std::string groups;
     for (const std::size_t g : hinge.groups) {
       groups += (groups.empty() ? "" : ", ") + std::to_string(g + 1);
     }
-    std::printf("  %s joins groups %s\n",
-                scene.views.at(hinge.view).filename.c_str(), groups.c_str());
+    std::printf(
+        "  groups %s meet in %s: only scale ratios across it join "
+        "them\n",
+        groups.c_str(), scene.views.at(hinge.view).filename.c_str());
   }
 }
 
@@ -100,17 +103,35 @@ int Inspect(const Flags& flags) {
     if (!loaded) return Fail(loaded.error());
     scene = std::move(loaded->scene);
   }
-  const RigidityReport report = AnalyzeRigidity(scene);
+  const RigidityReport by_directions = AnalyzeRigidity(scene);
+  RigidityOptions triplet_rule;
+  triplet_rule.rule = RigidityRule::kTriplets;
+  const RigidityReport by_triplets = AnalyzeRigidity(scene, triplet_rule);
   if (!flags.json.empty()) {
     const Status written =
         WriteFileAtomically(flags.json, [&](std::ostream& out) -> Status {
-          out << ToJson(report) << '\n';
+          out << "{\"by_directions\": " << ToJson(by_directions)
+              << ",\n\"by_triplets\": " << ToJson(by_triplets) << "}\n";
           return {};
         });
     if (!written) return Fail(written.error());
   }
   PrintContent(scene);
-  if (!scene.relative_poses.empty()) PrintRigidity(report, scene);
+  if (scene.relative_poses.empty()) return 0;
+  PrintConnections(by_directions, scene);
+  std::printf(
+      "\nviews that share a scale through the directions of all relative "
+      "poses:\n");
+  PrintGroups(by_directions, scene);
+  std::printf(
+      "\nviews that share a scale through triplets with at least %d "
+      "common point tracks (what averaging over triplets uses):\n",
+      triplet_rule.min_shared_tracks);
+  PrintGroups(by_triplets, scene);
+  if (!by_triplets.isolated_views.empty()) {
+    std::printf("  in no such triplet: %s\n",
+                Names(scene, by_triplets.isolated_views).c_str());
+  }
   return 0;
 }
 

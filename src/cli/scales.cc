@@ -82,7 +82,7 @@ void AddScales(CLI::App* program, Action* action) {
   AddScaleFlags(command, &flags->scale);
   command->add_option("--json", flags->json, "Also write the table as JSON");
   command->add_option("--gt", flags->ground_truth,
-                      "Folder of true cameras to compare with");
+                      "True cameras to compare with (folder or scene file)");
   AddCommonFlags(command, &flags->common);
   command->callback(
       [flags, action] { *action = [flags] { return Scales(*flags); }; });

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <utility>
 
 #include "cli/command.h"
 #include "lowlap/averaging/strategies.h"
 #include "lowlap/pipeline/output_folder.h"
+#include "third_party_adapters/scene_formats.h"
 #include "third_party_adapters/strecha/strecha.h"
 
 namespace lowlap::cli {
@@ -124,8 +126,9 @@ void AddSolveFlags(CLI::App* command, SolveFlags* flags) {
   command->add_flag("--no-adjust", flags->no_adjust,
                     "Stop before the bundle adjustment");
   command->add_option("--gt", flags->ground_truth,
-                      "Folder of true cameras (Strecha's .camera files) to "
-                      "evaluate against; never used for solving");
+                      "True cameras to evaluate against, never used for "
+                      "solving: a folder of Strecha's .camera files, or a "
+                      "scene file");
 }
 
 Status SetAdjustedFeatures(const std::vector<std::string>& features,
@@ -156,10 +159,15 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
   return options;
 }
 
-Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& folder,
+Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
                                                    const Scene& scene) {
-  if (folder.empty()) return std::optional<GroundTruth>();
-  const auto poses = strecha::ReadGroundTruth(folder);
+  if (path.empty()) return std::optional<GroundTruth>();
+  if (std::filesystem::is_regular_file(path)) {
+    const auto truth = ReadScene(path);
+    if (!truth) return tl::unexpected<Error>(truth.error());
+    return std::optional<GroundTruth>(GroundTruthFromScene(*truth));
+  }
+  const auto poses = strecha::ReadGroundTruth(path);
   if (!poses) return tl::unexpected<Error>(poses.error());
   auto truth = GroundTruthByName(scene, *poses);
   if (!truth) return tl::unexpected<Error>(truth.error());

@@ -40,8 +40,9 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
 Status SetAdjustedFeatures(const std::vector<std::string>& features,
                            AdjustmentOptions* options);
 
-/// The true poses of a Strecha folder; empty if `folder` is.
-Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& folder,
+/// The true poses of a Strecha folder, matched by image name, or of a scene
+/// file, by view id; empty if `path` is.
+Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
                                                    const Scene& scene);
 
 /// Solves a measured scene, writes the output folder, prints what a person

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace lowlap {
 namespace {
 
@@ -78,6 +80,45 @@ TEST(AnalyzeRigidity, PartsAndIsolatedViewsAreNamed) {
   ASSERT_EQ(report.connected_components.size(), 2u);
   EXPECT_EQ(report.connected_components[0], (std::vector<ViewId>{2, 3, 4}));
   EXPECT_EQ(report.isolated_views, (std::vector<ViewId>{5}));
+}
+
+TEST(AnalyzeRigidity, TripletsNeedSharedTracks) {
+  // Directions make one rigid group of two triangles that share an edge; the
+  // second triangle shares too few tracks to count as a triplet.
+  Scene scene = SceneWithEdges(4, {{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}});
+  for (PointTrackId id = 0; id < 40; ++id) {
+    scene.point_tracks[id] = {{0, id}, {1, id}, {2, id}};
+    if (id < 29) scene.point_tracks[id].push_back({3, id});
+  }
+  RigidityOptions options;
+  options.rule = RigidityRule::kTriplets;
+  RigidityReport report = AnalyzeRigidity(scene, options);
+  ASSERT_EQ(report.groups.size(), 1u);
+  EXPECT_EQ(report.groups[0].views, (std::vector<ViewId>{0, 1, 2}));
+  EXPECT_EQ(report.isolated_views, (std::vector<ViewId>{3}));
+  options.min_shared_tracks = 29;
+  report = AnalyzeRigidity(scene, options);
+  ASSERT_EQ(report.groups.size(), 1u);
+  EXPECT_EQ(report.groups[0].views.size(), 4u);
+}
+
+TEST(AnalyzeRigidity, TripletsThatShareOneViewKeepTheirOwnScale) {
+  // A ring of three triplets is rigid by directions, not by triplets.
+  Scene scene = SceneWithEdges(
+      6,
+      {{0, 1}, {0, 2}, {1, 2}, {2, 3}, {2, 4}, {3, 4}, {4, 5}, {0, 4}, {0, 5}});
+  for (PointTrackId id = 0; id < 90; ++id) {
+    const ViewId a = static_cast<ViewId>(id % 3 * 2);
+    const ViewId b = a + 1, c = (a + 2) % 6;
+    Track track = {{a, id}, {b, id}, {c, id}};
+    std::sort(track.begin(), track.end());
+    scene.point_tracks[id] = track;
+  }
+  RigidityOptions options;
+  options.rule = RigidityRule::kTriplets;
+  const RigidityReport report = AnalyzeRigidity(scene, options);
+  EXPECT_EQ(report.groups.size(), 3u);
+  EXPECT_EQ(report.hinges.size(), 3u);
 }
 
 TEST(AnalyzeRigidity, AnEmptySceneHasNothing) {

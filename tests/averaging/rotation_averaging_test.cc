@@ -84,7 +84,9 @@ TEST(AverageRotations, ForgetsAFifthOfWrongMeasurements) {
   ASSERT_TRUE(result);
   EXPECT_LT(WorstError(truth, result->cam_from_world), 0.004);
   for (std::size_t e = 0; e < wrong.size(); ++e) {
-    if (!wrong[e]) EXPECT_LT(result->residuals_rad[e], 0.01);
+    if (!wrong[e]) {
+      EXPECT_LT(result->residuals_rad[e], 0.01);
+    }
   }
 }
 

@@ -2,9 +2,11 @@
 
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "lowlap/averaging/union_find.h"
 #include "lowlap/core/random.h"
@@ -14,25 +16,52 @@ namespace {
 
 using EdgeIndex = std::map<ViewPair, std::size_t>;
 
-// Joins the three edges of every triangle.
-void MergeTriangles(const std::vector<ViewPair>& edges, const EdgeIndex& index,
-                    UnionFind* groups) {
+using Triangle = std::array<ViewId, 3>;  // ascending
+
+std::vector<Triangle> FindTriangles(const std::vector<ViewPair>& edges,
+                                    const EdgeIndex& index) {
   std::map<ViewId, std::vector<ViewId>> later_neighbours;
   for (const ViewPair& edge : edges) {
     later_neighbours[edge.first].push_back(edge.second);
   }
+  std::vector<Triangle> triangles;
   for (const auto& [view, neighbours] : later_neighbours) {
     for (std::size_t a = 0; a < neighbours.size(); ++a) {
       for (std::size_t b = a + 1; b < neighbours.size(); ++b) {
-        const auto closing =
-            index.find({std::min(neighbours[a], neighbours[b]),
-                        std::max(neighbours[a], neighbours[b])});
-        if (closing == index.end()) continue;
-        groups->Union(closing->second, index.at({view, neighbours[a]}));
-        groups->Union(closing->second, index.at({view, neighbours[b]}));
+        if (index.count({neighbours[a], neighbours[b]}) > 0) {
+          triangles.push_back({view, neighbours[a], neighbours[b]});
+        }
       }
     }
   }
+  return triangles;
+}
+
+void MergeTriangle(const Triangle& t, const EdgeIndex& index,
+                   UnionFind* groups) {
+  const std::size_t closing = index.at({t[1], t[2]});
+  groups->Union(closing, index.at({t[0], t[1]}));
+  groups->Union(closing, index.at({t[0], t[2]}));
+}
+
+// Number of point tracks that each triangle's three views share.
+std::vector<int> SharedTracks(const Scene& scene,
+                              const std::vector<Triangle>& triangles) {
+  std::map<Triangle, std::size_t> index;
+  for (std::size_t n = 0; n < triangles.size(); ++n) index[triangles[n]] = n;
+  std::vector<int> counts(triangles.size(), 0);
+  for (const auto& [id, track] : scene.point_tracks) {
+    for (std::size_t a = 0; a < track.size(); ++a) {
+      for (std::size_t b = a + 1; b < track.size(); ++b) {
+        for (std::size_t c = b + 1; c < track.size(); ++c) {
+          const auto found =
+              index.find({track[a].view, track[b].view, track[c].view});
+          if (found != index.end()) ++counts[found->second];
+        }
+      }
+    }
+  }
+  return counts;
 }
 
 // One scale per group; one equation C_b - C_a = s d per edge, in the plane.
@@ -123,18 +152,47 @@ std::vector<std::vector<ViewId>> ConnectedComponents(
   return components;
 }
 
-}  // namespace
-
-RigidityReport AnalyzeRigidity(const Scene& scene) {
+// The edges that the rule looks at.
+std::vector<ViewPair> RelevantEdges(const Scene& scene,
+                                    const RigidityOptions& options,
+                                    std::vector<Triangle>* triangles) {
   std::vector<ViewPair> edges;
   EdgeIndex index;
   for (const auto& entry : scene.relative_poses) {
     index[entry.first] = edges.size();
     edges.push_back(entry.first);
   }
+  *triangles = FindTriangles(edges, index);
+  if (options.rule == RigidityRule::kDirections) return edges;
+
+  const std::vector<int> shared = SharedTracks(scene, *triangles);
+  std::vector<Triangle> counted;
+  std::set<ViewPair> held;
+  for (std::size_t n = 0; n < triangles->size(); ++n) {
+    if (shared[n] < options.min_shared_tracks) continue;
+    const Triangle& t = (*triangles)[n];
+    counted.push_back(t);
+    held.insert({{t[0], t[1]}, {t[0], t[2]}, {t[1], t[2]}});
+  }
+  *triangles = std::move(counted);
+  return std::vector<ViewPair>(held.begin(), held.end());
+}
+
+}  // namespace
+
+RigidityReport AnalyzeRigidity(const Scene& scene,
+                               const RigidityOptions& options) {
+  std::vector<Triangle> triangles;
+  const std::vector<ViewPair> edges = RelevantEdges(scene, options, &triangles);
+  EdgeIndex index;
+  for (std::size_t e = 0; e < edges.size(); ++e) index[edges[e]] = e;
   UnionFind sets(edges.size());
-  MergeTriangles(edges, index, &sets);
-  MergeByNullSpace(edges, &sets);
+  for (const Triangle& triangle : triangles) {
+    MergeTriangle(triangle, index, &sets);
+  }
+  if (options.rule == RigidityRule::kDirections) {
+    MergeByNullSpace(edges, &sets);
+  }
 
   RigidityReport report;
   report.connected_components =

@@ -31,15 +31,36 @@ struct RigidityReport {
   std::vector<ViewId> isolated_views;
 };
 
-/// Which parts of the view graph share a scale by directions alone, before
-/// anything is solved (parallel rigidity).
+/// What may join edges into one group.
+enum class RigidityRule {
+  /// The directions of all relative poses (parallel rigidity). The best case:
+  /// it takes every direction for exact.
+  kDirections,
+  /// Triplets of views, each with a scale of its own, joined where they share
+  /// an edge. A triplet counts if its three views share `min_shared_tracks`
+  /// point tracks. This is what averaging over triplets stands on; groups that
+  /// meet in one view have no common scale in it.
+  kTriplets,
+};
+
+struct RigidityOptions {
+  RigidityRule rule = RigidityRule::kDirections;
+  /// For kTriplets; OpenMVG asks for 30.
+  int min_shared_tracks = 30;
+};
+
+/// Which parts of the view graph share a scale, before anything is solved.
 ///
-/// Edges belong to one group iff their lengths are proportional in every
-/// solution of C_j - C_i = s_ij d_ij. The test is generic: the null space of
-/// the cycle equations for random centres in a plane, since photographs are
+/// kDirections: edges belong to one group iff their lengths are proportional in
+/// every solution of C_j - C_i = s_ij d_ij. The test is generic: the null space
+/// of the cycle equations for random centres in a plane, since photographs are
 /// mostly taken at one height, where a 4-cycle is not rigid. Triangles are
 /// merged first, so the null space is computed only for what they leave.
 /// Cost: cubic in the number of triangle groups.
-RigidityReport AnalyzeRigidity(const Scene& scene);
+///
+/// kTriplets: edges outside every counted triplet are left out; their views are
+/// isolated unless another edge holds them.
+RigidityReport AnalyzeRigidity(const Scene& scene,
+                               const RigidityOptions& options = {});
 
 }  // namespace lowlap

@@ -9,7 +9,7 @@ namespace {
 
 // Directions are never better than this, whatever a covariance says: matches
 // share systematic errors (calibration, texture) that it does not know.
-constexpr double kDirectionFloorRad = 2e-4;
+constexpr double kDirectionFloorRad = 5e-4;
 constexpr double kDefaultDirectionRad = 0.02;
 constexpr double kRatioFloor = 1e-3;
 

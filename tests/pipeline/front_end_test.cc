@@ -1,0 +1,81 @@
+#include <gtest/gtest.h>
+
+#include "lowlap/pipeline/calibrate_images.h"
+#include "lowlap/scene/validation.h"
+#include "lowlap/synthetic/synthetic_scene.h"
+
+namespace lowlap {
+namespace {
+
+TEST(KeepMatchedFeatures, DropsUnusedFeaturesAndKeepsEveryReference) {
+  SyntheticOptions options;
+  options.num_views = 5;
+  Scene scene = Simulate(options)->scene;
+  // The same scene with useless features in front of and behind the others.
+  Scene padded = scene;
+  for (auto& [view, features] : padded.features) {
+    features.points_px.insert(features.points_px.begin(), Vec2(1, 1));
+    features.points_px.push_back(Vec2(2, 2));
+    features.segments.insert(features.segments.begin(), LineSegment());
+  }
+  for (auto& [views, pose] : padded.relative_poses) {
+    for (auto* matches : {&pose.point_inliers, &pose.line_inliers}) {
+      for (FeatureMatch& match : *matches) ++match.first, ++match.second;
+    }
+  }
+  for (auto* tracks : {&padded.point_tracks, &padded.line_tracks}) {
+    for (auto& [id, track] : *tracks) {
+      for (FeatureRef& ref : track) ++ref.feature;
+    }
+  }
+  KeepMatchedFeatures(&scene);
+  KeepMatchedFeatures(&padded);
+  EXPECT_TRUE(padded == scene);
+  EXPECT_TRUE(ValidateScene(padded));
+}
+
+TEST(EstimateRelativePoses, PairsThatFailAreReportedWithAReason) {
+  SyntheticOptions options;
+  options.num_views = 4;
+  options.pairs = "chain";
+  SyntheticScene synthetic = *Simulate(options);
+  std::map<ViewPair, PairMatches> matches;
+  for (const auto& [views, pose] : synthetic.scene.relative_poses) {
+    matches[views] = {pose.point_inliers, pose.line_inliers};
+  }
+  auto& starved = matches.begin()->second.points;
+  starved.resize(3);
+  const auto reports = EstimateRelativePoses(
+      &synthetic.scene, matches, RelativePoseOptions(), RunContext());
+  ASSERT_TRUE(reports);
+  ASSERT_EQ(reports->size(), 3u);
+  EXPECT_FALSE((*reports)[0].accepted);
+  EXPECT_FALSE((*reports)[0].reason.empty());
+  EXPECT_TRUE((*reports)[1].accepted) << (*reports)[1].reason;
+  EXPECT_EQ(synthetic.scene.relative_poses.size(), 2u);
+}
+
+TEST(EstimateRelativePoses, ThreadsDoNotChangeTheResult) {
+  SyntheticOptions options;
+  options.num_views = 6;
+  options.pairs = "window:2";
+  options.noise_px = 0.7;
+  options.wrong_point_share = 0.3;
+  const SyntheticScene synthetic = *Simulate(options);
+  std::map<ViewPair, PairMatches> matches;
+  for (const auto& [views, pose] : synthetic.scene.relative_poses) {
+    matches[views] = {pose.point_inliers, pose.line_inliers};
+  }
+  Scene one = synthetic.scene, two = synthetic.scene;
+  RunContext context;
+  context.num_threads = 1;
+  ASSERT_TRUE(
+      EstimateRelativePoses(&one, matches, RelativePoseOptions(), context));
+  context.num_threads = 2;
+  ASSERT_TRUE(
+      EstimateRelativePoses(&two, matches, RelativePoseOptions(), context));
+  EXPECT_TRUE(one == two);
+}
+
+}  // namespace
+}  // namespace lowlap
