@@ -1,6 +1,7 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "lowlap/pipeline/scene_reduction.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {
@@ -11,11 +12,18 @@ struct Flags {
   std::string input;
   std::string output;
   std::string format;
+  bool drop_solution = false;
+  int max_point_matches = 0;
 };
 
 int Convert(const Flags& flags) {
-  const auto scene = ReadScene(flags.input);
+  auto scene = ReadScene(flags.input);
   if (!scene) return Fail(scene.error());
+  if (flags.drop_solution) DropSolution(&*scene);
+  if (flags.max_point_matches > 0) {
+    const Status limited = LimitPointMatches(flags.max_point_matches, &*scene);
+    if (!limited) return Fail(limited.error());
+  }
   const auto notes = WriteScene(*scene, flags.output, flags.format);
   if (!notes) return Fail(notes.error());
   const RunContext context = MakeContext(flags.common);
@@ -38,6 +46,13 @@ void AddConvert(CLI::App* program, Action* action) {
       ->required();
   command->add_option("--to", flags->format,
                       "Format to write, where the extension is not enough");
+  command->add_flag("--drop-solution", flags->drop_solution,
+                    "Keep what was measured, drop ratios, poses and structure");
+  command
+      ->add_option("--max-point-matches", flags->max_point_matches,
+                   "Keep at most this many point matches of each pair, those "
+                   "on the longest tracks first, and drop the solution")
+      ->check(CLI::PositiveNumber);
   command->footer("Formats:\n" + DescribeSceneFormats());
   AddCommonFlags(command, &flags->common);
   command->callback(

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "lowlap/pipeline/calibrate_images.h"
+#include "lowlap/pipeline/scene_reduction.h"
 #include "lowlap/scene/validation.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
@@ -32,6 +33,29 @@ TEST(KeepMatchedFeatures, DropsUnusedFeaturesAndKeepsEveryReference) {
   KeepMatchedFeatures(&padded);
   EXPECT_TRUE(padded == scene);
   EXPECT_TRUE(ValidateScene(padded));
+}
+
+TEST(LimitPointMatches, KeepsTheLongestTracksAndAValidScene) {
+  SyntheticOptions options;
+  options.num_views = 6;
+  options.pairs = "window:2";
+  Scene scene = Simulate(options)->scene;
+  const Scene full = scene;
+  ASSERT_TRUE(LimitPointMatches(20, &scene));
+  EXPECT_TRUE(ValidateScene(scene));
+  for (const auto& [views, pose] : scene.relative_poses) {
+    EXPECT_LE(pose.point_inliers.size(), 20u);
+    EXPECT_EQ(pose.line_inliers.size(),
+              full.relative_poses.at(views).line_inliers.size());
+  }
+  std::size_t three_views = 0;
+  for (const auto& [id, track] : scene.point_tracks) {
+    three_views += track.size() >= 3 ? 1 : 0;
+  }
+  EXPECT_GT(2 * three_views, scene.point_tracks.size());
+  EXPECT_LT(scene.features.at(2).points_px.size(),
+            full.features.at(2).points_px.size());
+  EXPECT_FALSE(LimitPointMatches(0, &scene));
 }
 
 TEST(EstimateRelativePoses, PairsThatFailAreReportedWithAReason) {

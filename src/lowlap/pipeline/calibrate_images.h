@@ -31,8 +31,4 @@ Result<std::vector<PairReport>> MeasureImages(Scene* scene,
                                               const RunContext& context,
                                               StageLog* stages);
 
-/// Drops the features that no relative pose, track, landmark or ratio refers
-/// to, and renumbers the others.
-void KeepMatchedFeatures(Scene* scene);
-
 }  // namespace lowlap
