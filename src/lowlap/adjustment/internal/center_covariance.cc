@@ -127,7 +127,7 @@ std::map<PoseId, Mat3> CenterCovariances(
     const Mat3 world_from_frame =
         saved_references[n].cam_from_world.toRotationMatrix().transpose();
     for (const int pose : component.poses) {
-      double* center = const_cast<double*>(cameras.poses[pose].center.data());
+      double* center = builder->CenterBlock(pose);
       const auto found = start_of.find(center);
       if (found == start_of.end()) continue;
       const int size = problem.ParameterBlockTangentSize(center);

@@ -126,7 +126,7 @@ bool BelievePair(const CameraSet& cameras, const StructureState& state,
                  const PairState& pair, double gap_px,
                  const AdjustmentOptions& options, double threshold_px) {
   if (!std::isfinite(gap_px)) return false;  // a line is lost
-  if (pair.used && options.use_lines && options.use_coplanar) {
+  if (pair.used) {
     return PairErrorPx(cameras, state, pair, options.coplanar_residual) <=
            threshold_px;
   }
@@ -231,6 +231,7 @@ Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
   }
   state->lines = std::move(lines);
 
+  if (!options.use_coplanar) return changes;
   const std::vector<double> gaps_px = PairGapsPx(cameras, *state);
   for (std::size_t n = 0; n < gaps_px.size(); ++n) {
     PairState& pair = state->pairs[n];

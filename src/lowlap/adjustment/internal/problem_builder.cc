@@ -1,5 +1,6 @@
 #include "lowlap/adjustment/internal/problem_builder.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lowlap/adjustment/internal/coplanar_costs.h"
@@ -8,6 +9,10 @@
 
 namespace lowlap::internal {
 namespace {
+
+constexpr int kPoseSize = 4 + 3;
+constexpr int kPointSize = 3;
+constexpr int kLineSize = 6;
 
 IntrinsicRefinement RefinementOf(const AdjustmentOptions& options,
                                  const IntrinsicState& intrinsic) {
@@ -35,17 +40,60 @@ ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
   ceres::Problem::Options problem_options;
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   problem_ = std::make_unique<ceres::Problem>(problem_options);
-  for (IntrinsicState& intrinsic : cameras_->intrinsics) {
-    intrinsic.ParametersFromValue();
-  }
-  lines_.resize(state_->lines.size());
-  for (const int n : selection_.lines) {
-    lines_[n] << state_->lines[n].point, state_->lines[n].direction;
-  }
+  CopyIntoBlocks();
   AddPoints();
   AddLines();
   AddPairs();
   SetManifolds();
+}
+
+double* ProblemBuilder::RotationBlock(int pose) {
+  return blocks_.data() + kPoseSize * pose;
+}
+
+double* ProblemBuilder::CenterBlock(int pose) {
+  return RotationBlock(pose) + 4;
+}
+
+double* ProblemBuilder::IntrinsicBlock(int intrinsic) {
+  return RotationBlock(static_cast<int>(cameras_->poses.size())) +
+         kMaxIntrinsicParameters * intrinsic;
+}
+
+double* ProblemBuilder::LineBlock(int line) {
+  return IntrinsicBlock(static_cast<int>(cameras_->intrinsics.size())) +
+         kLineSize * line;
+}
+
+double* ProblemBuilder::PointBlock(int point) {
+  return LineBlock(static_cast<int>(state_->lines.size())) + kPointSize * point;
+}
+
+void ProblemBuilder::CopyIntoBlocks() {
+  blocks_.assign(kPoseSize * cameras_->poses.size() +
+                     kMaxIntrinsicParameters * cameras_->intrinsics.size() +
+                     kLineSize * state_->lines.size() +
+                     kPointSize * state_->points.size(),
+                 0);
+  for (std::size_t n = 0; n < cameras_->poses.size(); ++n) {
+    const PoseState& pose = cameras_->poses[n];
+    const int index = static_cast<int>(n);
+    Eigen::Map<Vec4>(RotationBlock(index)) = pose.cam_from_world.coeffs();
+    Eigen::Map<Vec3>(CenterBlock(index)) = pose.center;
+  }
+  for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
+    IntrinsicState& intrinsic = cameras_->intrinsics[n];
+    intrinsic.ParametersFromValue();
+    std::copy(intrinsic.parameters.begin(), intrinsic.parameters.end(),
+              IntrinsicBlock(static_cast<int>(n)));
+  }
+  for (const int n : selection_.lines) {
+    Eigen::Map<LineParameters>(LineBlock(n)) << state_->lines[n].point,
+        state_->lines[n].direction;
+  }
+  for (const int n : selection_.points) {
+    Eigen::Map<Vec3>(PointBlock(n)) = state_->points[n].position;
+  }
 }
 
 bool ProblemBuilder::IsRefined(int intrinsic) const {
@@ -63,16 +111,14 @@ ceres::LossFunction* ProblemBuilder::MakeLoss(const NoiseScale& noise,
 void ProblemBuilder::AddPoints() {
   ceres::LossFunction* loss = MakeLoss(request_.noise.points, 1);
   for (const int n : selection_.points) {
-    PointTrackState& track = state_->points[n];
-    for (const PointCandidate& candidate : track.candidates) {
+    for (const PointCandidate& candidate : state_->points[n].candidates) {
       if (!candidate.used) continue;
       const CameraView& view = cameras_->views[candidate.view];
-      PoseState& pose = cameras_->poses[view.pose];
-      IntrinsicState& intrinsic = cameras_->intrinsics[view.intrinsic];
+      const IntrinsicState& intrinsic = cameras_->intrinsics[view.intrinsic];
       const bool refined = IsRefined(view.intrinsic);
-      std::vector<double*> blocks = {pose.cam_from_world.coeffs().data(),
-                                     pose.center.data(), track.position.data()};
-      if (refined) blocks.push_back(intrinsic.parameters.data());
+      std::vector<double*> blocks = {RotationBlock(view.pose),
+                                     CenterBlock(view.pose), PointBlock(n)};
+      if (refined) blocks.push_back(IntrinsicBlock(view.intrinsic));
       problem_->AddResidualBlock(
           new PointReprojectionCost(&intrinsic, refined, candidate.pixel_px),
           loss, blocks);
@@ -86,12 +132,11 @@ void ProblemBuilder::AddLines() {
     for (const LineCandidate& candidate : state_->lines[n].candidates) {
       if (!candidate.used) continue;
       const CameraView& view = cameras_->views[candidate.view];
-      PoseState& pose = cameras_->poses[view.pose];
-      IntrinsicState& intrinsic = cameras_->intrinsics[view.intrinsic];
+      const IntrinsicState& intrinsic = cameras_->intrinsics[view.intrinsic];
       const bool refined = IsRefined(view.intrinsic);
-      std::vector<double*> blocks = {pose.cam_from_world.coeffs().data(),
-                                     pose.center.data(), lines_[n].data()};
-      if (refined) blocks.push_back(intrinsic.parameters.data());
+      std::vector<double*> blocks = {RotationBlock(view.pose),
+                                     CenterBlock(view.pose), LineBlock(n)};
+      if (refined) blocks.push_back(IntrinsicBlock(view.intrinsic));
       problem_->AddResidualBlock(
           new LineReprojectionCost(candidate.rays, candidate.weight, intrinsic,
                                    refined),
@@ -117,8 +162,8 @@ void ProblemBuilder::AddPairs() {
       const double focal_px =
           cameras_->IntrinsicOf(term.view).value.MeanFocalPx();
       const std::vector<double*> blocks = {
-          cameras_->poses[cameras_->views[term.view].pose].center.data(),
-          lines_[term.on].data(), lines_[term.to].data()};
+          CenterBlock(cameras_->views[term.view].pose), LineBlock(term.on),
+          LineBlock(term.to)};
       ceres::CostFunction* cost = nullptr;
       if (options_.coplanar_residual == AdjustedCoplanarResidual::kTransfer) {
         cost =
@@ -136,29 +181,28 @@ void ProblemBuilder::AddPairs() {
 
 void ProblemBuilder::SetManifolds() {
   for (const int n : selection_.lines) {
-    problem_->SetManifold(lines_[n].data(), new ceres::LineManifold<3>());
+    problem_->SetManifold(LineBlock(n), new ceres::LineManifold<3>());
   }
   for (const Component& component : components_) {
     for (const int n : component.poses) {
-      PoseState& pose = cameras_->poses[n];
-      double* rotation = pose.cam_from_world.coeffs().data();
+      double* rotation = RotationBlock(n);
       if (request_.fixed_rotations || n == component.reference) {
         problem_->SetParameterBlockConstant(rotation);
       } else {
         problem_->SetManifold(rotation, new ceres::EigenQuaternionManifold());
       }
     }
-    problem_->SetParameterBlockConstant(
-        cameras_->poses[component.reference].center.data());
+    problem_->SetParameterBlockConstant(CenterBlock(component.reference));
     // The reference is the origin of the frame: a sphere about it keeps the
     // length of the baseline.
     if (component.partner >= 0) {
-      problem_->SetManifold(cameras_->poses[component.partner].center.data(),
+      problem_->SetManifold(CenterBlock(component.partner),
                             new ceres::SphereManifold<3>());
     }
   }
-  for (IntrinsicState& intrinsic : cameras_->intrinsics) {
-    double* parameters = intrinsic.parameters.data();
+  for (std::size_t index = 0; index < cameras_->intrinsics.size(); ++index) {
+    const IntrinsicState& intrinsic = cameras_->intrinsics[index];
+    double* parameters = IntrinsicBlock(static_cast<int>(index));
     if (!problem_->HasParameterBlock(parameters)) continue;
     const IntrinsicRefinement refinement = RefinementOf(options_, intrinsic);
     std::vector<int> constant;
@@ -178,14 +222,13 @@ void ProblemBuilder::SetManifolds() {
   }
 }
 
-std::shared_ptr<ceres::ParameterBlockOrdering> ProblemBuilder::Ordering()
-    const {
+std::shared_ptr<ceres::ParameterBlockOrdering> ProblemBuilder::Ordering() {
   auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
   std::vector<double*> blocks;
   problem_->GetParameterBlocks(&blocks);
   for (double* block : blocks) ordering->AddElementToGroup(block, 1);
   for (const int n : selection_.points) {
-    ordering->AddElementToGroup(state_->points[n].position.data(), 0);
+    ordering->AddElementToGroup(PointBlock(n), 0);
   }
   // Two lines of a pair share residuals: only one of them may be eliminated.
   std::vector<std::vector<int>> partners(state_->lines.size());
@@ -202,12 +245,12 @@ std::shared_ptr<ceres::ParameterBlockOrdering> ProblemBuilder::Ordering()
     }
     if (!independent) continue;
     eliminated[n] = 1;
-    ordering->AddElementToGroup(const_cast<double*>(lines_[n].data()), 0);
+    ordering->AddElementToGroup(LineBlock(n), 0);
   }
   return ordering;
 }
 
-int ProblemBuilder::ReducedSize() const {
+int ProblemBuilder::ReducedSize() {
   const auto ordering = Ordering();
   int size = 0;
   std::vector<double*> blocks;
@@ -222,14 +265,27 @@ int ProblemBuilder::ReducedSize() const {
 }
 
 void ProblemBuilder::TakeResults() {
-  for (const int n : selection_.lines) {
-    state_->lines[n].point = lines_[n].head<3>();
-    state_->lines[n].direction = lines_[n].tail<3>().normalized();
+  for (std::size_t n = 0; n < cameras_->poses.size(); ++n) {
+    PoseState& pose = cameras_->poses[n];
+    const int index = static_cast<int>(n);
+    pose.cam_from_world.coeffs() = Eigen::Map<Vec4>(RotationBlock(index));
+    pose.center = Eigen::Map<Vec3>(CenterBlock(index));
   }
   for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
-    if (IsRefined(static_cast<int>(n))) {
-      cameras_->intrinsics[n].ValueFromParameters();
-    }
+    const int index = static_cast<int>(n);
+    if (!IsRefined(index)) continue;
+    IntrinsicState& intrinsic = cameras_->intrinsics[n];
+    std::copy_n(IntrinsicBlock(index), kMaxIntrinsicParameters,
+                intrinsic.parameters.begin());
+    intrinsic.ValueFromParameters();
+  }
+  for (const int n : selection_.lines) {
+    state_->lines[n].point = Eigen::Map<Vec3>(LineBlock(n));
+    state_->lines[n].direction =
+        Eigen::Map<Vec3>(LineBlock(n) + 3).normalized();
+  }
+  for (const int n : selection_.points) {
+    state_->points[n].position = Eigen::Map<Vec3>(PointBlock(n));
   }
 }
 

@@ -11,8 +11,12 @@
 
 namespace lowlap::internal {
 
-/// A ceres::Problem over the poses of `cameras` and copies of the lines, in the
-/// frames of their components. Owns what the problem points to.
+/// A ceres::Problem over copies of the selected poses, intrinsics, lines and
+/// points, in the frames of their components. Owns what the problem points to.
+///
+/// All blocks lie in one array, in the order of their indices: the solver
+/// orders blocks of a group by address, and the order of sums must not depend
+/// on where the heap puts things.
 class ProblemBuilder {
  public:
   ProblemBuilder(const AdjustmentOptions& options, const SolveRequest& request,
@@ -23,10 +27,11 @@ class ProblemBuilder {
   ceres::Problem& problem() { return *problem_; }
   /// Points and an independent set of the lines first: what the Schur
   /// complement eliminates.
-  std::shared_ptr<ceres::ParameterBlockOrdering> Ordering() const;
+  std::shared_ptr<ceres::ParameterBlockOrdering> Ordering();
   /// Degrees of freedom of the blocks that are not eliminated.
-  int ReducedSize() const;
-  /// Lines and intrinsics from the solver's blocks into the state.
+  int ReducedSize();
+  double* CenterBlock(int pose);
+  /// From the solver's blocks into cameras and state.
   void TakeResults();
 
  private:
@@ -35,6 +40,11 @@ class ProblemBuilder {
   void AddPairs();
   void SetManifolds();
   bool IsRefined(int intrinsic) const;
+  double* RotationBlock(int pose);
+  double* IntrinsicBlock(int intrinsic);
+  double* PointBlock(int point);
+  double* LineBlock(int line);
+  void CopyIntoBlocks();
   /// Loss for residuals in pixels, in units of the noise.
   ceres::LossFunction* MakeLoss(const NoiseScale& noise, double weight);
 
@@ -45,7 +55,7 @@ class ProblemBuilder {
   CameraSet* cameras_;
   StructureState* state_;
 
-  std::vector<LineParameters> lines_;  // by index in the state
+  std::vector<double> blocks_;
   std::vector<std::unique_ptr<ceres::LossFunction>> losses_;
   std::unique_ptr<ceres::Problem> problem_;
 };

@@ -101,13 +101,15 @@ std::vector<Component> FindComponents(const CameraSet& cameras,
                                       const StructureState& state,
                                       const ProblemSelection& selection) {
   PoseSets sets(cameras.poses.size());
-  std::vector<std::size_t> observations(cameras.poses.size(), 0);
+  std::vector<char> observed(cameras.poses.size(), 0);
+  std::vector<std::size_t> candidates(cameras.poses.size(), 0);
   const auto join = [&](const auto& track) {
     const int first = FirstPose(cameras, track);
     for (const auto& candidate : track.candidates) {
-      if (!candidate.used) continue;
       const int pose = cameras.views[candidate.view].pose;
-      ++observations[pose];
+      ++candidates[pose];
+      if (!candidate.used) continue;
+      observed[pose] = 1;
       sets.Union(first, pose);
     }
   };
@@ -121,13 +123,13 @@ std::vector<Component> FindComponents(const CameraSet& cameras,
   std::map<int, Component> by_root;  // then ordered by their first pose
   std::vector<int> roots;
   for (std::size_t n = 0; n < cameras.poses.size(); ++n) {
-    if (observations[n] == 0) continue;
+    if (!observed[n]) continue;
     const int pose = static_cast<int>(n), root = sets.Find(pose);
     Component& component = by_root[root];
     if (component.poses.empty()) roots.push_back(root);
     component.poses.push_back(pose);
     if (component.reference < 0 ||
-        observations[pose] > observations[component.reference]) {
+        candidates[pose] > candidates[component.reference]) {
       component.reference = pose;
     }
   }

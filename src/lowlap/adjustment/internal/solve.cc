@@ -35,14 +35,14 @@ class ProgressCallback final : public ceres::IterationCallback {
 
 ceres::Solver::Options SolverOptions(const AdjustmentOptions& options,
                                      const SolveRequest& request,
-                                     const ProblemBuilder& builder) {
+                                     ProblemBuilder* builder) {
   ceres::Solver::Options solver;
   // The dense reduced system of a hundred cameras factorises in milliseconds.
   constexpr int kMaxDenseSize = 600;
-  solver.linear_solver_type = builder.ReducedSize() <= kMaxDenseSize
+  solver.linear_solver_type = builder->ReducedSize() <= kMaxDenseSize
                                   ? ceres::DENSE_SCHUR
                                   : ceres::SPARSE_SCHUR;
-  solver.linear_solver_ordering = builder.Ordering();
+  solver.linear_solver_ordering = builder->Ordering();
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = request.function_tolerance;
   solver.parameter_tolerance = 1e-10;
@@ -100,7 +100,7 @@ Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
   ProblemBuilder builder(options, request, selection, components, cameras,
                          state);
   ceres::Solver::Options solver_options =
-      SolverOptions(options, request, builder);
+      SolverOptions(options, request, &builder);
   ProgressCallback progress(context, request.stage, options.max_iterations);
   solver_options.callbacks.push_back(&progress);
   ceres::Solver::Summary summary;

@@ -1,0 +1,156 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/adjustment/structure_builder.h"
+#include "test_scene.h"
+#include "tests/support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using test::ComparePoses;
+using test::MakeTestScene;
+using test::TestScene;
+using test::TestSceneOptions;
+using testing::IsOk;
+
+// No feature is seen by three views: only coplanar pairs carry the scale.
+TestSceneOptions ChainOptions() {
+  TestSceneOptions options;
+  options.max_point_views = 2;
+  options.max_line_views = 2;
+  options.num_points = 400;
+  options.num_lines = 400;
+  options.pairs_per_triplet = 60;
+  return options;
+}
+
+struct Outcome {
+  double before = 0;
+  double after = 0;
+  AdjustmentSummary summary;
+};
+
+Outcome RunChain(const TestSceneOptions& options, double log_scale_stddev,
+                 const AdjustmentOptions& adjustment) {
+  TestScene test = MakeTestScene(options);
+  test::PerturbPoses(0.002, 0, options.seed + 50, &test.scene);
+  test::PerturbScales(log_scale_stddev, options.seed + 70, &test.scene);
+  Outcome outcome;
+  EXPECT_THAT(BuildStructure(&test.scene, {}, {}), IsOk());
+  outcome.before = ComparePoses(test.true_poses, test.scene).mean_center;
+  const Result<AdjustmentSummary> summary =
+      AdjustScene(&test.scene, adjustment, {});
+  EXPECT_THAT(summary, IsOk());
+  if (summary) outcome.summary = *summary;
+  outcome.after = ComparePoses(test.true_poses, test.scene).mean_center;
+  return outcome;
+}
+
+class CoplanarAdjustmentTest
+    : public ::testing::TestWithParam<AdjustedCoplanarResidual> {
+ protected:
+  AdjustmentOptions Options() const {
+    AdjustmentOptions options;
+    options.coplanar_residual = GetParam();
+    return options;
+  }
+};
+
+TEST_P(CoplanarAdjustmentTest, PairsBringTheScaleBackWithoutNoise) {
+  const Outcome outcome = RunChain(ChainOptions(), 0.05, Options());
+  EXPECT_GT(outcome.before, 0.02);
+  EXPECT_LT(outcome.after, 0.0015);
+  EXPECT_EQ(outcome.summary.components, 1u);
+  EXPECT_GT(outcome.summary.coplanar.observations_used, 150u);
+}
+
+TEST_P(CoplanarAdjustmentTest, PairsImproveAChainWithNoiseAndWrongPairs) {
+  double before = 0, after = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    TestSceneOptions options = ChainOptions();
+    options.noise_px = 0.5;
+    options.wrong_pairs = 0.2;
+    options.seed = seed;
+    const Outcome outcome = RunChain(options, 0.05, Options());
+    before += outcome.before;
+    after += outcome.after;
+    EXPECT_LT(outcome.after, 0.03);
+  }
+  EXPECT_LT(after, 0.5 * before);
+}
+
+TEST_P(CoplanarAdjustmentTest, GoodScenesAreNotHarmed) {
+  // Points and lines of three views determine everything; a third of the pairs
+  // is wrong.
+  double with_pairs = 0, without = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    TestSceneOptions options = ChainOptions();
+    options.max_point_views = 3;
+    options.max_line_views = 3;
+    options.noise_px = 0.5;
+    options.wrong_pairs = 0.33;
+    options.seed = seed;
+    AdjustmentOptions no_pairs;
+    no_pairs.use_coplanar = false;
+    with_pairs += RunChain(options, 0.02, Options()).after;
+    without += RunChain(options, 0.02, no_pairs).after;
+  }
+  EXPECT_LT(with_pairs, 1.1 * without);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Residuals, CoplanarAdjustmentTest,
+    ::testing::Values(AdjustedCoplanarResidual::kTransfer,
+                      AdjustedCoplanarResidual::kImageDistance),
+    [](const auto& parameter) {
+      return parameter.param == AdjustedCoplanarResidual::kTransfer
+                 ? "Transfer"
+                 : "ImageDistance";
+    });
+
+TEST(CoplanarChainTest, WithoutPairsAChainKeepsItsScales) {
+  // Nothing measures the scales: they must neither drift nor explode.
+  AdjustmentOptions no_pairs;
+  no_pairs.use_coplanar = false;
+  const Outcome outcome = RunChain(ChainOptions(), 0.05, no_pairs);
+  EXPECT_LT(outcome.after, 1.5 * outcome.before);
+  EXPECT_EQ(outcome.summary.components, 1u);
+}
+
+TEST(CoplanarChainTest, LinesOnlyChain) {
+  TestSceneOptions options = ChainOptions();
+  options.num_points = 0;
+  options.max_line_views = 3;
+  options.noise_px = 0.3;
+  const Outcome outcome = RunChain(options, 0.03, {});
+  EXPECT_LT(outcome.after, 0.5 * outcome.before);
+}
+
+TEST(CoplanarChainTest, ReportedPairsAreThoseOfTheScene) {
+  TestSceneOptions options = ChainOptions();
+  options.noise_px = 0.5;
+  options.wrong_pairs = 0.3;
+  TestScene test = MakeTestScene(options);
+  const Result<StructureSummary> structure =
+      BuildStructure(&test.scene, {}, {});
+  ASSERT_THAT(structure, IsOk());
+  const Result<AdjustmentSummary> summary = AdjustScene(&test.scene, {}, {});
+  ASSERT_THAT(summary, IsOk());
+  EXPECT_EQ(summary->coplanar.observations_used,
+            test.scene.coplanar_pairs.size());
+  EXPECT_EQ(summary->coplanar.observations_used +
+                summary->coplanar.observations_dropped,
+            structure->coplanar_pairs);
+  std::size_t wrong = 0;
+  for (const CoplanarPair& pair : test.scene.coplanar_pairs) {
+    wrong +=
+        test.wall_of_line.at(pair.first) != test.wall_of_line.at(pair.second);
+  }
+  EXPECT_LT(wrong, 0.1 * test.scene.coplanar_pairs.size());
+}
+
+}  // namespace
+}  // namespace lowlap
