@@ -27,12 +27,12 @@ struct PointFeatures {
 };
 
 struct PointOptions {
-  /// Keypoints kept per image, spread evenly. More of them help thin overlaps
-  /// and cost quadratic matching time.
+  /// Keypoints kept per image. More of them help thin overlaps and cost
+  /// quadratic matching time.
   int max_points = 12000;
   /// Least contrast of a blob, as in Lowe 2004 (grey values in [0, 1],
   /// divided by the number of scales per octave).
-  double contrast_threshold = 0.02;
+  double contrast_threshold = 0.007;
   /// Greatest ratio of principal curvatures.
   double edge_threshold = 10.0;
 
@@ -41,9 +41,9 @@ struct PointOptions {
 
 /// SIFT keypoints (Lowe 2004, by OpenCV) with root-SIFT descriptors, sorted by
 /// position; the same for any number of threads. When there are more than
-/// `max_points`, every cell of a grid keeps its strongest responses, so that
-/// no part of the image is starved. An image without texture, or too small for
-/// SIFT, has no keypoints.
+/// `max_points`, three quarters of the selection are the strongest, and the
+/// rest is shared out evenly, so that no part of the image is starved. An image
+/// without texture, or too small for SIFT, has no keypoints.
 Result<PointFeatures> DetectPoints(const GrayImage& image,
                                    const PointOptions& options);
 
