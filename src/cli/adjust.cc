@@ -72,7 +72,7 @@ int Adjust(const Flags& flags) {
   summary.stages = stages.stages();
   Status written = PrepareOutputFolder(flags.output);
   if (written) {
-    written = WriteOutputs(*scene, ToJson(summary, *scene), flags.output);
+    written = WriteOutputs(*scene, summary, flags.output);
   }
   if (!written) return Fail(written.error());
   const AdjustmentSummary& adjustment = *summary.solve->adjustment;

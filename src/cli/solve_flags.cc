@@ -195,7 +195,7 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
   summary.solve = std::move(*result);
   summary.stages = stages->stages();
   Status written = PrepareOutputFolder(output);
-  if (written) written = WriteOutputs(scene, ToJson(summary, scene), output);
+  if (written) written = WriteOutputs(scene, summary, output);
   if (!written) return Fail(written.error());
 
   PrintPoses(summary.solve->poses, scene);
@@ -208,7 +208,7 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
   }
   PrintCost(summary.stages);
   std::printf(
-      "written to %s: sfm_data.json scene.lowlap cloud.ply "
+      "written to %s: report.html sfm_data.json scene.lowlap cloud.ply "
       "summary.json\n",
       output.c_str());
   return 0;

@@ -99,11 +99,11 @@ TEST_F(Cli, SimulateSolveAndTheFilesThatComeOut) {
       Lowlap("solve " + Path("room.lowlap") + " -o " + Path("out"));
   ASSERT_EQ(solved.exit_code, 0) << solved.output;
   EXPECT_THAT(solved.output, HasSubstr("cameras placed: 8/8"));
-  for (const char* name :
-       {"sfm_data.json", "scene.lowlap", "summary.json", "cloud.ply"}) {
+  for (const char* name : {"sfm_data.json", "scene.lowlap", "summary.json",
+                           "cloud.ply", "report.html"}) {
     EXPECT_TRUE(fs::exists(Path("out") + "/" + name)) << name;
   }
-  EXPECT_EQ(FilesIn("out"), 4u);
+  EXPECT_EQ(FilesIn("out"), 5u);
   const auto text = ReadSceneJson(Path("out/sfm_data.json"));
   const auto binary = ReadSceneBinary(Path("out/scene.lowlap"));
   ASSERT_TRUE(text) << text.error().ToString();

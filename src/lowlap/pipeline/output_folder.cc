@@ -8,6 +8,7 @@
 #include "lowlap/io/ply.h"
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/io/scene_json.h"
+#include "lowlap/pipeline/run_report.h"
 
 namespace lowlap {
 namespace fs = std::filesystem;
@@ -24,18 +25,27 @@ Status PrepareOutputFolder(const std::string& folder) {
   return {};
 }
 
-Status WriteOutputs(const Scene& scene, const std::string& summary_json,
+Status WriteOutputs(Scene scene, const RunSummary& summary,
                     const std::string& folder) {
+  if (!scene.root_path.empty()) {
+    std::error_code error;
+    const fs::path absolute = fs::absolute(scene.root_path, error);
+    if (!error) scene.root_path = absolute.lexically_normal().string();
+  }
   const auto path = [&](const char* name) {
     return (fs::path(folder) / name).string();
   };
   Status status = WriteSceneJson(scene, path("sfm_data.json"));
   if (status) status = WriteSceneBinary(scene, path("scene.lowlap"));
   if (status) status = WritePly(scene, path("cloud.ply"));
+  if (status) {
+    status =
+        WriteReport(scene, MakeReport(summary, scene), path("report.html"));
+  }
   if (!status) return status;
   return WriteFileAtomically(path("summary.json"),
                              [&](std::ostream& stream) -> Status {
-                               stream << summary_json << '\n';
+                               stream << ToJson(summary, scene) << '\n';
                                return {};
                              });
 }

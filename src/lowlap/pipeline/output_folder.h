@@ -3,6 +3,7 @@
 #include <string>
 
 #include "lowlap/core/result.h"
+#include "lowlap/pipeline/summary_json.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -12,9 +13,11 @@ namespace lowlap {
 Status PrepareOutputFolder(const std::string& folder);
 
 /// Writes what every solving command leaves: sfm_data.json (OpenMVG loads it),
-/// scene.lowlap (everything), cloud.ply (points, lines, cameras) and
-/// summary.json (the given text). Each file appears whole or not at all.
-Status WriteOutputs(const Scene& scene, const std::string& summary_json,
+/// scene.lowlap (everything), cloud.ply (points, lines, cameras), report.html
+/// (for a person) and summary.json (for a program). Each file appears whole or
+/// not at all. A relative root_path is made absolute, since the files move away
+/// from what it was relative to.
+Status WriteOutputs(Scene scene, const RunSummary& summary,
                     const std::string& folder);
 
 }  // namespace lowlap

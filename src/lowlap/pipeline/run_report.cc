@@ -1,0 +1,146 @@
+#include "lowlap/pipeline/run_report.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace lowlap {
+namespace {
+
+std::string Number(double value, const char* format = "%.4g") {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string NameOf(const Scene& scene, ViewId view) {
+  return scene.views.at(view).filename;
+}
+
+std::string Support(const KindSupport& kind) {
+  return std::to_string(kind.inliers) + " of " +
+         std::to_string(kind.candidates);
+}
+
+ReportTable RatioTable(const Scene& scene) {
+  ReportTable table;
+  table.title = "Scale ratios";
+  table.note =
+      "Baseline (middle, last) over baseline (first, middle). A ratio is used "
+      "if chance does not explain it (log10 NFA below 0); supports are inliers "
+      "of candidates.";
+  table.columns = {"first, middle, last", "ratio",  "std of log",
+                   "log10 NFA",           "points", "lines",
+                   "coplanar pairs",      "verdict"};
+  for (const ScaleRatio& ratio : scene.scale_ratios) {
+    table.rows.push_back({NameOf(scene, ratio.views.first) + ", " +
+                              NameOf(scene, ratio.views.middle) + ", " +
+                              NameOf(scene, ratio.views.last),
+                          Number(std::exp(ratio.log_ratio), "%.4f"),
+                          Number(ratio.log_ratio_stddev, "%.4f"),
+                          Number(ratio.log10_nfa, "%.1f"),
+                          Support(ratio.points), Support(ratio.lines),
+                          Support(ratio.coplanar),
+                          RatioVerdictName(ratio.verdict)});
+  }
+  return table;
+}
+
+ReportTable PairTable(const std::vector<PairReport>& pairs,
+                      const Scene& scene) {
+  ReportTable table;
+  table.title = "Pairs of views";
+  table.columns = {"pair",      "point matches", "inliers", "line matches",
+                   "plausible", "log10 NFA",     "geometry"};
+  for (const PairReport& pair : pairs) {
+    table.rows.push_back({NameOf(scene, pair.views.first) + ", " +
+                              NameOf(scene, pair.views.second),
+                          std::to_string(pair.num_point_matches),
+                          std::to_string(pair.num_point_inliers),
+                          std::to_string(pair.num_line_matches),
+                          std::to_string(pair.num_line_inliers),
+                          Number(pair.log10_nfa, "%.1f"),
+                          pair.accepted ? pair.geometry : pair.reason});
+  }
+  return table;
+}
+
+ReportTable ErrorTable(const PoseEvaluation& evaluation) {
+  ReportTable table;
+  table.title = "Cameras against the truth";
+  table.note =
+      "After a similarity alignment of the centres; positions in the unit of "
+      "the truth.";
+  table.columns = {"camera", "position error", "rotation error (deg)"};
+  for (const ViewPoseError& view : evaluation.views) {
+    table.rows.push_back({view.name, Number(view.position_error),
+                          Number(view.rotation_error_deg)});
+  }
+  return table;
+}
+
+ReportTable CostTable(const std::vector<StageCost>& stages) {
+  ReportTable table;
+  table.title = "Cost";
+  table.columns = {"stage", "wall (s)", "CPU (s)"};
+  for (const StageCost& stage : stages) {
+    table.rows.push_back({stage.name, Number(stage.wall_s, "%.2f"),
+                          Number(stage.cpu_s, "%.2f")});
+  }
+  return table;
+}
+
+void AddSolve(const SolveResult& solve, const Scene& scene,
+              ReportContent* content) {
+  const PoseSummary& poses = solve.poses;
+  content->figures.emplace_back("cameras placed",
+                                std::to_string(poses.num_placed) + " of " +
+                                    std::to_string(poses.num_views));
+  content->figures.emplace_back("points",
+                                std::to_string(scene.structure.size()));
+  content->figures.emplace_back("lines",
+                                std::to_string(scene.line_structure.size()));
+  if (solve.adjustment) {
+    content->figures.emplace_back(
+        "point RMSE",
+        Number(solve.adjustment->points.final_rmse_px, "%.2f px"));
+    content->figures.emplace_back(
+        "line RMSE", Number(solve.adjustment->lines.final_rmse_px, "%.2f px"));
+  }
+  const auto names = [&](const std::vector<ViewId>& views) {
+    std::string list;
+    for (const ViewId view : views) list += " " + NameOf(scene, view);
+    return list;
+  };
+  if (!poses.unplaced.empty()) {
+    content->warnings.push_back(
+        "Not placed, since no scale joins them to the "
+        "others:" +
+        names(poses.unplaced));
+  }
+  for (const ViewPair& edge : poses.outlier_edges) {
+    content->warnings.push_back("Relative pose left out as contradictory: " +
+                                NameOf(scene, edge.first) + ", " +
+                                NameOf(scene, edge.second));
+  }
+}
+
+}  // namespace
+
+ReportContent MakeReport(const RunSummary& summary, const Scene& scene) {
+  ReportContent content;
+  content.title = "lowlap " + summary.command;
+  if (summary.solve) AddSolve(*summary.solve, scene, &content);
+  if (summary.evaluation && summary.evaluation->position.count > 0) {
+    content.figures.emplace_back("mean position error",
+                                 Number(summary.evaluation->position.mean));
+    content.tables.push_back(ErrorTable(*summary.evaluation));
+  }
+  if (!scene.scale_ratios.empty()) content.tables.push_back(RatioTable(scene));
+  if (!summary.pairs.empty()) {
+    content.tables.push_back(PairTable(summary.pairs, scene));
+  }
+  content.tables.push_back(CostTable(summary.stages));
+  return content;
+}
+
+}  // namespace lowlap
