@@ -117,10 +117,17 @@ void AddSolve(const SolveResult& solve, const Scene& scene,
         "others:" +
         names(poses.unplaced));
   }
-  for (const ViewPair& edge : poses.outlier_edges) {
-    content->warnings.push_back("Relative pose left out as contradictory: " +
-                                NameOf(scene, edge.first) + ", " +
-                                NameOf(scene, edge.second));
+  if (!poses.outlier_edges.empty()) {
+    std::string list;
+    for (const ViewPair& edge : poses.outlier_edges) {
+      list += (list.empty() ? " " : ", ") + NameOf(scene, edge.first) + " - " +
+              NameOf(scene, edge.second);
+    }
+    content->warnings.push_back(
+        std::to_string(poses.outlier_edges.size()) +
+        " relative poses were left out because their rotations contradict the "
+        "others:" +
+        list);
   }
 }
 
