@@ -31,6 +31,7 @@ using internal::StructureState;
 
 constexpr char kFinalStage[] = "final";
 constexpr double kRoughTolerance = 1e-5;
+constexpr double kFirstTolerance = 1e-3;
 
 struct KindRmse {
   double points_px = 0;
@@ -189,8 +190,14 @@ class Adjuster {
     // Before the observations are settled, a rough optimum will do.
     const double rough = std::max(options_.function_tolerance, kRoughTolerance);
     noise_ = EstimateAllNoise(*cameras_, *state_, options_);
+    if (options_.use_lines && options_.use_coplanar &&
+        options_.max_outlier_rounds > 0) {
+      SelectPairs(*cameras_, noise_.coplanar.threshold_px, state_);
+    }
     if (options_.fixed_rotations_first) {
-      if (Status status = Solve("fixed rotations", true, rough); !status) {
+      if (Status status =
+              Solve("fixed rotations", true, std::max(rough, kFirstTolerance));
+          !status) {
         return status;
       }
     }
@@ -306,6 +313,8 @@ Status AdjustmentOptions::Validate() const {
   for (const auto& [value, name] :
        {std::pair(outlier_round_tolerance, "outlier_round_tolerance"),
         std::pair(max_relative_depth_stddev, "max_relative_depth_stddev"),
+        std::pair(max_relative_line_depth_stddev,
+                  "max_relative_line_depth_stddev"),
         std::pair(min_two_view_line_overlap, "min_two_view_line_overlap"),
         std::pair(function_tolerance, "function_tolerance")}) {
     if (!(value >= 0) || !std::isfinite(value)) {

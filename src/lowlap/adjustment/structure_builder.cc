@@ -124,7 +124,7 @@ Status BuildLines(const CameraSet& cameras, const StructureOptions& options,
   const std::vector<std::size_t> all = AllOf(lines->size());
   internal::LineTriangulationLimits limits;
   limits.noise_px = ImageNoisePx(verification_px);
-  limits.max_relative_depth_stddev = options.max_relative_depth_stddev;
+  limits.max_relative_depth_stddev = options.max_relative_line_depth_stddev;
   limits.min_two_view_overlap = options.min_two_view_line_overlap;
   if (options.max_line_error_px > 0) {
     limits.threshold_px = options.max_line_error_px;
@@ -153,6 +153,8 @@ Status StructureOptions::Validate() const {
        {std::pair(max_point_error_px, "max_point_error_px"),
         std::pair(max_line_error_px, "max_line_error_px"),
         std::pair(max_relative_depth_stddev, "max_relative_depth_stddev"),
+        std::pair(max_relative_line_depth_stddev,
+                  "max_relative_line_depth_stddev"),
         std::pair(min_two_view_line_overlap, "min_two_view_line_overlap"),
         std::pair(min_coplanar_angle_deg, "min_coplanar_angle_deg")}) {
     if (!(value >= 0) || !std::isfinite(value)) return invalid(name);

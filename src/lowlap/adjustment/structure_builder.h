@@ -21,11 +21,14 @@ struct StructureOptions {
   double max_point_error_px = 0;
   double max_line_error_px = 0;
 
-  /// A landmark is kept if the standard deviation of its depth, propagated
+  /// A point is kept if the standard deviation of its depth, propagated
   /// from the image noise, is at most this share of the depth. It takes the
   /// place of a least triangulation angle: it knows the focal length, the
   /// noise and the number of views.
   double max_relative_depth_stddev = 0.3;
+  /// The same for lines, at the worse end of their extent. Lines near an
+  /// epipolar plane say little and make the adjustment slow.
+  double max_relative_line_depth_stddev = 0.1;
 
   /// A line seen in two views fits them always. It is kept if its segments,
   /// lifted onto it, share at least this part of the shorter one.

@@ -94,7 +94,8 @@ PointTriangulationLimits PointLimits(const AdjustmentOptions& options,
 LineTriangulationLimits LineLimits(const AdjustmentOptions& options,
                                    const NoiseScale& noise) {
   return {noise.threshold_px, noise.stddev_px,
-          options.max_relative_depth_stddev, options.min_two_view_line_overlap};
+          options.max_relative_line_depth_stddev,
+          options.min_two_view_line_overlap};
 }
 
 NoiseBounds BoundsOf(const AdjustmentOptions& options) {
@@ -188,6 +189,14 @@ NoiseLevels EstimateAllNoise(const CameraSet& cameras,
   noise.coplanar = EstimatePairNoise(cameras, PairGapsPx(cameras, state),
                                      noise.lines, bounds);
   return noise;
+}
+
+void SelectPairs(const CameraSet& cameras, double threshold_px,
+                 StructureState* state) {
+  const std::vector<double> gaps_px = PairGapsPx(cameras, *state);
+  for (std::size_t n = 0; n < gaps_px.size(); ++n) {
+    state->pairs[n].used = gaps_px[n] <= threshold_px;
+  }
 }
 
 Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,

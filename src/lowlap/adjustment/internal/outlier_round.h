@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/adjustment/internal/structure_state.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
@@ -18,6 +18,10 @@ Status FollowPoses(const AdjustmentOptions& options,
 NoiseLevels EstimateAllNoise(const CameraSet& cameras,
                              const StructureState& state,
                              const AdjustmentOptions& options);
+
+/// Takes those pairs into use whose gap (PairGapPx) is within the threshold.
+void SelectPairs(const CameraSet& cameras, double threshold_px,
+                 StructureState* state);
 
 struct ObservationChanges {
   std::size_t changed = 0;  // candidates and pairs whose use changed

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/adjustment/internal/structure_state.h"
 
 namespace lowlap::internal {

@@ -3,7 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/adjustment/adjustment_options.h"
+#include "lowlap/adjustment/adjustment_summary.h"
 #include "lowlap/adjustment/internal/structure_state.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <map>
+
+#include "lowlap/core/ids.h"
+#include "lowlap/core/result.h"
+
+namespace lowlap {
+
+/// What the adjustment of a coplanar pair minimises. P_ab is the point of line
+/// a that is closest to line b, P_ba the other way round.
+enum class AdjustedCoplanarResidual {
+  /// In every view of b: the distance of the ray to P_ab from the
+  /// interpretation plane of b; in every view of a: P_ba and a. Reacts whatever
+  /// way the plane faces.
+  kTransfer,
+  /// In every view that sees both: the difference of the images of P_ab and
+  /// P_ba (the paper's, section 5). Blind where the plane faces the camera.
+  kImageDistance,
+};
+
+/// Which parts of an intrinsic are unknowns.
+struct IntrinsicRefinement {
+  bool focal = false;  // fx and fy, each
+  bool principal_point = false;
+  bool distortion = false;
+
+  bool Any() const { return focal || principal_point || distortion; }
+};
+
+struct AdjustmentOptions {
+  bool use_points = true;
+  bool use_lines = true;
+  bool use_coplanar = true;  // needs use_lines
+  AdjustedCoplanarResidual coplanar_residual =
+      AdjustedCoplanarResidual::kTransfer;
+
+  /// The intrinsics to refine; those not named stay fixed.
+  std::map<IntrinsicId, IntrinsicRefinement> refine_intrinsics;
+
+  /// First adjust centres and structure with the rotations held. Off where the
+  /// rotations are worse than the centres.
+  bool fixed_rotations_first = true;
+
+  /// Rounds of dropping, re-triangulating and completing after the first
+  /// solve. 0: the observations are taken as they are.
+  int max_outlier_rounds = 8;
+  /// The rounds end when less than this share of the observations changed.
+  double outlier_round_tolerance = 1e-3;
+
+  /// Bounds of the thresholds, which come from the residuals a contrario. The
+  /// lower bound keeps exact data from rejecting its own rounding errors.
+  double min_threshold_px = 0.5;
+  double max_threshold_px = 200;
+  /// As in StructureOptions, for landmarks that are triangulated again.
+  double max_relative_depth_stddev = 0.3;
+  double max_relative_line_depth_stddev = 0.1;
+  double min_two_view_line_overlap = 0.2;
+
+  int max_iterations = 100;  // of each solve
+  /// The final solve ends when the cost changes by less than this share; those
+  /// before it earlier.
+  double function_tolerance = 1e-8;
+
+  /// Covariances of the centres, from the Hessian at the solution.
+  bool compute_center_covariances = false;
+
+  /// kInvalidArgument for values without a meaning.
+  Status Validate() const;
+};
+
+}  // namespace lowlap

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lowlap/core/ids.h"
+#include "lowlap/geometry/types.h"
+
+namespace lowlap {
+
+/// One kind of residual (points, lines, coplanar pairs). "Observations" of the
+/// coplanar kind are the pairs.
+struct KindAdjustment {
+  std::size_t landmarks = 0;  // with observations in use, at the end
+  std::size_t observations_used = 0;
+  std::size_t observations_dropped = 0;  // candidates not in use at the end
+  /// Of the observations in use: at the start, and at the end.
+  double initial_rmse_px = 0;
+  double final_rmse_px = 0;
+  double stddev_px = 0;     // robust noise level; weight = 1 / stddev^2
+  double threshold_px = 0;  // a contrario
+};
+
+/// One run of the solver.
+struct SolveReport {
+  std::string
+      stage;  // "fixed rotations", "everything", "round 1", ..., "final"
+  std::size_t residuals = 0;
+  std::size_t parameters = 0;
+  double initial_cost = 0;  // in units of the noise, halved squares
+  double final_cost = 0;
+  int iterations = 0;
+  bool converged = false;
+  double seconds = 0;
+};
+
+struct AdjustmentSummary {
+  double initial_cost = 0;  // of the first solve
+  double final_cost = 0;    // of the last; its thresholds may differ
+  KindAdjustment points;
+  KindAdjustment lines;
+  KindAdjustment coplanar;
+
+  std::size_t poses_adjusted = 0;
+  /// Left where they were: nothing that is in use observes them.
+  std::vector<PoseId> poses_without_observations;
+  /// Sets of poses that share structure; each has a gauge of its own.
+  std::size_t components = 0;
+  /// Observations of the input's landmarks in views without pose or intrinsic;
+  /// they are not in the result.
+  std::size_t observations_without_camera = 0;
+  /// Landmarks of the input that are gone at the end, and new ones.
+  std::size_t landmarks_removed = 0;
+  std::size_t landmarks_added = 0;
+
+  std::vector<SolveReport> solves;
+  int iterations = 0;  // over all solves
+  int outlier_rounds = 0;
+  bool converged = false;  // last solve, and the rounds came to rest
+  double seconds = 0;
+
+  /// World units squared, in the gauge of the adjustment (the reference pose
+  /// and the length of one baseline per component have none). Empty unless
+  /// asked for.
+  std::map<PoseId, Mat3> center_covariances;
+};
+
+}  // namespace lowlap
