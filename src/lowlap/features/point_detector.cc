@@ -13,8 +13,8 @@ namespace {
 
 // Below this side the pyramid of SIFT has no level to look for a blob in.
 constexpr int kMinSidePx = 16;
-// The selection grid has about this many cells along the longer side.
-constexpr int kGridCells = 24;
+// The cells of the selection grid get about this many points each.
+constexpr double kPointsPerCell = 20;
 // Share of the selection that goes by strength alone. Measured on photographs
 // of facades: an even selection alone loses a third of the matches.
 constexpr double kStrongestShare = 0.75;
@@ -42,19 +42,20 @@ void SelectPoints(const cv::Size& image, int max_points,
     return ra != rb ? ra > rb : a < b;
   });
 
+  const int cells =
+      std::max(1, static_cast<int>(std::sqrt(max_points / kPointsPerCell)));
   const double cell_px =
-      std::max(image.width, image.height) / static_cast<double>(kGridCells);
+      std::max(image.width, image.height) / static_cast<double>(cells);
   const auto num_strongest =
       static_cast<std::size_t>(kStrongestShare * max_points);
-  std::vector<int> taken(kGridCells * kGridCells, 0);
+  std::vector<int> taken(static_cast<std::size_t>(cells) * cells, 0);
   std::vector<int> round(count, 0);
   for (std::size_t rank = 0; rank < count; ++rank) {
     const cv::Point2f& p = (*keypoints)[order[rank]].pt;
     const int column =
-        std::clamp(static_cast<int>(p.x / cell_px), 0, kGridCells - 1);
-    const int row =
-        std::clamp(static_cast<int>(p.y / cell_px), 0, kGridCells - 1);
-    const int before = taken[row * kGridCells + column]++;
+        std::clamp(static_cast<int>(p.x / cell_px), 0, cells - 1);
+    const int row = std::clamp(static_cast<int>(p.y / cell_px), 0, cells - 1);
+    const int before = taken[row * cells + column]++;
     if (rank >= num_strongest) round[order[rank]] = before;
   }
   std::stable_sort(

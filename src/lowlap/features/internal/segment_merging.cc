@@ -12,8 +12,14 @@ namespace {
 constexpr double kLateralTolerance = 0.75;
 // Pieces of one edge are this straight, in pixels of the finer level.
 constexpr double kStraightness = 1.2;
+// Collinear segments are one if the gap between them is below this share of the
+// shorter: a bar or a shadow across the edge.
+constexpr double kMaxGapShare = 0.15;
 // Share of a merged segment, or of a coarse one, that pieces must cover.
 constexpr double kMinCover = 0.5;
+
+// Of a level, in pixels of the full resolution.
+double PixelSize(int level) { return 1 << level; }
 
 // A segment as axis: position along and distance across.
 struct Axis {
@@ -104,7 +110,7 @@ RawSegment Span(const std::vector<RawSegment>& pieces) {
 bool IsStraight(const RawSegment& span, const std::vector<RawSegment>& pieces) {
   const Axis axis(span.start_px, span.end_px);
   for (const RawSegment& piece : pieces) {
-    const double tolerance = kStraightness * std::ldexp(1.0, piece.level);
+    const double tolerance = kStraightness * PixelSize(piece.level);
     if (!LiesOn(axis, piece, tolerance)) return false;
   }
   return true;
@@ -148,14 +154,17 @@ std::vector<std::vector<RawSegment>> GroupCollinear(
 // Lets one coarse segment guide the merging of `segments`.
 void ApplyGuide(const RawSegment& guide, std::vector<RawSegment>* segments) {
   const Axis axis(guide.start_px, guide.end_px);
-  const double tolerance = kLateralTolerance * std::ldexp(1.0, guide.level);
-  std::vector<RawSegment> pieces, others;
-  for (const RawSegment& segment : *segments) {
-    const bool is_piece = LiesOn(axis, segment, tolerance) &&
-                          OverlapWithAxis(axis, Project(axis, segment)) >=
-                              0.5 * segment.LengthPx();
-    (is_piece ? pieces : others).push_back(segment);
-  }
+  const double tolerance = kLateralTolerance * PixelSize(guide.level);
+  const auto is_piece = [&](const RawSegment& segment) {
+    return LiesOn(axis, segment, tolerance) &&
+           OverlapWithAxis(axis, Project(axis, segment)) >=
+               0.5 * segment.LengthPx();
+  };
+  const auto first_piece =
+      std::stable_partition(segments->begin(), segments->end(),
+                            [&](const RawSegment& s) { return !is_piece(s); });
+  const std::vector<RawSegment> pieces(first_piece, segments->end());
+  segments->erase(first_piece, segments->end());
   if (pieces.empty()) {
     segments->push_back(guide);
     return;
@@ -173,8 +182,41 @@ void ApplyGuide(const RawSegment& guide, std::vector<RawSegment>* segments) {
     // The pieces are crumbs of an edge that only the coarse level sees.
     merged = {guide};
   }
-  *segments = std::move(others);
   segments->insert(segments->end(), merged.begin(), merged.end());
+}
+
+// Whether `shorter` lies on the axis of `longer`, close to it.
+bool ContinuesAxis(const Axis& axis, const RawSegment& longer,
+                   const RawSegment& shorter) {
+  const double pixel = PixelSize(std::max(shorter.level, longer.level));
+  return LiesOn(axis, shorter, 2 * kStraightness * pixel) &&
+         OverlapWithAxis(axis, Project(axis, shorter)) >=
+             -kMaxGapShare * shorter.LengthPx();
+}
+
+// Joins collinear neighbours, longest first.
+std::vector<RawSegment> CloseGaps(std::vector<RawSegment> segments) {
+  std::sort(segments.begin(), segments.end(), Longer);
+  std::vector<bool> used(segments.size(), false);
+  std::vector<RawSegment> joined;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (used[i]) continue;
+    RawSegment whole = segments[i];
+    for (bool grown = true; grown;) {
+      grown = false;
+      const Axis axis(whole.start_px, whole.end_px);
+      for (std::size_t j = i + 1; j < segments.size() && !grown; ++j) {
+        if (used[j] || !ContinuesAxis(axis, whole, segments[j])) continue;
+        const std::vector<RawSegment> both = {whole, segments[j]};
+        const RawSegment span = Span(both);
+        if (!IsStraight(span, both)) continue;
+        whole = span;
+        used[j] = grown = true;
+      }
+    }
+    joined.push_back(whole);
+  }
+  return joined;
 }
 
 }  // namespace
@@ -190,6 +232,7 @@ std::vector<RawSegment> MergeLevels(
     }
     for (const RawSegment& guide : guides) ApplyGuide(guide, &segments);
   }
+  segments = CloseGaps(std::move(segments));
   std::sort(segments.begin(), segments.end(), Longer);
   return segments;
 }

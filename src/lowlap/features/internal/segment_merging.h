@@ -19,7 +19,8 @@ struct RawSegment {
 /// segment sees an edge whole that noise and crossings break on finer levels:
 /// the pieces that lie on it and are collinear at their own precision become
 /// one segment. A coarse segment that finer ones do not explain (a blurred
-/// edge) is kept itself. Segments of opposite polarity are never joined.
+/// edge) is kept itself. At last, collinear segments with a small gap between
+/// them are joined. Segments of opposite polarity are never joined.
 std::vector<RawSegment> MergeLevels(
     const std::vector<std::vector<RawSegment>>& levels);
 

@@ -1,0 +1,121 @@
+#include "lowlap/features/image.h"
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using testing::IsError;
+using testing::IsOk;
+
+class ImageTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        std::filesystem::path(::testing::TempDir()) /
+        ("lowlap_image_" +
+         std::string(
+             ::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::create_directories(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::string Path(const std::string& name) const {
+    return (folder_ / name).string();
+  }
+  std::string WriteBytes(const std::string& name, const std::string& bytes) {
+    std::ofstream(Path(name), std::ios::binary) << bytes;
+    return Path(name);
+  }
+
+  std::filesystem::path folder_;
+};
+
+TEST_F(ImageTest, ReadsGreyPixelsRowByRow) {
+  cv::Mat mat(3, 5, CV_8UC1);
+  for (int y = 0; y < 3; ++y) {
+    for (int x = 0; x < 5; ++x) {
+      mat.at<std::uint8_t>(y, x) = static_cast<std::uint8_t>(10 * y + x);
+    }
+  }
+  cv::imwrite(Path("a.png"), mat);
+  const Result<GrayImage> image = ReadGrayImage(Path("a.png"));
+  ASSERT_THAT(image, IsOk());
+  EXPECT_EQ(image->width, 5);
+  EXPECT_EQ(image->height, 3);
+  ASSERT_THAT(image->Validate(), IsOk());
+  EXPECT_EQ(image->pixels[7], 12);
+}
+
+TEST_F(ImageTest, ConvertsColourToGrey) {
+  cv::imwrite(Path("a.png"), cv::Mat(2, 2, CV_8UC3, cv::Scalar(0, 255, 0)));
+  const Result<GrayImage> image = ReadGrayImage(Path("a.png"));
+  ASSERT_THAT(image, IsOk());
+  EXPECT_NEAR(image->pixels[0], 150, 1);
+}
+
+TEST_F(ImageTest, SizeAgreesWithTheDecodedImageInEveryFormat) {
+  const cv::Mat mat(17, 300, CV_8UC3, cv::Scalar(10, 20, 30));
+  for (const std::string name : {"a.png", "a.jpg", "a.bmp", "a.tif"}) {
+    SCOPED_TRACE(name);
+    cv::imwrite(Path(name), mat);
+    const Result<ImageSize> size = ReadImageSize(Path(name));
+    ASSERT_THAT(size, IsOk());
+    EXPECT_EQ(size->width_px, 300);
+    EXPECT_EQ(size->height_px, 17);
+    EXPECT_THAT(ReadGrayImage(Path(name)), IsOk());
+  }
+}
+
+TEST_F(ImageTest, NamesAMissingFile) {
+  EXPECT_THAT(ReadGrayImage(Path("none.jpg")),
+              IsError(ErrorCode::kNotFound, "none.jpg"));
+  EXPECT_THAT(ReadImageSize(Path("none.jpg")),
+              IsError(ErrorCode::kNotFound, "none.jpg"));
+}
+
+TEST_F(ImageTest, NamesAFileThatIsNoImage) {
+  for (const std::string& bytes :
+       {std::string(), std::string("K.txt 1 0 0"), std::string("\xff\xd8"),
+        std::string("\xff\xd8\xff\xe0"), std::string("\x89PNG\r\n\x1a\n")}) {
+    const std::string path = WriteBytes("bad.jpg", bytes);
+    EXPECT_THAT(ReadGrayImage(path), IsError(ErrorCode::kParse, "bad.jpg"));
+    EXPECT_THAT(ReadImageSize(path), IsError(ErrorCode::kParse, "bad.jpg"));
+  }
+}
+
+TEST_F(ImageTest, AJpegCutAnywhereIsNeverACrash) {
+  cv::imwrite(Path("a.jpg"), cv::Mat(8, 8, CV_8UC1, cv::Scalar(77)));
+  std::ifstream stream(Path("a.jpg"), std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  for (std::size_t length = 0; length < bytes.size(); length += 7) {
+    const std::string path = WriteBytes("cut.jpg", bytes.substr(0, length));
+    const Result<ImageSize> size = ReadImageSize(path);
+    if (size) {
+      EXPECT_EQ(size->width_px, 8);
+    } else {
+      EXPECT_EQ(size.error().code, ErrorCode::kParse);
+    }
+  }
+}
+
+TEST(GrayImageTest, ValidateFindsWrongSizes) {
+  GrayImage image;
+  EXPECT_THAT(image.Validate(), IsError(ErrorCode::kInvalidArgument, "0 x 0"));
+  image.width = 3;
+  image.height = 2;
+  image.pixels.resize(5);
+  EXPECT_THAT(image.Validate(),
+              IsError(ErrorCode::kInvalidArgument, "5 pixels"));
+  image.pixels.resize(6);
+  EXPECT_THAT(image.Validate(), IsOk());
+}
+
+}  // namespace
+}  // namespace lowlap
