@@ -1,4 +1,5 @@
 #include <memory>
+#include <optional>
 
 #include "cli/command.h"
 #include "lowlap/pipeline/scene_reduction.h"
@@ -14,6 +15,7 @@ struct Flags {
   std::string format;
   bool drop_solution = false;
   int max_point_matches = 0;
+  std::optional<std::string> root_path;
 };
 
 int Convert(const Flags& flags) {
@@ -24,6 +26,7 @@ int Convert(const Flags& flags) {
     const Status limited = LimitPointMatches(flags.max_point_matches, &*scene);
     if (!limited) return Fail(limited.error());
   }
+  if (flags.root_path) scene->root_path = *flags.root_path;
   const auto notes = WriteScene(*scene, flags.output, flags.format);
   if (!notes) return Fail(notes.error());
   const RunContext context = MakeContext(flags.common);
@@ -53,6 +56,9 @@ void AddConvert(CLI::App* program, Action* action) {
                    "Keep at most this many point matches of each pair, those "
                    "on the longest tracks first, and drop the solution")
       ->check(CLI::PositiveNumber);
+  command->add_option("--root-path", flags->root_path,
+                      "Image folder to write into the scene, where the images "
+                      "have moved");
   command->footer("Formats:\n" + DescribeSceneFormats());
   AddCommonFlags(command, &flags->common);
   command->callback(
