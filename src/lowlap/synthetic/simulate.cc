@@ -95,6 +95,19 @@ void AddRelativePoses(const SyntheticOptions& options,
   }
 }
 
+void DropUnmatchedPairs(SyntheticScene* synthetic) {
+  auto& edges = synthetic->scene.relative_poses;
+  for (auto it = edges.begin(); it != edges.end();) {
+    const RelativePose& edge = it->second;
+    if (edge.point_inliers.empty() && edge.line_inliers.empty()) {
+      synthetic->true_baselines.erase(it->first);
+      it = edges.erase(it);
+    } else {
+      ++it;
+    }
+  }
+}
+
 std::map<ViewPair, int> CountSeenTogether(
     const std::vector<std::vector<ViewId>>& views_of_points,
     const std::vector<std::vector<ViewId>>& views_of_lines) {
@@ -132,6 +145,9 @@ SyntheticScene Build(const SyntheticOptions& options, double off_wall) {
                           &synthetic);
   internal::ObserveLines(options, world, cameras, graph, views_of_lines,
                          &synthetic);
+  const bool only_poses =
+      options.points_per_wall == 0 && options.lines_per_wall == 0;
+  if (!only_poses) DropUnmatchedPairs(&synthetic);
   return synthetic;
 }
 

@@ -33,8 +33,9 @@ struct SyntheticOptions {
   /// apart: with less than 12 the loop stays open.
   int num_views = 12;
   /// Pairs of views with a relative pose: "chain", "cycle", "window:N" (at most
-  /// N views apart), or "all" (whatever shares at least 16 features). Of the
-  /// first three, pairs that see nothing in common are kept, without matches.
+  /// N views apart), or "all" (whatever shares at least 16 features). A pair
+  /// without a single match is left out, unless points_per_wall and
+  /// lines_per_wall are both 0: then only the graph of poses is of interest.
   std::string pairs = "cycle";
   /// kRoom and kPureRotation: a small loop, looking outwards, instead of a wide
   /// one, looking across. Neighbours then share less, and turn more than they
