@@ -14,6 +14,10 @@ constexpr int kIterations = 6;
 constexpr double kMaxTurnDifferenceRad = 0.6;
 // and if their distance changes by less than this factor.
 constexpr double kMaxDistanceRatio = 2.5;
+// The mean support that gives a match half of the highest score. A match
+// keeps a score through the iterations only if its neighbours support it by
+// about this much; measured on rooms and facades.
+constexpr double kHalfSupport = 0.07;
 // Closer to a line than this, the side says nothing.
 constexpr double kSideTolerancePx = 4.0;
 
@@ -70,8 +74,7 @@ double Agreement(const LineSegment& a, const LineSegment& b,
   return (1 - std::abs(turn) / kMaxTurnDifferenceRad) * (1 - ratio / max_ratio);
 }
 
-// All pairs within the distance, with those of each segment at most
-// max_candidates times.
+// Pairs that are among the max_candidates nearest of both their segments.
 std::vector<Candidate> CollectCandidates(const DescribedLines& first,
                                          const DescribedLines& second,
                                          const LineMatchOptions& options) {
@@ -150,12 +153,13 @@ std::vector<std::vector<std::size_t>> FindNeighbors(
 
 struct Support {
   std::size_t candidate;
-  double agreement;
+  double weight;
 };
 
-// Scores the candidates by relaxation: the score of a candidate is its
-// similarity times the share of its neighbours, by their own scores, that have
-// a candidate which agrees.
+// Scores the candidates by relaxation. The support of a candidate is the mean
+// over its neighbours of
+//   max over their candidates c of  agreement(c) similarity(c) score(c),
+// and its new score support / (support + kHalfSupport), in [0, 1).
 void Relax(const DescribedLines& first, const DescribedLines& second,
            std::vector<Candidate>* candidates) {
   std::vector<std::vector<std::size_t>> candidates_of(first.segments.size());
@@ -163,8 +167,7 @@ void Relax(const DescribedLines& first, const DescribedLines& second,
     candidates_of[(*candidates)[c].match.first].push_back(c);
   }
   const auto neighbors = FindNeighbors(first.segments, candidates_of);
-  // For every candidate and neighbour, the supports; flattened per candidate
-  // with the neighbour's bounds.
+  // For every candidate, one list per neighbour.
   std::vector<std::vector<std::vector<Support>>> supports(candidates->size());
   for (std::size_t c = 0; c < candidates->size(); ++c) {
     const FeatureMatch& m = (*candidates)[c].match;
@@ -176,33 +179,36 @@ void Relax(const DescribedLines& first, const DescribedLines& second,
         const double agreement =
             Agreement(first.segments[m.first], second.segments[m.second],
                       first.segments[o.first], second.segments[o.second]);
-        if (agreement > 0) list.push_back({other, agreement});
+        if (agreement > 0) {
+          list.push_back({other, agreement * (*candidates)[other].similarity});
+        }
       }
       supports[c].push_back(std::move(list));
     }
   }
-  for (Candidate& c : *candidates) c.score = c.similarity;
+  std::vector<double> scores(candidates->size());
+  for (std::size_t c = 0; c < scores.size(); ++c) {
+    scores[c] = (*candidates)[c].similarity;
+  }
   for (int iteration = 0; iteration < kIterations; ++iteration) {
-    std::vector<double> next(candidates->size());
-    for (std::size_t c = 0; c < candidates->size(); ++c) {
+    std::vector<double> next(scores.size(), 0);
+    for (std::size_t c = 0; c < scores.size(); ++c) {
+      if (supports[c].empty()) continue;
       double sum = 0;
       for (const std::vector<Support>& list : supports[c]) {
         double best = 0;
         for (const Support& s : list) {
-          best = std::max(best, s.agreement * (*candidates)[s.candidate].score);
+          best = std::max(best, s.weight * scores[s.candidate]);
         }
         sum += best;
       }
-      next[c] = supports[c].empty()
-                    ? 0
-                    : (*candidates)[c].similarity * sum /
-                          static_cast<double>(supports[c].size());
+      const double support = sum / static_cast<double>(supports[c].size());
+      next[c] = support / (support + kHalfSupport);
     }
-    const double largest = *std::max_element(next.begin(), next.end());
-    for (std::size_t c = 0; c < candidates->size(); ++c) {
-      // The square root keeps the scale of scores from drifting apart.
-      (*candidates)[c].score = largest > 0 ? std::sqrt(next[c] / largest) : 0;
-    }
+    scores = std::move(next);
+  }
+  for (std::size_t c = 0; c < scores.size(); ++c) {
+    (*candidates)[c].score = scores[c];
   }
 }
 

@@ -29,9 +29,14 @@ struct DescribedLines {
   const std::vector<LineDescriptor>& descriptors;
 };
 
-/// Segment matches by appearance (mutual nearest descriptors) that agree with
-/// their neighbours on how the image turns and on which side of each other the
-/// segments lie; sorted by the first index, every segment at most once.
+/// Segment matches by appearance that agree with their neighbours on how the
+/// image turns, on which side of each other the segments lie, and on their
+/// distance; sorted by the first index, every segment at most once.
+///
+/// Each segment keeps its nearest partners by descriptor, mutually; relaxation
+/// over the neighbours in the image then scores every candidate by how well
+/// the best candidates around it agree, and the best scores are taken first.
+/// A match that nothing around it confirms is not made.
 std::vector<FeatureMatch> MatchLines(const DescribedLines& first,
                                      const DescribedLines& second,
                                      const LineMatchOptions& options);

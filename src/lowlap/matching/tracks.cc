@@ -1,6 +1,8 @@
 #include "lowlap/matching/tracks.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <tuple>
@@ -160,21 +162,18 @@ std::map<std::uint32_t, Track> Number(std::vector<Track> tracks) {
   return numbered;
 }
 
-double DistanceToSupportLine(const Vec2& point, const LineSegment& segment) {
-  const Vec2 direction = segment.end_px - segment.start_px;
-  const Vec2 offset = point - segment.start_px;
-  const double length = direction.norm();
-  if (!(length > 0)) return offset.norm();
-  return std::abs(direction.x() * offset.y() - direction.y() * offset.x()) /
-         length;
-}
-
+// Whether one line passes close to all four end points: their principal axis.
 bool AreCollinear(const LineSegment& a, const LineSegment& b,
                   double max_distance_px) {
-  const LineSegment& longer = a.LengthPx() >= b.LengthPx() ? a : b;
-  const LineSegment& shorter = a.LengthPx() >= b.LengthPx() ? b : a;
-  return DistanceToSupportLine(shorter.start_px, longer) <= max_distance_px &&
-         DistanceToSupportLine(shorter.end_px, longer) <= max_distance_px;
+  const std::array<Vec2, 4> ends = {a.start_px, a.end_px, b.start_px, b.end_px};
+  const Vec2 mean = 0.25 * (ends[0] + ends[1] + ends[2] + ends[3]);
+  Mat2 scatter = Mat2::Zero();
+  for (const Vec2& p : ends) scatter += (p - mean) * (p - mean).transpose();
+  const Vec2 normal =
+      Eigen::SelfAdjointEigenSolver<Mat2>(scatter).eigenvectors().col(0);
+  return std::all_of(ends.begin(), ends.end(), [&](const Vec2& p) {
+    return std::abs(normal.dot(p - mean)) <= max_distance_px;
+  });
 }
 
 }  // namespace

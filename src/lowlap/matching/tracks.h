@@ -10,8 +10,8 @@
 namespace lowlap {
 
 struct LineTrackOptions {
-  /// Two segments of one view belong to one track only if the end points of
-  /// the shorter one are this close to the longer one's support line.
+  /// Two segments of one view belong to one track only if all their end points
+  /// are this close to a common line.
   double max_collinear_distance_px = 2.0;
 
   Status Validate() const;

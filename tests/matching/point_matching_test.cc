@@ -1,0 +1,188 @@
+#include "lowlap/matching/point_matching.h"
+
+#include <gmock/gmock.h>
+
+#include "lowlap/core/random.h"
+#include "lowlap/matching/internal/nearest_two.h"
+#include "support/matchers.h"
+#include "support/synthetic_image.h"
+
+namespace lowlap {
+namespace {
+
+using internal::FindNearestTwo;
+using internal::NearestTwo;
+using testing::BlobTexture;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using testing::IsError;
+using testing::IsOk;
+using testing::Render;
+
+std::vector<PointDescriptor> RandomDescriptors(std::uint64_t seed,
+                                               std::size_t count,
+                                               std::uint32_t levels) {
+  Random random(seed);
+  std::vector<PointDescriptor> descriptors(count);
+  for (PointDescriptor& descriptor : descriptors) {
+    for (std::uint8_t& value : descriptor) {
+      value = static_cast<std::uint8_t>(random.Index(levels));
+    }
+  }
+  return descriptors;
+}
+
+std::int32_t SquaredDistance(const PointDescriptor& a,
+                             const PointDescriptor& b) {
+  std::int32_t sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const int difference = a[k] - b[k];
+    sum += difference * difference;
+  }
+  return sum;
+}
+
+NearestTwo BruteForce(const PointDescriptor& query,
+                      const std::vector<PointDescriptor>& database) {
+  NearestTwo nearest;
+  for (std::size_t i = 0; i < database.size(); ++i) {
+    const std::int32_t distance2 = SquaredDistance(query, database[i]);
+    if (distance2 < nearest.distance2) {
+      nearest.second_distance2 = nearest.distance2;
+      nearest.distance2 = distance2;
+      nearest.index = static_cast<std::int32_t>(i);
+    } else if (distance2 < nearest.second_distance2) {
+      nearest.second_distance2 = distance2;
+    }
+  }
+  return nearest;
+}
+
+TEST(FindNearestTwoTest, EqualsBruteForceForEverySizeAndWithTies) {
+  for (const std::uint32_t levels : {2u, 256u}) {
+    for (const std::size_t count : {0u, 1u, 2u, 15u, 16u, 17u, 33u, 700u}) {
+      const auto queries = RandomDescriptors(1, 20, levels);
+      auto database = RandomDescriptors(2, count, levels);
+      // Two equal ones: the lower index wins.
+      if (count > 16) database[16] = database[3] = queries[5];
+      const auto nearest = FindNearestTwo(queries, database);
+      ASSERT_EQ(nearest.size(), queries.size());
+      for (std::size_t i = 0; i < queries.size(); ++i) {
+        const NearestTwo expected = BruteForce(queries[i], database);
+        EXPECT_EQ(nearest[i].index, expected.index);
+        EXPECT_EQ(nearest[i].distance2, expected.distance2);
+        EXPECT_EQ(nearest[i].second_distance2, expected.second_distance2);
+      }
+    }
+  }
+}
+
+TEST(FindNearestTwoTest, TheLargestDistanceIsExact) {
+  PointDescriptor black, white;
+  black.fill(0);
+  white.fill(255);
+  const auto nearest = FindNearestTwo({black, white}, {white, white});
+  EXPECT_EQ(nearest[0].index, 0);
+  EXPECT_EQ(nearest[0].distance2, 128 * 255 * 255);
+  EXPECT_EQ(nearest[0].second_distance2, 128 * 255 * 255);
+  EXPECT_EQ(nearest[1].distance2, 0);
+}
+
+// At distance `offset` from `base`, along element `k`.
+PointDescriptor Moved(PointDescriptor base, std::size_t k, int offset) {
+  base[k] = static_cast<std::uint8_t>(base[k] + offset);
+  return base;
+}
+
+TEST(MatchPointsTest, TheRatioTestDropsAmbiguousMatches) {
+  PointDescriptor base;
+  base.fill(100);
+  PointMatchOptions options;
+  options.max_ratio = 0.8;
+  // Distances 79 and 100: kept. 81 and 100: not.
+  const std::vector<PointDescriptor> clear = {Moved(base, 0, 79),
+                                              Moved(base, 1, 100)};
+  const std::vector<PointDescriptor> ambiguous = {Moved(base, 0, 81),
+                                                  Moved(base, 1, 100)};
+  PointDescriptor far;
+  far.fill(0);
+  const std::vector<PointDescriptor> first = {base, far};
+  EXPECT_THAT(MatchPoints(first, clear, options),
+              ElementsAre(FeatureMatch{0, 0}));
+  EXPECT_THAT(MatchPoints(first, ambiguous, options), IsEmpty());
+}
+
+TEST(MatchPointsTest, TheRatioTestHoldsInBothDirections) {
+  PointDescriptor base, far;
+  base.fill(100);
+  far.fill(0);
+  // Seen from the second image, two points of the first look like it.
+  const std::vector<PointDescriptor> first = {Moved(base, 0, 10),
+                                              Moved(base, 1, 11), far};
+  EXPECT_THAT(MatchPoints(first, {base, Moved(far, 0, 3)}, {}),
+              ElementsAre(FeatureMatch{2, 1}));
+}
+
+TEST(MatchPointsTest, SwappingTheImagesSwapsTheMatches) {
+  const auto first = RandomDescriptors(3, 300, 256);
+  auto second = RandomDescriptors(4, 250, 256);
+  for (std::size_t i = 0; i < 100; ++i) {
+    second[2 * i] = Moved(first[3 * i % 300], i, 1);
+  }
+  const auto forward = MatchPoints(first, second, {});
+  auto backward = MatchPoints(second, first, {});
+  for (FeatureMatch& match : backward) std::swap(match.first, match.second);
+  std::sort(backward.begin(), backward.end());
+  EXPECT_EQ(forward, backward);
+  EXPECT_GE(forward.size(), 90u);
+}
+
+TEST(MatchPointsTest, WithoutASecondNearestThereIsNoMatch) {
+  PointDescriptor base;
+  base.fill(100);
+  EXPECT_THAT(MatchPoints({}, {}, {}), IsEmpty());
+  EXPECT_THAT(MatchPoints({base}, {}, {}), IsEmpty());
+  EXPECT_THAT(MatchPoints({}, {base}, {}), IsEmpty());
+  EXPECT_THAT(MatchPoints({base}, {base}, {}), IsEmpty());
+}
+
+TEST(MatchPointsTest, AMovedTurnedAndScaledTextureIsMatched) {
+  const BlobTexture texture(21, 500, 260);
+  const double angle = 0.5, scale = 1.2;
+  Mat2 turn;
+  turn << std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle);
+  const Vec2 center(125, 125);
+  // Where a point of the second image lies in the first.
+  const auto first_from_second = [&](const Vec2& p) -> Vec2 {
+    return center + turn * (p - center) / scale + Vec2(6.3, -4.8);
+  };
+  const auto first = DetectPoints(Render(250, 250, texture, 2, 1), {});
+  const auto second = DetectPoints(
+      Render(
+          250, 250,
+          [&](const Vec2& p) { return texture(first_from_second(p)); }, 2, 2),
+      {});
+  ASSERT_THAT(first, IsOk());
+  ASSERT_THAT(second, IsOk());
+  const auto matches = MatchPoints(first->descriptors, second->descriptors, {});
+  int right = 0;
+  for (const FeatureMatch& match : matches) {
+    const Vec2 expected =
+        first_from_second(second->keypoints[match.second].position_px);
+    right += (first->keypoints[match.first].position_px - expected).norm() < 1;
+  }
+  EXPECT_GT(matches.size(), 60u);
+  EXPECT_GT(right, 0.95 * static_cast<double>(matches.size()));
+}
+
+TEST(PointMatchOptionsTest, RejectsRatiosOutsideTheUnitInterval) {
+  PointMatchOptions options;
+  for (const double ratio : {0.0, -1.0, 1.1, std::nan("")}) {
+    options.max_ratio = ratio;
+    EXPECT_THAT(options.Validate(),
+                IsError(ErrorCode::kInvalidArgument, "max_ratio"));
+  }
+}
+
+}  // namespace
+}  // namespace lowlap
