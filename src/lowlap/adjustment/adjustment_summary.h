@@ -16,6 +16,8 @@ struct KindAdjustment {
   std::size_t landmarks = 0;  // with observations in use, at the end
   std::size_t observations_used = 0;
   std::size_t observations_dropped = 0;  // candidates not in use at the end
+  /// Pairs that agree with the rest, but were not needed.
+  std::size_t observations_surplus = 0;
   /// Of the observations in use: at the start, and at the end.
   double initial_rmse_px = 0;
   double final_rmse_px = 0;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "lowlap/adjustment/internal/outlier_round.h"
+#include "lowlap/adjustment/internal/pair_selection.h"
 #include "lowlap/adjustment/internal/pair_terms.h"
 #include "lowlap/adjustment/internal/solve.h"
 #include "lowlap/adjustment/internal/structure_state.h"
@@ -133,7 +134,7 @@ void WriteStructure(const CameraSet& cameras, const StructureState& state,
   }
   std::vector<CoplanarPair> pairs;
   for (const PairState& pair : state.pairs) {
-    if (pair.used && state.lines[pair.first].IsLandmark() &&
+    if (pair.consistent && state.lines[pair.first].IsLandmark() &&
         state.lines[pair.second].IsLandmark()) {
       pairs.push_back(
           {state.lines[pair.first].id, state.lines[pair.second].id});
@@ -163,14 +164,18 @@ void FillKinds(const NoiseLevels& noise, const KindRmse& initial,
   CountObservations(state.lines, &summary->lines);
   std::set<int> linked;
   for (const PairState& pair : state.pairs) {
-    if (!pair.used) continue;
+    if (!pair.used) {
+      summary->coplanar.observations_surplus += pair.consistent ? 1 : 0;
+      continue;
+    }
     ++summary->coplanar.observations_used;
     linked.insert(pair.first);
     linked.insert(pair.second);
   }
   summary->coplanar.landmarks = linked.size();
   summary->coplanar.observations_dropped =
-      input_pairs - summary->coplanar.observations_used;
+      input_pairs - summary->coplanar.observations_used -
+      summary->coplanar.observations_surplus;
 }
 
 // The solves and rounds; what is left to do is to count and to write.
@@ -190,9 +195,8 @@ class Adjuster {
     // Before the observations are settled, a rough optimum will do.
     const double rough = std::max(options_.function_tolerance, kRoughTolerance);
     noise_ = EstimateAllNoise(*cameras_, *state_, options_);
-    if (options_.use_lines && options_.use_coplanar &&
-        options_.max_outlier_rounds > 0) {
-      SelectPairs(*cameras_, noise_.coplanar.threshold_px, state_);
+    if (options_.use_lines && options_.use_coplanar) {
+      SelectPairs(options_, *cameras_, noise_.coplanar.threshold_px, state_);
     }
     if (options_.fixed_rotations_first) {
       if (Status status =
@@ -307,6 +311,9 @@ Status AdjustmentOptions::Validate() const {
     return invalid("points or lines must be used in the adjustment");
   }
   if (max_iterations < 1) return invalid("max_iterations must be positive");
+  if (max_pairs_per_line < 1) {
+    return invalid("max_pairs_per_line must be positive");
+  }
   if (max_outlier_rounds < 0) {
     return invalid("max_outlier_rounds must not be negative");
   }

@@ -9,10 +9,12 @@ namespace lowlap::internal {
 
 /// The coplanar inliers of the meaningful ratios as pairs of line landmarks:
 /// each line is the one that holds the inlier's segment of the middle view.
-/// Unique and ordered; counts what is left out in `summary`.
+/// Every line keeps the `max_pairs_per_line` of its pairs that most ratios
+/// found, the most nearly perpendicular first. Unique and ordered; counts what
+/// is left out in `summary`.
 std::vector<CoplanarPair> CollectCoplanarPairs(
     const std::vector<ScaleRatio>& ratios,
     const std::map<LineTrackId, LineLandmark>& lines, double min_angle_rad,
-    StructureSummary* summary);
+    int max_pairs_per_line, StructureSummary* summary);
 
 }  // namespace lowlap::internal

@@ -6,7 +6,8 @@
 #include <numeric>
 #include <utility>
 
-#include "lowlap/adjustment/internal/pair_terms.h"
+#include "lowlap/adjustment/internal/pair_gap.h"
+#include "lowlap/adjustment/internal/pair_selection.h"
 #include "lowlap/adjustment/internal/problem_selection.h"
 #include "lowlap/core/parallel.h"
 
@@ -121,20 +122,6 @@ std::vector<char> SolvedLines(const AdjustmentOptions& options,
   return solved;
 }
 
-// A pair in use was free to bend its lines within their noise: what is left
-// must be small. One out of use comes back if noise explains its gap.
-bool BelievePair(const CameraSet& cameras, const StructureState& state,
-                 const PairState& pair, double gap_px,
-                 const AdjustmentOptions& options, double threshold_px) {
-  if (!std::isfinite(gap_px)) return false;  // a line is lost
-  if (pair.used) {
-    return PairErrorPx(cameras, state, pair, options.coplanar_residual) <=
-           threshold_px;
-  }
-  constexpr int kMaxTimesDropped = 2;  // in and out for ever helps nobody
-  return pair.times_dropped < kMaxTimesDropped && gap_px <= threshold_px;
-}
-
 }  // namespace
 
 Status FollowPoses(const AdjustmentOptions& options,
@@ -186,17 +173,9 @@ NoiseLevels EstimateAllNoise(const CameraSet& cameras,
   bounds.fallback.threshold_px =
       std::max(bounds.fallback.threshold_px, noise.points.threshold_px);
   noise.lines = EstimateLineNoise(cameras, state.lines, bounds);
-  noise.coplanar = EstimatePairNoise(cameras, PairGapsPx(cameras, state),
+  noise.coplanar = EstimatePairNoise(cameras, ComputePairGaps(cameras, state),
                                      noise.lines, bounds);
   return noise;
-}
-
-void SelectPairs(const CameraSet& cameras, double threshold_px,
-                 StructureState* state) {
-  const std::vector<double> gaps_px = PairGapsPx(cameras, *state);
-  for (std::size_t n = 0; n < gaps_px.size(); ++n) {
-    state->pairs[n].used = gaps_px[n] <= threshold_px;
-  }
 }
 
 Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
@@ -241,15 +220,8 @@ Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
   state->lines = std::move(lines);
 
   if (!options.use_coplanar) return changes;
-  const std::vector<double> gaps_px = PairGapsPx(cameras, *state);
-  for (std::size_t n = 0; n < gaps_px.size(); ++n) {
-    PairState& pair = state->pairs[n];
-    const bool used = BelievePair(cameras, *state, pair, gaps_px[n], options,
-                                  noise.coplanar.threshold_px);
-    changes.changed += used != pair.used ? 1 : 0;
-    if (pair.used && !used) ++pair.times_dropped;
-    pair.used = used;
-  }
+  changes.changed +=
+      SelectPairs(options, cameras, noise.coplanar.threshold_px, state);
   changes.total += state->pairs.size();
   return changes;
 }

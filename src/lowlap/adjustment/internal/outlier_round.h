@@ -19,10 +19,6 @@ NoiseLevels EstimateAllNoise(const CameraSet& cameras,
                              const StructureState& state,
                              const AdjustmentOptions& options);
 
-/// Takes those pairs into use whose gap (PairGapPx) is within the threshold.
-void SelectPairs(const CameraSet& cameras, double threshold_px,
-                 StructureState* state);
-
 struct ObservationChanges {
   std::size_t changed = 0;  // candidates and pairs whose use changed
   std::size_t total = 0;
@@ -31,9 +27,7 @@ struct ObservationChanges {
 /// Decides anew which candidates of the used kinds are in use: those within the
 /// threshold of their kind at the present landmarks. A landmark that not all
 /// candidates fit is also triangulated afresh, and so is a track without one;
-/// what more candidates fit is taken. Then the pairs: one in use stays if its
-/// residual is within the threshold, one out of use comes back if its gap
-/// (PairGapPx) is.
+/// what more candidates fit is taken. Then the pairs (SelectPairs).
 Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
                                               const NoiseLevels& noise,
                                               const RunContext& context,

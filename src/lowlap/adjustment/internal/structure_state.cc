@@ -160,7 +160,7 @@ std::vector<PairState> LoadPairs(const Scene& scene,
   for (const CoplanarPair& pair : scene.coplanar_pairs) {
     const auto first = index.find(pair.first), second = index.find(pair.second);
     if (first == index.end() || second == index.end()) continue;
-    pairs.push_back({first->second, second->second, true, 0});
+    pairs.push_back({first->second, second->second});
   }
   return pairs;
 }

@@ -14,7 +14,8 @@ namespace lowlap::internal {
 struct PairState {
   int first = -1;  // indices into StructureState::lines
   int second = -1;
-  bool used = false;
+  bool used = false;       // has residuals
+  bool consistent = true;  // believed, whether in use or not
   int times_dropped = 0;
 };
 
@@ -45,7 +46,7 @@ std::vector<LineTrackState> LoadLines(const Scene& scene,
                                       const CameraSet& cameras,
                                       bool with_intrinsic_derivatives);
 
-/// scene.coplanar_pairs whose lines are both landmarks, all in use.
+/// scene.coplanar_pairs whose lines are both landmarks, none in use.
 std::vector<PairState> LoadPairs(const Scene& scene,
                                  const std::vector<LineTrackState>& lines);
 
