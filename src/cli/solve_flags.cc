@@ -48,12 +48,10 @@ void PrintPoses(const PoseSummary& poses, const Scene& scene) {
     std::printf("\n");
   }
   if (!poses.outlier_edges.empty()) {
-    std::printf("relative poses left out as contradictory:");
-    for (const ViewPair& edge : poses.outlier_edges) {
-      std::printf(" %s-%s", scene.views.at(edge.first).filename.c_str(),
-                  scene.views.at(edge.second).filename.c_str());
-    }
-    std::printf("\n");
+    std::printf(
+        "relative poses left out, since their rotations contradict the others: "
+        "%zu of %zu (report.html names them)\n",
+        poses.outlier_edges.size(), scene.relative_poses.size());
   }
 }
 
