@@ -139,10 +139,11 @@ TEST(CoplanarChainTest, ReportedPairsAreThoseOfTheScene) {
   ASSERT_THAT(structure, IsOk());
   const Result<AdjustmentSummary> summary = AdjustScene(&test.scene, {}, {});
   ASSERT_THAT(summary, IsOk());
-  EXPECT_EQ(summary->coplanar.observations_used,
+  const KindAdjustment& pairs = summary->coplanar;
+  EXPECT_EQ(pairs.observations_used + pairs.observations_surplus,
             test.scene.coplanar_pairs.size());
-  EXPECT_EQ(summary->coplanar.observations_used +
-                summary->coplanar.observations_dropped,
+  EXPECT_EQ(pairs.observations_used + pairs.observations_surplus +
+                pairs.observations_dropped,
             structure->coplanar_pairs);
   std::size_t wrong = 0;
   for (const CoplanarPair& pair : test.scene.coplanar_pairs) {
@@ -150,6 +151,27 @@ TEST(CoplanarChainTest, ReportedPairsAreThoseOfTheScene) {
         test.wall_of_line.at(pair.first) != test.wall_of_line.at(pair.second);
   }
   EXPECT_LT(wrong, 0.1 * test.scene.coplanar_pairs.size());
+}
+
+TEST(CoplanarChainTest, ALineIsHeldByAFewPairsOnly) {
+  TestSceneOptions options = ChainOptions();
+  options.num_lines = 100;
+  options.pairs_per_triplet = 300;
+  TestScene test = MakeTestScene(options);
+  StructureOptions structure;
+  structure.max_pairs_per_line = 100;
+  ASSERT_THAT(BuildStructure(&test.scene, structure, {}), IsOk());
+  const std::size_t all = test.scene.coplanar_pairs.size();
+  AdjustmentOptions adjustment;
+  adjustment.max_pairs_per_line = 2;
+  const Result<AdjustmentSummary> summary =
+      AdjustScene(&test.scene, adjustment, {});
+  ASSERT_THAT(summary, IsOk());
+  EXPECT_LE(summary->coplanar.observations_used,
+            test.scene.line_structure.size());
+  EXPECT_GT(summary->coplanar.observations_surplus, 0.3 * all);
+  // Those that were not needed are not lost.
+  EXPECT_GT(test.scene.coplanar_pairs.size(), 0.9 * all);
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "lowlap/adjustment/internal/line_track.h"
 #include "lowlap/adjustment/internal/noise_scale.h"
-#include "lowlap/adjustment/internal/pair_terms.h"
+#include "lowlap/adjustment/internal/pair_gap.h"
 #include "lowlap/adjustment/internal/structure_state.h"
 #include "lowlap/core/random.h"
 #include "test_scene.h"
@@ -90,7 +90,7 @@ TEST(NoiseTest, PairGapsAreInPixelsOfSegmentNoise) {
         const LineEstimate &first = estimates[a].second,
                            &second = estimates[b].second;
         if (first.direction.cross(second.direction).norm() < 0.3) continue;
-        const double gap = PairGapPx(first, second);
+        const double gap = ComputePairGap(first, second).gap_px;
         if (estimates[a].first == estimates[b].first) {
           squares += gap * gap;
           ++count;

@@ -37,7 +37,7 @@ struct AdjustmentOptions {
 
   /// A line is held by so many of its pairs at most; more of one plane say the
   /// same again, and each costs the solver time.
-  int max_pairs_per_line = 4;
+  int max_pairs_per_line = 3;
 
   /// The intrinsics to refine; those not named stay fixed.
   std::map<IntrinsicId, IntrinsicRefinement> refine_intrinsics;

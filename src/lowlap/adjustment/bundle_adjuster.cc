@@ -32,6 +32,8 @@ using internal::StructureState;
 
 constexpr char kFinalStage[] = "final";
 constexpr double kRoughTolerance = 1e-5;
+// Pairs could be exchanged for one another for ever.
+constexpr int kRoundsWithNewPairs = 3;
 constexpr double kFirstTolerance = 1e-3;
 
 struct KindRmse {
@@ -196,8 +198,10 @@ class Adjuster {
     const double rough = std::max(options_.function_tolerance, kRoughTolerance);
     noise_ = EstimateAllNoise(*cameras_, *state_, options_);
     if (options_.use_lines && options_.use_coplanar) {
-      SelectPairs(options_, *cameras_, noise_.coplanar.threshold_px, state_);
+      SelectPairs(options_, *cameras_, noise_.coplanar.threshold_px, true,
+                  state_);
     }
+    initial_ = ComputeRmse(*cameras_, *state_, options_.coplanar_residual);
     if (options_.fixed_rotations_first) {
       if (Status status =
               Solve("fixed rotations", true, std::max(rough, kFirstTolerance));
@@ -210,7 +214,7 @@ class Adjuster {
     }
     bool at_rest = options_.max_outlier_rounds == 0;
     for (int round = 1; round <= options_.max_outlier_rounds; ++round) {
-      const Result<double> changed = Update();
+      const Result<double> changed = Update(round <= kRoundsWithNewPairs);
       if (!changed) return tl::unexpected<Error>(changed.error());
       at_rest = *changed <= options_.outlier_round_tolerance;
       if (at_rest) break;
@@ -237,6 +241,7 @@ class Adjuster {
   }
 
   const NoiseLevels& noise() const { return noise_; }
+  const KindRmse& initial() const { return initial_; }
   const SolveOutcome& last() const { return last_; }
 
  private:
@@ -261,7 +266,7 @@ class Adjuster {
   }
 
   // The share of the observations whose use changed.
-  Result<double> Update() {
+  Result<double> Update(bool take_new_pairs) {
     if (!options_.refine_intrinsics.empty()) RefreshRays();
     if (Status status =
             FollowPoses(options_, noise_.lines, context_, *cameras_, state_);
@@ -269,8 +274,8 @@ class Adjuster {
       return tl::unexpected<Error>(status.error());
     }
     noise_ = EstimateAllNoise(*cameras_, *state_, options_);
-    const Result<internal::ObservationChanges> changes =
-        UpdateObservations(options_, noise_, context_, *cameras_, state_);
+    const Result<internal::ObservationChanges> changes = UpdateObservations(
+        options_, noise_, take_new_pairs, context_, *cameras_, state_);
     if (!changes) return tl::unexpected<Error>(changes.error());
     return changes->total > 0 ? static_cast<double>(changes->changed) /
                                     static_cast<double>(changes->total)
@@ -298,6 +303,7 @@ class Adjuster {
   StructureState* state_;
   AdjustmentSummary* summary_;
   NoiseLevels noise_;
+  KindRmse initial_;
   SolveOutcome last_;
 };
 
@@ -362,14 +368,12 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
   state.pairs = LoadPairs(*scene, state.lines);
   summary.observations_without_camera =
       CountObservationsWithoutCamera(*scene, cameras);
-  const KindRmse initial =
-      ComputeRmse(cameras, state, options.coplanar_residual);
 
   Adjuster adjuster(*scene, options, context, &cameras, &state, &summary);
   status = adjuster.Run();
   if (!status) return tl::unexpected<Error>(status.error());
 
-  FillKinds(adjuster.noise(), initial,
+  FillKinds(adjuster.noise(), adjuster.initial(),
             ComputeRmse(cameras, state, options.coplanar_residual), state,
             scene->coplanar_pairs.size(), &summary);
   summary.initial_cost = summary.solves.front().initial_cost;

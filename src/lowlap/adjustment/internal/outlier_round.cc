@@ -180,6 +180,7 @@ NoiseLevels EstimateAllNoise(const CameraSet& cameras,
 
 Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
                                               const NoiseLevels& noise,
+                                              bool take_new_pairs,
                                               const RunContext& context,
                                               const CameraSet& cameras,
                                               StructureState* state) {
@@ -220,8 +221,8 @@ Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
   state->lines = std::move(lines);
 
   if (!options.use_coplanar) return changes;
-  changes.changed +=
-      SelectPairs(options, cameras, noise.coplanar.threshold_px, state);
+  changes.changed += SelectPairs(options, cameras, noise.coplanar.threshold_px,
+                                 take_new_pairs, state);
   changes.total += state->pairs.size();
   return changes;
 }

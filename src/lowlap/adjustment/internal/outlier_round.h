@@ -30,6 +30,7 @@ struct ObservationChanges {
 /// what more candidates fit is taken. Then the pairs (SelectPairs).
 Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
                                               const NoiseLevels& noise,
+                                              bool take_new_pairs,
                                               const RunContext& context,
                                               const CameraSet& cameras,
                                               StructureState* state);

@@ -16,7 +16,7 @@ constexpr int kMaxTimesDropped = 2;  // in and out for ever helps nobody
 
 std::size_t SelectPairs(const AdjustmentOptions& options,
                         const CameraSet& cameras, double threshold_px,
-                        StructureState* state) {
+                        bool take_new, StructureState* state) {
   const std::vector<PairGap> gaps = ComputePairGaps(cameras, *state);
   std::vector<char> determined(state->lines.size(), 0);
   for (std::size_t n = 0; n < determined.size(); ++n) {
@@ -43,7 +43,7 @@ std::size_t SelectPairs(const AdjustmentOptions& options,
     }
     pair.consistent =
         pair.times_dropped < kMaxTimesDropped && gaps[n].gap_px <= threshold_px;
-    if (pair.consistent &&
+    if (take_new && pair.consistent &&
         !(determined[pair.first] && determined[pair.second])) {
       waiting.push_back(n);
     }
