@@ -159,10 +159,6 @@ Status StructureOptions::Validate() const {
         std::pair(min_coplanar_angle_deg, "min_coplanar_angle_deg")}) {
     if (!(value >= 0) || !std::isfinite(value)) return invalid(name);
   }
-  if (max_pairs_per_line < 1) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_pairs_per_line must be at least 1");
-  }
   return {};
 }
 
@@ -224,8 +220,7 @@ Result<StructureSummary> BuildStructure(Scene* scene,
     if (options.use_coplanar) {
       coplanar_pairs = internal::CollectCoplanarPairs(
           scene->scale_ratios, line_structure,
-          RadFromDeg(options.min_coplanar_angle_deg),
-          options.max_pairs_per_line, &summary);
+          RadFromDeg(options.min_coplanar_angle_deg), &summary);
     }
   }
   scene->structure = std::move(structure);

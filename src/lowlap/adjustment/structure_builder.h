@@ -37,10 +37,6 @@ struct StructureOptions {
   /// Lines of a coplanar pair must differ by this angle: the meeting point of
   /// almost parallel lines is not defined by the images.
   double min_coplanar_angle_deg = 10;
-  /// Every line keeps this many of its pairs: those found in most ratios, the
-  /// most nearly perpendicular among them. More pairs of the same plane say the
-  /// same again, and each costs the adjustment fill-in.
-  int max_pairs_per_line = 4;
 
   /// kInvalidArgument for values without a meaning.
   Status Validate() const;
@@ -72,7 +68,6 @@ struct StructureSummary {
   std::size_t coplanar_without_lines = 0;  // a line was not triangulated
   std::size_t coplanar_parallel = 0;       // or both are one line
   std::size_t coplanar_duplicates = 0;     // already a pair
-  std::size_t coplanar_redundant = 0;      // beyond max_pairs_per_line
   std::size_t coplanar_pairs = 0;
   double seconds = 0;
 };

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <set>
 
 namespace lowlap::internal {
 namespace {
@@ -28,49 +28,19 @@ LineTrackId FindLine(const LinesBySegment& by_segment,
   return kInvalidId;
 }
 
-struct Evidence {
-  int ratios = 0;   // that found the pair
-  double sine = 0;  // of the angle between the lines
-};
-
-// A pair stays if it is among the best of either of its lines.
-std::vector<CoplanarPair> KeepBestOfEachLine(
-    const std::map<CoplanarPair, Evidence>& evidence, int max_pairs_per_line) {
-  std::vector<std::pair<CoplanarPair, Evidence>> ranked(evidence.begin(),
-                                                        evidence.end());
-  std::stable_sort(ranked.begin(), ranked.end(),
-                   [](const auto& a, const auto& b) {
-                     return a.second.ratios != b.second.ratios
-                                ? a.second.ratios > b.second.ratios
-                                : a.second.sine > b.second.sine;
-                   });
-  std::map<LineTrackId, int> degree;
-  std::vector<CoplanarPair> kept;
-  for (const auto& [pair, unused] : ranked) {
-    int& first = degree[pair.first];
-    int& second = degree[pair.second];
-    if (first >= max_pairs_per_line && second >= max_pairs_per_line) continue;
-    ++first;
-    ++second;
-    kept.push_back(pair);
-  }
-  std::sort(kept.begin(), kept.end());
-  return kept;
-}
-
 }  // namespace
 
 std::vector<CoplanarPair> CollectCoplanarPairs(
     const std::vector<ScaleRatio>& ratios,
     const std::map<LineTrackId, LineLandmark>& lines, double min_angle_rad,
-    int max_pairs_per_line, StructureSummary* summary) {
+    StructureSummary* summary) {
   LinesBySegment by_segment;
   for (const auto& [id, line] : lines) {
     for (const FeatureRef& ref : line.observations) {
       by_segment[ref].push_back(id);
     }
   }
-  std::map<CoplanarPair, Evidence> evidence;
+  std::set<CoplanarPair> pairs;
   for (const ScaleRatio& ratio : ratios) {
     if (ratio.verdict != RatioVerdict::kMeaningful) continue;
     const auto& [first, middle, last] = ratio.views;
@@ -91,17 +61,11 @@ std::vector<CoplanarPair> CollectCoplanarPairs(
         continue;
       }
       if (a > b) std::swap(a, b);
-      Evidence& pair = evidence[{a, b}];
-      if (pair.ratios > 0) ++summary->coplanar_duplicates;
-      ++pair.ratios;
-      pair.sine = sine;
+      if (!pairs.insert({a, b}).second) ++summary->coplanar_duplicates;
     }
   }
-  std::vector<CoplanarPair> pairs =
-      KeepBestOfEachLine(evidence, max_pairs_per_line);
-  summary->coplanar_redundant = evidence.size() - pairs.size();
   summary->coplanar_pairs = pairs.size();
-  return pairs;
+  return {pairs.begin(), pairs.end()};
 }
 
 }  // namespace lowlap::internal

@@ -9,12 +9,10 @@ namespace lowlap::internal {
 
 /// The coplanar inliers of the meaningful ratios as pairs of line landmarks:
 /// each line is the one that holds the inlier's segment of the middle view.
-/// Every line keeps the `max_pairs_per_line` of its pairs that most ratios
-/// found, the most nearly perpendicular first. Unique and ordered; counts what
-/// is left out in `summary`.
+/// Unique and ordered; counts what is left out in `summary`.
 std::vector<CoplanarPair> CollectCoplanarPairs(
     const std::vector<ScaleRatio>& ratios,
     const std::map<LineTrackId, LineLandmark>& lines, double min_angle_rad,
-    int max_pairs_per_line, StructureSummary* summary);
+    StructureSummary* summary);
 
 }  // namespace lowlap::internal
