@@ -158,9 +158,7 @@ TEST(CoplanarChainTest, ALineIsHeldByAFewPairsOnly) {
   options.num_lines = 100;
   options.pairs_per_triplet = 300;
   TestScene test = MakeTestScene(options);
-  StructureOptions structure;
-  structure.max_pairs_per_line = 100;
-  ASSERT_THAT(BuildStructure(&test.scene, structure, {}), IsOk());
+  ASSERT_THAT(BuildStructure(&test.scene, {}, {}), IsOk());
   const std::size_t all = test.scene.coplanar_pairs.size();
   AdjustmentOptions adjustment;
   adjustment.max_pairs_per_line = 2;

@@ -29,6 +29,7 @@ struct IntrinsicRefinement {
 };
 
 struct AdjustmentOptions {
+  /// Kinds that are off have no influence; their landmarks follow the poses.
   bool use_points = true;
   bool use_lines = true;
   bool use_coplanar = true;  // needs use_lines
