@@ -10,7 +10,6 @@ packages=(
   g++ cmake ninja-build
   libeigen3-dev libceres-dev libsuitesparse-dev
   libopencv-dev libopencv-contrib-dev
-  libflann-dev liblz4-dev
   nlohmann-json3-dev libcereal-dev libcli11-dev libexpected-dev
   libgtest-dev libgmock-dev
   "$@"

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lowlap/averaging/union_find.h"
+#include "lowlap/core/median.h"
 
 namespace lowlap {
 namespace {
@@ -103,11 +104,8 @@ Result<std::vector<Vec3>> SolveCenters(std::size_t num_views,
       errors[e] =
           std::sqrt(std::max(0.0, residual.dot(information[e] * residual)));
     }
-    std::vector<double> sorted = errors;
-    const auto middle = sorted.begin() + static_cast<long>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
     constexpr double kReach = 3.0;
-    const double scale = kReach * std::max(1.0, *middle);
+    const double scale = kReach * std::max(1.0, Median(errors));
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const double x = errors[e] / scale;
       robust[e] = 1.0 / std::pow(1 + x * x, 2);

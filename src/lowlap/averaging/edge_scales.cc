@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lowlap/averaging/difference_solver.h"
 #include "lowlap/averaging/union_find.h"
+#include "lowlap/core/median.h"
 
 namespace lowlap {
 namespace {
@@ -81,9 +83,7 @@ Result<EdgeScales> AverageEdgeScales(const TranslationProblem& problem,
     for (const double r : scales.normalised_residuals) {
       sizes.push_back(std::abs(r));
     }
-    const auto middle = sizes.begin() + static_cast<long>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    const double scale = std::max(1.0, 1.4826 * *middle);
+    const double scale = std::max(1.0, 1.4826 * Median(std::move(sizes)));
     for (Eigen::Index r = 0; r < count; ++r) {
       constexpr double kReach = 3.0;
       const double x = scales.normalised_residuals[r] / (kReach * scale);

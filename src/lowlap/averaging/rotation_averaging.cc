@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lowlap/averaging/difference_solver.h"
+#include "lowlap/core/median.h"
 #include "lowlap/geometry/rotation.h"
 
 namespace lowlap {
@@ -39,12 +40,6 @@ std::vector<Mat3> ComposeAlongForest(
     }
   }
   return rotations;
-}
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<long>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace

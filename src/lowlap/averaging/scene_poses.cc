@@ -6,6 +6,7 @@
 
 #include "lowlap/averaging/strategies.h"
 #include "lowlap/averaging/union_find.h"
+#include "lowlap/core/median.h"
 #include "lowlap/geometry/rotation.h"
 
 namespace lowlap {
@@ -83,10 +84,7 @@ Result<AveragedRotations> AverageSceneRotations(const Scene& scene,
     }
     if (measurements.empty()) return averaged;
 
-    std::vector<double> sorted = result->residuals_rad;
-    const auto middle = sorted.begin() + static_cast<long>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    averaged.median_residual_rad = *middle;
+    averaged.median_residual_rad = Median(result->residuals_rad);
     // The median of the norm of a 3-vector of normal errors is 1.54 sigma.
     const double sigma =
         std::max(averaged.median_residual_rad / 1.54, kRotationFloorRad);

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 #include <ostream>
+#include <utility>
 #include <vector>
 
 #include "lowlap/core/atomic_file.h"
+#include "lowlap/core/median.h"
 #include "lowlap/io/internal/byte_archive.h"
 
 namespace lowlap {
@@ -53,10 +55,7 @@ double MedianNeighbourDistance(const std::vector<Vec3>& centers) {
     }
     if (std::isfinite(least)) nearest.push_back(least);
   }
-  if (nearest.empty()) return 0;
-  const auto middle = nearest.begin() + nearest.size() / 2;
-  std::nth_element(nearest.begin(), middle, nearest.end());
-  return *middle;
+  return Median(std::move(nearest));
 }
 
 // With one camera the points give the size.
@@ -70,10 +69,8 @@ double FrustumDepth(const Scene& scene) {
     if (centers.empty()) break;
     distances.push_back((landmark.position - centers.front()).norm());
   }
-  if (distances.empty()) return 1;
-  const auto middle = distances.begin() + distances.size() / 2;
-  std::nth_element(distances.begin(), middle, distances.end());
-  return *middle > 0 ? 0.1 * *middle : 1;
+  const double distance = Median(std::move(distances));
+  return distance > 0 ? 0.1 * distance : 1;
 }
 
 void DrawCamera(const Pose& pose, const Intrinsic* intrinsic, double depth,
