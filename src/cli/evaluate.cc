@@ -1,10 +1,11 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <ostream>
+#include <utility>
 
 #include "cli/command.h"
 #include "cli/solve_flags.h"
-#include "lowlap/core/atomic_file.h"
+#include "lowlap/evaluation/pair_errors.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {
@@ -13,14 +14,57 @@ namespace {
 struct Flags {
   std::string solution;
   std::string ground_truth;
+  std::string truth_option;  // --gt, the same as an option
+  bool relative_poses = false;
+  std::vector<std::string> expected_pairs;
   bool json = false;
 };
+
+Result<std::vector<ViewPair>> ParsePairs(
+    const std::vector<std::string>& names) {
+  std::vector<ViewPair> pairs;
+  for (const std::string& name : names) {
+    unsigned first = 0, second = 0;
+    int length = 0;
+    if (std::sscanf(name.c_str(), "%9u-%9u%n", &first, &second, &length) != 2 ||
+        static_cast<std::size_t>(length) != name.size()) {
+      return MakeError(
+          ErrorCode::kInvalidArgument,
+          "--expect: '" + name + "' is not a pair of view ids, as in 3-4");
+    }
+    pairs.push_back({std::min(first, second), std::max(first, second)});
+  }
+  return pairs;
+}
+
+int EvaluateMeasurements(const Flags& flags, const Scene& scene,
+                         const GroundTruth& truth) {
+  PairEvaluationOptions options;
+  auto expected = ParsePairs(flags.expected_pairs);
+  if (!expected) return Fail(expected.error());
+  options.expected = std::move(*expected);
+  const auto evaluation = EvaluatePairs(scene, truth, options);
+  if (!evaluation) return Fail(evaluation.error());
+  std::printf("%s\n",
+              (flags.json ? ToJson(*evaluation) : ToText(*evaluation)).c_str());
+  return 0;
+}
 
 int Evaluate(const Flags& flags) {
   const auto scene = ReadScene(flags.solution);
   if (!scene) return Fail(scene.error());
-  const auto truth = LoadGroundTruth(flags.ground_truth, *scene);
+  const auto truth = LoadGroundTruth(
+      flags.ground_truth.empty() ? flags.truth_option : flags.ground_truth,
+      *scene);
   if (!truth) return Fail(truth.error());
+  if (!*truth) {
+    return Fail({ErrorCode::kInvalidArgument,
+                 "the true cameras are missing: second argument, or --gt", "",
+                 "evaluate"});
+  }
+  if (flags.relative_poses) {
+    return EvaluateMeasurements(flags, *scene, **truth);
+  }
   const PoseEvaluation evaluation = EvaluatePoses(*scene, **truth);
   std::printf("%s\n",
               (flags.json ? ToJson(evaluation) : ToText(evaluation)).c_str());
@@ -37,11 +81,23 @@ void AddEvaluate(CLI::App* program, Action* action) {
       "alignment of the centres");
   command->add_option("solution", flags->solution, "Solved scene file")
       ->required();
+  CLI::Option* positional = command->add_option(
+      "ground_truth", flags->ground_truth,
+      "Folder of Strecha's .camera files, or the one that holds it as "
+      "gt_dense_cameras; or a scene file with true poses");
   command
-      ->add_option("ground_truth", flags->ground_truth,
-                   "Folder of Strecha's .camera files, or the one that holds "
-                   "it as gt_dense_cameras; or a scene file with true poses")
-      ->required();
+      ->add_option("--gt", flags->truth_option,
+                   "The same, as an option: instead of the second argument")
+      ->excludes(positional);
+  command->add_flag("--relative-poses", flags->relative_poses,
+                    "Judge the relative poses of the pairs instead of the "
+                    "cameras: rotation and direction errors, failures among "
+                    "consecutive and among all pairs");
+  command
+      ->add_option("--expect", flags->expected_pairs,
+                   "Pairs of view ids that must have a relative pose, as in "
+                   "0-1,1-2 (with --relative-poses; consecutive views always)")
+      ->delimiter(',');
   command->add_flag("--json", flags->json, "Print JSON instead of a table");
   command->callback(
       [flags, action] { *action = [flags] { return Evaluate(*flags); }; });
