@@ -8,6 +8,10 @@
 
 namespace lowlap {
 
+/// Raised whenever the segments change for the same input and options: what is
+/// cached is then computed anew.
+inline constexpr int kLineDetectorVersion = 1;
+
 struct LineOptions {
   /// Shorter segments are dropped; relative to (width + height) / 2.
   double min_length_ratio = 0.015;

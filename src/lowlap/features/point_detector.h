@@ -26,6 +26,10 @@ struct PointFeatures {
   std::vector<PointDescriptor> descriptors;  // one per keypoint
 };
 
+/// Raised whenever keypoints or descriptors change for the same input and
+/// options: what is cached is then computed anew.
+inline constexpr int kPointDetectorVersion = 1;
+
 struct PointOptions {
   /// Keypoints kept per image. More of them help thin overlaps and cost
   /// quadratic matching time.

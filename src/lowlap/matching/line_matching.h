@@ -9,6 +9,10 @@
 
 namespace lowlap {
 
+/// Raised whenever the matches change for the same input and options: what is
+/// cached is then computed anew.
+inline constexpr int kLineMatchingVersion = 1;
+
 struct LineMatchOptions {
   /// Greatest Hamming distance of two descriptors of 256 bits.
   int max_distance_bits = 80;

@@ -8,6 +8,10 @@
 
 namespace lowlap {
 
+/// Raised whenever the matches change for the same input and options: what is
+/// cached is then computed anew.
+inline constexpr int kPointMatchingVersion = 1;
+
 struct PointMatchOptions {
   /// A match must be closer than this times the second nearest (Lowe 2004,
   /// section 7.1), seen from either image.
