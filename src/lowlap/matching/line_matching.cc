@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <optional>
+
+#include "lowlap/matching/internal/hamming.h"
 
 namespace lowlap {
 namespace {
@@ -21,16 +21,7 @@ constexpr double kHalfSupport = 0.07;
 // Closer to a line than this, the side says nothing.
 constexpr double kSideTolerancePx = 4.0;
 
-int HammingDistance(const LineDescriptor& a, const LineDescriptor& b) {
-  int distance = 0;
-  for (std::size_t at = 0; at < a.size(); at += sizeof(std::uint64_t)) {
-    std::uint64_t x = 0, y = 0;
-    std::memcpy(&x, a.data() + at, sizeof(x));
-    std::memcpy(&y, b.data() + at, sizeof(y));
-    distance += __builtin_popcountll(x ^ y);
-  }
-  return distance;
-}
+using internal::HammingDistance;
 
 struct Candidate {
   FeatureMatch match;
