@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <string>
 #include <vector>
 
 #include "lowlap/core/result.h"
@@ -36,6 +37,22 @@ struct DetectedFeatures {
 
 Result<DetectedFeatures> DetectFeatures(const GrayImage& image,
                                         const FeatureOptions& options);
+
+/// The same for an image with lens distortion: straight edges are bent in it,
+/// so segments are detected and described on an UndistortedImage, and their end
+/// points are moved back to the image's own pixels. A panorama has points only.
+Result<DetectedFeatures> DetectFeatures(const GrayImage& image,
+                                        const Intrinsic& intrinsic,
+                                        const FeatureOptions& options);
+
+/// The features of one view from its image file's bytes.
+Result<DetectedFeatures> DetectFeaturesOfView(const Scene& scene, ViewId id,
+                                              const std::string& image_bytes,
+                                              const FeatureOptions& options);
+
+/// As many threads as max_memory_gb leaves room for, at most the context's.
+int DetectionThreads(const Scene& scene, const FeatureOptions& options,
+                     const RunContext& context);
 
 /// Reads the images of all views of the scene (Scene::ImagePath) and detects
 /// their features, one image per thread. An image whose size is not that of

@@ -1,6 +1,7 @@
 #include "lowlap/features/image.h"
 
 #include <filesystem>
+#include <opencv2/core/version.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 
@@ -76,12 +77,17 @@ Status GrayImage::Validate() const {
 Result<GrayImage> ReadGrayImage(const std::string& path) {
   const Result<std::string> bytes = ReadWholeFile(path);
   if (!bytes) return tl::unexpected<Error>(bytes.error());
+  return DecodeGrayImage(*bytes, path);
+}
+
+Result<GrayImage> DecodeGrayImage(const std::string& bytes,
+                                  const std::string& path) {
   GrayImage image;
   try {
     cv::Mat decoded;
-    if (!bytes->empty()) {
-      const cv::Mat encoded(1, static_cast<int>(bytes->size()), CV_8UC1,
-                            const_cast<char*>(bytes->data()));
+    if (!bytes.empty()) {
+      const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
+                            const_cast<char*>(bytes.data()));
       decoded = cv::imdecode(
           encoded, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     }
@@ -111,5 +117,7 @@ Result<ImageSize> ReadImageSize(const std::string& path) {
   if (!image) return tl::unexpected<Error>(image.error());
   return ImageSize{image->width, image->height};
 }
+
+std::string ImageLibraryVersion() { return CV_VERSION; }
 
 }  // namespace lowlap

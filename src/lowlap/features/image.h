@@ -29,8 +29,15 @@ struct ImageSize {
 /// sensor. Errors: kNotFound, kParse (not an image), with the path.
 Result<GrayImage> ReadGrayImage(const std::string& path);
 
+/// The same from a file's bytes; `path` is for messages only.
+Result<GrayImage> DecodeGrayImage(const std::string& bytes,
+                                  const std::string& path);
+
 /// The size of an image as ReadGrayImage would return it; JPEG and PNG files
 /// are not decoded for it. Errors as there.
 Result<ImageSize> ReadImageSize(const std::string& path);
+
+/// The version of the library that decodes images and finds features.
+std::string ImageLibraryVersion();
 
 }  // namespace lowlap
