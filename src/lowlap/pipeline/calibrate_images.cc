@@ -1,15 +1,23 @@
 #include "lowlap/pipeline/calibrate_images.h"
 
+#include <cmath>
+#include <optional>
 #include <utility>
 
 #include "lowlap/matching/pair_selection.h"
+#include "lowlap/pipeline/cached_measurements.h"
 #include "lowlap/pipeline/scene_reduction.h"
 
 namespace lowlap {
+
 Status FrontEndOptions::Validate() const {
   for (const Status& valid :
        {features.Validate(), matching.Validate(), relative_poses.Validate()}) {
     if (!valid) return valid;
+  }
+  if (!(max_cache_gb >= 0 && std::isfinite(max_cache_gb))) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "max_cache_gb must not be negative");
   }
   return {};
 }
@@ -24,24 +32,39 @@ Result<std::vector<PairReport>> MeasureImages(Scene* scene,
   const auto pairs = SelectPairs(*scene, options.pairs);
   if (!pairs) return tl::unexpected<Error>(pairs.error());
 
-  std::map<ViewId, DetectedFeatures> detected;
+  std::optional<CacheFolder> cache;
+  if (!options.cache_folder.empty()) {
+    auto folder = CacheFolder::Open(options.cache_folder);
+    if (!folder) return tl::unexpected<Error>(folder.error());
+    cache = std::move(*folder);
+  }
+  KeyedFeatures detected;
   {
     const StageLog::Scope scope(stages, "features");
-    auto result = DetectFeatures(*scene, options.features, context);
-    if (!result) return tl::unexpected<Error>(result.error());
-    detected = std::move(*result);
+    if (cache) {
+      auto result = DetectFeatures(*scene, options.features, *cache, context);
+      if (!result) return tl::unexpected<Error>(result.error());
+      detected = std::move(*result);
+    } else {
+      auto result = DetectFeatures(*scene, options.features, context);
+      if (!result) return tl::unexpected<Error>(result.error());
+      detected.features = std::move(*result);
+    }
   }
   std::map<ViewPair, PairMatches> matches;
   {
     const StageLog::Scope scope(stages, "matching");
-    auto result = MatchFeatures(detected, *pairs, options.matching, context);
+    auto result = cache ? MatchFeatures(detected, *pairs, options.matching,
+                                        *cache, context)
+                        : MatchFeatures(detected.features, *pairs,
+                                        options.matching, context);
     if (!result) return tl::unexpected<Error>(result.error());
     matches = std::move(*result);
+    if (cache) cache->Prune(options.max_cache_gb * 1e9);
   }
-  for (auto& [view, features] : detected) {
-    scene->features[view] = std::move(features.features);
+  for (const auto& [view, features] : detected.features) {
+    scene->features[view] = features.features;
   }
-  detected.clear();
   const StageLog::Scope scope(stages, "relative poses");
   auto reports =
       EstimateRelativePoses(scene, matches, options.relative_poses, context);

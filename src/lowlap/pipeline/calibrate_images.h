@@ -18,6 +18,10 @@ struct FrontEndOptions {
   FeatureOptions features;
   MatchOptions matching;
   RelativePoseOptions relative_poses;
+  /// Folder of features and matches that are used again; empty: none.
+  std::string cache_folder;
+  /// Entries that were not used for long are removed beyond this.
+  double max_cache_gb = 4;
 
   Status Validate() const;
 };
@@ -25,7 +29,8 @@ struct FrontEndOptions {
 /// From photographs to measurements: detects features in the images of all
 /// views, matches the selected pairs, and fills scene->features,
 /// relative_poses and tracks. Features that no inlier uses are dropped
-/// (KeepMatchedFeatures), so that the scene stays small.
+/// (KeepMatchedFeatures), so that the scene stays small. The result does not
+/// depend on what a cache holds. A cancelled run leaves the cache in order.
 Result<std::vector<PairReport>> MeasureImages(Scene* scene,
                                               const FrontEndOptions& options,
                                               const RunContext& context,
