@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/averaging/cycle_support.h"
 #include "lowlap/averaging/difference_solver.h"
 #include "lowlap/core/median.h"
+#include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
 
 namespace lowlap {
@@ -18,10 +20,8 @@ Vec3 Residual(const RotationMeasurement& m,
 
 std::vector<Mat3> ComposeAlongForest(
     std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
-    const std::vector<DifferenceEdge>& edges) {
-  std::vector<double> costs;
-  costs.reserve(measurements.size());
-  for (const RotationMeasurement& m : measurements) costs.push_back(m.cost);
+    const std::vector<DifferenceEdge>& edges,
+    const std::vector<double>& costs) {
   std::vector<Mat3> rotations(num_views, Mat3::Identity());
   std::vector<bool> known(num_views, false);
   for (const std::size_t e : MinimumSpanningForest(num_views, edges, costs)) {
@@ -42,13 +42,132 @@ std::vector<Mat3> ComposeAlongForest(
   return rotations;
 }
 
+std::vector<double> NormalisedResiduals(
+    const std::vector<RotationMeasurement>& measurements,
+    const std::vector<Mat3>& rotations) {
+  std::vector<double> normalised;
+  normalised.reserve(measurements.size());
+  for (const RotationMeasurement& m : measurements) {
+    normalised.push_back(Residual(m, rotations).norm() / m.stddev_rad);
+  }
+  return normalised;
+}
+
+// 1.4826 times the median of those residuals that are within `reach`.
+double ScaleWithin(const std::vector<double>& normalised, double reach) {
+  std::vector<double> near;
+  for (const double r : normalised) {
+    if (r <= reach) near.push_back(r);
+  }
+  return std::max(1.0, 1.4826 * Median(std::move(near)));
+}
+
+// The spanning trees to start from, as costs of the edges.
+std::vector<std::vector<double>> StartCosts(
+    std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
+    const RotationAveragingOptions& options) {
+  std::vector<double> own, cycles, joint;
+  const CycleSupport support = ScoreCycles(num_views, measurements);
+  for (std::size_t e = 0; e < measurements.size(); ++e) {
+    // Without cycles an edge is as good as one of three times the usual error.
+    const double x =
+        support.num_cycles[e] == 0
+            ? 1.0
+            : support.error_rad[e] / std::max(3 * support.typical_rad, 1e-12);
+    own.push_back(measurements[e].cost);
+    cycles.push_back(x);
+    joint.push_back(-(1 + std::log1p(std::max(0.0, -own.back()))) /
+                    (1 + x * x));
+  }
+  std::vector<std::vector<double>> starts = {joint, own, cycles};
+  // More starts pay off where they are cheap.
+  constexpr std::size_t kBudget = 20000;
+  const std::size_t affordable =
+      std::max<std::size_t>(kBudget / (measurements.size() + 1), 2);
+  const std::size_t count =
+      std::min<std::size_t>(affordable, options.max_starts);
+  for (std::size_t n = starts.size(); n < count; ++n) {
+    Random random(options.seed, n);
+    std::vector<double> shaken = joint;
+    for (double& cost : shaken) cost *= random.Uniform();
+    starts.push_back(std::move(shaken));
+  }
+  starts.resize(count);
+  return starts;
+}
+
+// Reweighted Gauss-Newton from the rotations in `result`.
+Status Refine(const std::vector<RotationMeasurement>& measurements,
+              const std::vector<DifferenceEdge>& edges,
+              const RotationAveragingOptions& options,
+              RotationAveragingResult* result) {
+  constexpr double kReach = 3.0;
+  std::vector<Mat3>& rotations = result->cam_from_world;
+  const Eigen::Index count = static_cast<Eigen::Index>(measurements.size());
+  Eigen::VectorXd weights(count);
+  Eigen::MatrixXd steps(count, 3);
+  // L1 has done its work long before half of the iterations.
+  const int num_l1_iterations = options.max_iterations / 2;
+  bool robust_phase = false;
+  double scale = HUGE_VAL;
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    std::vector<double> normalised(measurements.size());
+    for (Eigen::Index e = 0; e < count; ++e) {
+      steps.row(e) = Residual(measurements[e], rotations);
+      normalised[e] = steps.row(e).norm() / measurements[e].stddev_rad;
+    }
+    // Tightens, and never widens again, once wrong measurements stand out.
+    scale = robust_phase ? std::min(scale, ScaleWithin(normalised, 5 * scale))
+                         : ScaleWithin(normalised, HUGE_VAL);
+    for (Eigen::Index e = 0; e < count; ++e) {
+      const double r = normalised[e] / scale;
+      weights(e) = 1.0 / std::pow(measurements[e].stddev_rad, 2);
+      if (measurements[e].trusted) continue;
+      if (robust_phase) {
+        const double x = r / kReach;
+        weights(e) /= std::pow(1 + x * x, 2);
+      } else {
+        weights(e) /= std::max(r, 0.1);
+      }
+    }
+    // exp(-w_j) E exp(w_i) ~ log E + w_i - w_j, so w_j - w_i = log E.
+    const auto tangent =
+        SolveDifferences(rotations.size(), edges, weights, steps);
+    if (!tangent) return tl::unexpected<Error>(tangent.error());
+    double largest = 0;
+    for (std::size_t n = 0; n < rotations.size(); ++n) {
+      const Vec3 w = tangent->row(static_cast<Eigen::Index>(n));
+      largest = std::max(largest, w.norm());
+      rotations[n] = rotations[n] * RotationFromAngleAxis(w);
+    }
+    result->num_iterations = iteration + 1;
+    if (robust_phase && largest < options.tolerance_rad) break;
+    if (largest < 1e3 * options.tolerance_rad ||
+        iteration + 1 >= num_l1_iterations) {
+      robust_phase = true;
+    }
+  }
+  result->deviation_scale =
+      ScaleWithin(NormalisedResiduals(measurements, rotations), 5 * scale);
+  return {};
+}
+
+double RobustCost(const std::vector<RotationMeasurement>& measurements,
+                  const std::vector<Mat3>& rotations) {
+  double cost = 0;
+  for (const double r : NormalisedResiduals(measurements, rotations)) {
+    cost += std::log1p(r * r);
+  }
+  return cost;
+}
+
 }  // namespace
 
 Status RotationAveragingOptions::Validate() const {
-  if (max_iterations < 1 || !(tolerance_rad > 0)) {
+  if (max_iterations < 1 || max_starts < 1 || !(tolerance_rad > 0)) {
     return MakeError(ErrorCode::kInvalidArgument,
-                     "rotation averaging: iterations and tolerance must be "
-                     "positive");
+                     "rotation averaging: iterations, starts and tolerance "
+                     "must be positive");
   }
   return {};
 }
@@ -71,58 +190,30 @@ Result<RotationAveragingResult> AverageRotations(
     edges.push_back({m.first, m.second});
   }
 
-  RotationAveragingResult result;
-  std::vector<Mat3>& rotations = result.cam_from_world;
-  rotations = ComposeAlongForest(num_views, measurements, edges);
-
-  const Eigen::Index count = static_cast<Eigen::Index>(measurements.size());
-  Eigen::VectorXd weights(count);
-  Eigen::MatrixXd steps(count, 3);
-  // L1 has done its work long before half of the iterations.
-  const int num_l1_iterations = options.max_iterations / 2;
-  bool robust_phase = false;
-  for (int iteration = 0; iteration < options.max_iterations && count > 0;
-       ++iteration) {
-    std::vector<double> normalised(measurements.size());
-    for (Eigen::Index e = 0; e < count; ++e) {
-      const RotationMeasurement& m = measurements[e];
-      steps.row(e) = Residual(m, rotations);
-      normalised[e] = steps.row(e).norm() / m.stddev_rad;
+  RotationAveragingResult best;
+  best.cam_from_world.assign(num_views, Mat3::Identity());
+  if (measurements.empty()) return best;
+  double best_cost = HUGE_VAL;
+  for (const std::vector<double>& costs :
+       StartCosts(num_views, measurements, options)) {
+    RotationAveragingResult result;
+    result.cam_from_world =
+        ComposeAlongForest(num_views, measurements, edges, costs);
+    if (const Status done = Refine(measurements, edges, options, &result);
+        !done) {
+      return tl::unexpected<Error>(done.error());
     }
-    const double scale = std::max(1.0, 1.4826 * Median(normalised));
-    for (Eigen::Index e = 0; e < count; ++e) {
-      const double r = normalised[e] / scale;
-      const double information = 1.0 / std::pow(measurements[e].stddev_rad, 2);
-      if (robust_phase) {
-        constexpr double kReach = 3.0;
-        const double x = r / kReach;
-        weights(e) = information / std::pow(1 + x * x, 2);
-      } else {
-        weights(e) = information / std::max(r, 0.1);
-      }
-    }
-    // exp(-w_j) E exp(w_i) ~ log E + w_i - w_j, so w_j - w_i = log E.
-    const auto tangent = SolveDifferences(num_views, edges, weights, steps);
-    if (!tangent) return tl::unexpected<Error>(tangent.error());
-    double largest = 0;
-    for (std::size_t n = 0; n < num_views; ++n) {
-      const Vec3 w = tangent->row(static_cast<Eigen::Index>(n));
-      largest = std::max(largest, w.norm());
-      rotations[n] = rotations[n] * RotationFromAngleAxis(w);
-    }
-    result.num_iterations = iteration + 1;
-    if (robust_phase && largest < options.tolerance_rad) break;
-    if (largest < 1e3 * options.tolerance_rad ||
-        iteration + 1 >= num_l1_iterations) {
-      robust_phase = true;
+    const double cost = RobustCost(measurements, result.cam_from_world);
+    // A start that ends in the same place does not replace an earlier one.
+    if (cost < best_cost - 1e-6 * (1 + std::abs(cost))) {
+      best_cost = cost;
+      best = std::move(result);
     }
   }
-
-  result.residuals_rad.reserve(measurements.size());
   for (const RotationMeasurement& m : measurements) {
-    result.residuals_rad.push_back(Residual(m, rotations).norm());
+    best.residuals_rad.push_back(Residual(m, best.cam_from_world).norm());
   }
-  return result;
+  return best;
 }
 
 }  // namespace lowlap

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "lowlap/core/result.h"
@@ -14,13 +15,20 @@ struct RotationMeasurement {
   std::size_t second = 0;
   Mat3 second_from_first = Mat3::Identity();
   double stddev_rad = 0.01;
-  /// Low is trustworthy: orders the spanning tree of the start.
+  /// Low is trustworthy: orders the spanning trees of the start. The log10 NFA
+  /// of the relative pose.
   double cost = 0;
+  /// Keeps its full weight however large its residual is.
+  bool trusted = false;
 };
 
 struct RotationAveragingOptions {
   int max_iterations = 100;
   double tolerance_rad = 1e-9;
+  /// Spanning trees tried at most; fewer on graphs of thousands of edges.
+  int max_starts = 8;
+  /// Of the trees that are drawn at random.
+  std::uint64_t seed = 0;
 
   Status Validate() const;
 };
@@ -28,19 +36,25 @@ struct RotationAveragingOptions {
 struct RotationAveragingResult {
   std::vector<Mat3> cam_from_world;   // identity at the first of a component
   std::vector<double> residuals_rad;  // per measurement
+  /// Robust standard deviation of the right measurements in units of their
+  /// stated ones; at least 1.
+  double deviation_scale = 1;
   int num_iterations = 0;
 };
 
 /// Absolute rotations from relative ones:
 ///   min sum_e rho( |log(R_j^T R_ij R_i)| / sigma_e ).
 ///
-/// Start: the minimum-cost spanning forest, composed. Then iteratively
-/// reweighted Gauss-Newton on SO(3) (Chatterjee and Govindu 2013): first L1,
-/// which a few wrong measurements do not move, then the Geman-McClure weight
-/// with the scale of the residuals' median, which forgets them. Each step is a
-/// graph Laplacian in the tangent space (SolveDifferences). Gauge: one
-/// rotation of every connected component is the identity. A tree is
-/// reproduced exactly.
+/// Starts: composed spanning forests that prefer low cost, the support of
+/// cycles (ScoreCycles), both, and both at random. Each is followed by
+/// iteratively reweighted Gauss-Newton on SO(3) (Chatterjee and Govindu 2013):
+/// first L1, which a few wrong measurements do not move, then the Geman-McClure
+/// weight, whose scale is the median of the residuals in its own reach, and so
+/// tightens until wrong measurements are forgotten. The solution with the least
+///   sum_e log(1 + (r_e / sigma_e)^2)
+/// is returned. Each step is a graph Laplacian in the tangent space
+/// (SolveDifferences). Gauge: one rotation of every connected component is the
+/// identity. A tree is reproduced exactly.
 Result<RotationAveragingResult> AverageRotations(
     std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
     const RotationAveragingOptions& options = {});
