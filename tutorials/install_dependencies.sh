@@ -9,7 +9,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libeigen3-dev libceres-dev libsuitesparse-dev
-  libopencv-dev libopencv-contrib-dev
+  libopencv-dev libopencv-contrib-dev libexif-dev
   nlohmann-json3-dev libcereal-dev libcli11-dev libexpected-dev
   libgtest-dev libgmock-dev
   "$@"

@@ -9,3 +9,5 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(cereal REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tl-expected REQUIRED)
+# libexif has no CMake package; it is linked by its name, as -lexif.
+find_library(LIBEXIF_LIBRARY exif REQUIRED)

@@ -9,6 +9,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "exif_writing.h"
+
 namespace lowlap {
 namespace {
 
@@ -90,9 +92,77 @@ TEST_F(ImageCollection, BadInputIsNamed) {
   const auto broken = SceneFromImages(folder_.string(), Focal(9), {});
   ASSERT_FALSE(broken);
   EXPECT_THAT(broken.error().file, ::testing::HasSubstr("b.png"));
-  const auto neither = SceneFromImages(folder_.string(), IntrinsicSource(), {});
-  ASSERT_FALSE(neither);
-  EXPECT_EQ(neither.error().code, ErrorCode::kInvalidArgument);
+  IntrinsicSource both = Focal(9);
+  both.calibration = Mat3::Identity();
+  const auto refused = SceneFromImages(folder_.string(), both, {});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kInvalidArgument);
+}
+
+TEST_F(ImageCollection, WithoutIntrinsicsTheFocalLengthsComeFromExif) {
+  AddImage("a.jpg", 60, 40);
+  AddImage("b.jpg", 60, 40);
+  AddImage("c.jpg", 60, 40);
+  testing::AddExif({{EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM, 36}},
+                   (folder_ / "a.jpg").string());
+  testing::AddExif({{EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM, 36}},
+                   (folder_ / "b.jpg").string());
+  const auto none =
+      SceneFromImages(folder_.string(), IntrinsicSource(), {"a.jpg"});
+  ASSERT_FALSE(none);
+  EXPECT_EQ(none.error().code, ErrorCode::kInsufficientData);
+  EXPECT_THAT(none.error().file, ::testing::HasSubstr("c.jpg"));
+  testing::AddExif({{EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM, 18}},
+                   (folder_ / "c.jpg").string());
+  const auto scene = SceneFromImages(folder_.string(), IntrinsicSource(), {});
+  ASSERT_TRUE(scene) << scene.error().ToString();
+  EXPECT_EQ(scene->intrinsics.size(), 2u);
+  EXPECT_EQ(scene->views.at(0).intrinsic_id, scene->views.at(1).intrinsic_id);
+  EXPECT_NEAR(scene->FindIntrinsic(0)->fx_px, 60, 1e-9);
+  EXPECT_NEAR(scene->FindIntrinsic(2)->fy_px, 30, 1e-9);
+  EXPECT_EQ(scene->FindIntrinsic(0)->principal_point_px, Vec2(29.5, 19.5));
+}
+
+TEST_F(ImageCollection, IntrinsicsOfAnotherSceneGoByFileName) {
+  AddImage("a.png", 40, 30);
+  AddImage("b.png", 40, 30);
+  Intrinsic wide;
+  wide.model = CameraModel::kRadialK1;
+  wide.width_px = 40;
+  wide.height_px = 30;
+  wide.fx_px = wide.fy_px = 25;
+  wide.distortion = {-0.2};
+  Intrinsic tele = wide;
+  tele.fx_px = tele.fy_px = 80;
+  IntrinsicSource source;
+  source.scene.emplace();
+  source.scene->intrinsics = {{3, tele}, {8, wide}};
+  View view;
+  view.intrinsic_id = 8;
+  view.filename = "b.png";
+  source.scene->views[5] = view;
+  const auto unlisted = SceneFromImages(folder_.string(), source, {});
+  ASSERT_FALSE(unlisted);
+  EXPECT_THAT(unlisted.error().file, ::testing::HasSubstr("a.png"));
+  view.intrinsic_id = 3;
+  view.filename = "sub/a.png";
+  source.scene->views[6] = view;
+  const auto scene = SceneFromImages(folder_.string(), source, {});
+  ASSERT_TRUE(scene) << scene.error().ToString();
+  EXPECT_TRUE(*scene->FindIntrinsic(0) == tele);
+  EXPECT_TRUE(*scene->FindIntrinsic(1) == wide);
+  EXPECT_EQ(scene->views.at(1).intrinsic_id, 8u);
+
+  // One intrinsic is that of every image; its size must fit.
+  source.scene->views.clear();
+  source.scene->intrinsics.erase(3);
+  const auto one = SceneFromImages(folder_.string(), source, {});
+  ASSERT_TRUE(one);
+  EXPECT_TRUE(*one->FindIntrinsic(0) == wide);
+  source.scene->intrinsics.at(8).width_px = 41;
+  const auto misfit = SceneFromImages(folder_.string(), source, {});
+  ASSERT_FALSE(misfit);
+  EXPECT_THAT(misfit.error().message, ::testing::HasSubstr("41 x 30"));
 }
 
 TEST_F(ImageCollection, ViewsAreFoundByNameStemOrId) {
