@@ -13,15 +13,15 @@ namespace lowlap {
 struct GuidedLineOptions {
   /// Greatest Hamming distance of two descriptors of 256 bits; the geometry
   /// leaves few partners, so this may be wider than without it.
-  int max_distance_bits = 100;
+  int max_distance_bits = 110;
   /// Least overlap of two segments along the line, after transfer by the
   /// epipolar lines of the end points, relative to the shorter of the two.
   double min_overlap = 0.5;
   /// A line closer than this to an epipolar plane has no depth, and the
   /// transfer of its end points says nothing: no match.
-  double min_epipolar_angle_deg = 2.0;
+  double min_epipolar_angle_deg = 1.0;
   /// Least score of a match that is not a seed, in [0, 1].
-  double min_score = 0.2;
+  double min_score = 0.1;
 
   Status Validate() const;
 };
