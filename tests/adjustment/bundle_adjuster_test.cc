@@ -276,7 +276,7 @@ TEST(BundleAdjusterTest, FocalLengthsAndDistortionAreRefinedOnRequest) {
   const Intrinsic start = intrinsic;
   Scene fixed = test.scene;
   AdjustmentOptions refine;
-  refine.refine_intrinsics[7] = {true, false, true};
+  refine.refine_intrinsics[7] = {true, false, true, true};
   BuildAndAdjust(&test.scene, refine);
   EXPECT_NEAR(intrinsic.fx_px, truth.fx_px, 2);
   EXPECT_NEAR(intrinsic.fy_px, truth.fy_px, 2);

@@ -21,11 +21,14 @@ enum class AdjustedCoplanarResidual {
 
 /// Which parts of an intrinsic are unknowns.
 struct IntrinsicRefinement {
-  bool focal = false;  // fx and fy, each
+  bool focal = false;  // fx and fy by one factor
   bool principal_point = false;
   bool distortion = false;
+  bool aspect_ratio = false;  // fy / fx
 
-  bool Any() const { return focal || principal_point || distortion; }
+  bool Any() const {
+    return focal || principal_point || distortion || aspect_ratio;
+  }
 };
 
 struct AdjustmentOptions {

@@ -6,6 +6,7 @@
 #include "lowlap/adjustment/internal/coplanar_costs.h"
 #include "lowlap/adjustment/internal/pair_terms.h"
 #include "lowlap/adjustment/internal/point_reprojection_cost.h"
+#include "lowlap/adjustment/internal/subspace_manifold.h"
 
 namespace lowlap::internal {
 namespace {
@@ -22,6 +23,31 @@ IntrinsicRefinement RefinementOf(const AdjustmentOptions& options,
     return {};
   }
   return found->second;
+}
+
+// The ways in which the parameters of an intrinsic may move, as columns.
+Eigen::MatrixXd FreeDirections(const IntrinsicRefinement& refinement,
+                               const IntrinsicState& intrinsic) {
+  const int count = intrinsic.ParameterCount();
+  std::vector<Eigen::VectorXd> directions;
+  const auto add_axis = [&](int n) {
+    directions.push_back(Eigen::VectorXd::Unit(count, n));
+  };
+  if (refinement.focal) {
+    const Vec2 focals(intrinsic.parameters[0], intrinsic.parameters[1]);
+    directions.push_back(Eigen::VectorXd::Zero(count));
+    directions.back().head<2>() = focals.normalized();
+  }
+  if (refinement.aspect_ratio) add_axis(1);
+  if (refinement.principal_point) add_axis(2), add_axis(3);
+  if (refinement.distortion) {
+    for (int n = 4; n < count; ++n) add_axis(n);
+  }
+  Eigen::MatrixXd basis(count, directions.size());
+  for (std::size_t n = 0; n < directions.size(); ++n) {
+    basis.col(static_cast<int>(n)) = directions[n];
+  }
+  return basis;
 }
 
 }  // namespace
@@ -208,20 +234,12 @@ void ProblemBuilder::SetManifolds() {
     const IntrinsicState& intrinsic = cameras_->intrinsics[index];
     double* parameters = IntrinsicBlock(static_cast<int>(index));
     if (!problem_->HasParameterBlock(parameters)) continue;
-    const IntrinsicRefinement refinement = RefinementOf(options_, intrinsic);
-    std::vector<int> constant;
-    for (int n = 0; n < intrinsic.ParameterCount(); ++n) {
-      const bool free = n < 2   ? refinement.focal
-                        : n < 4 ? refinement.principal_point
-                                : refinement.distortion;
-      if (!free) constant.push_back(n);
-    }
-    if (static_cast<int>(constant.size()) == intrinsic.ParameterCount()) {
+    const Eigen::MatrixXd basis =
+        FreeDirections(RefinementOf(options_, intrinsic), intrinsic);
+    if (basis.cols() == 0) {
       problem_->SetParameterBlockConstant(parameters);
-    } else if (!constant.empty()) {
-      problem_->SetManifold(
-          parameters,
-          new ceres::SubsetManifold(intrinsic.ParameterCount(), constant));
+    } else {
+      problem_->SetManifold(parameters, new SubspaceManifold(basis));
     }
   }
 }

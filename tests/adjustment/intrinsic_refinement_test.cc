@@ -1,0 +1,143 @@
+#include "lowlap/adjustment/intrinsic_refinement.h"
+
+#include <ceres/manifold_test_utils.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/adjustment/internal/subspace_manifold.h"
+#include "lowlap/adjustment/structure_builder.h"
+#include "test_scene.h"
+#include "tests/support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using test::ComparePoses;
+using test::MakeTestScene;
+using test::TestScene;
+using test::TestSceneOptions;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::IsOk;
+
+// Builds structure with the intrinsics as they are, then refines them.
+void Adjust(const IntrinsicRefinement& refinement, Scene* scene) {
+  AdjustmentOptions options;
+  RefineAllIntrinsics(refinement, scene, &options);
+  ASSERT_THAT(BuildStructure(scene, {}, {}), IsOk());
+  ASSERT_THAT(AdjustScene(scene, options, {}), IsOk());
+}
+
+TEST(SubspaceManifoldTest, IsAManifold) {
+  Eigen::MatrixXd basis(4, 2);
+  basis << 0.6, 0, 0.8, 0, 0, 1, 0, 0;
+  const internal::SubspaceManifold manifold(basis);
+  Eigen::VectorXd x(4), y(4), delta(2);
+  x << 800, 820, 600, -0.1;
+  delta << 3, -0.5;
+  ASSERT_TRUE(manifold.Plus(x.data(), delta.data(), y.data()));
+  using namespace ceres;  // NOLINT: the macro names its matchers so
+  EXPECT_THAT_MANIFOLD_INVARIANTS_HOLD(manifold, x, delta, y, 1e-9);
+}
+
+TEST(RefineAllIntrinsicsTest, PinholesGetADistortionToRefine) {
+  Scene scene;
+  scene.intrinsics[1].model = CameraModel::kPinhole;
+  scene.intrinsics[2].model = CameraModel::kSpherical;
+  scene.intrinsics[3].model = CameraModel::kRadialK3;
+  scene.intrinsics[3].distortion = {0.1, 0.2, 0.3};
+  const Scene before = scene;
+  AdjustmentOptions options;
+  RefineAllIntrinsics({}, &scene, &options);
+  EXPECT_TRUE(options.refine_intrinsics.empty());
+  RefineAllIntrinsics({true}, &scene, &options);
+  EXPECT_EQ(options.refine_intrinsics.size(), 2u);  // not the panorama
+  EXPECT_TRUE(scene == before);
+  RefineAllIntrinsics({true, false, true}, &scene, &options);
+  EXPECT_EQ(scene.intrinsics.at(1).model, CameraModel::kRadialK1);
+  EXPECT_THAT(scene.intrinsics.at(1).distortion, ElementsAre(0));
+  EXPECT_TRUE(scene.intrinsics.at(3) == before.intrinsics.at(3));
+}
+
+TEST(RefineAllIntrinsicsTest, AWrongFocalLengthIsFound) {
+  for (const double factor : {0.97, 1.03}) {
+    for (const bool lines_only : {false, true}) {
+      SCOPED_TRACE(::testing::Message() << factor << " " << lines_only);
+      TestSceneOptions scene_options;
+      scene_options.noise_px = 0.3;
+      scene_options.pairs_per_triplet = 8;
+      if (lines_only) scene_options.num_points = 0;
+      TestScene test = MakeTestScene(scene_options);
+      const Intrinsic truth = test.scene.intrinsics.at(7);
+      Intrinsic& intrinsic = test.scene.intrinsics.at(7);
+      intrinsic.fx_px *= factor;
+      intrinsic.fy_px *= factor;
+      Scene fixed = test.scene;
+      Adjust({true}, &test.scene);
+      EXPECT_NEAR(intrinsic.fx_px / truth.fx_px, 1, 0.003);
+      EXPECT_NEAR(intrinsic.fx_px / intrinsic.fy_px, truth.fx_px / truth.fy_px,
+                  1e-9);
+      EXPECT_EQ(intrinsic.principal_point_px, truth.principal_point_px);
+      Adjust({}, &fixed);
+      EXPECT_EQ(fixed.intrinsics.at(7).fx_px, factor * truth.fx_px);
+      EXPECT_LT(ComparePoses(test.true_poses, test.scene).mean_center,
+                0.5 * ComparePoses(test.true_poses, fixed).mean_center);
+    }
+  }
+}
+
+TEST(RefineAllIntrinsicsTest, AnUnknownDistortionIsFound) {
+  TestSceneOptions scene_options;
+  scene_options.noise_px = 0.3;
+  scene_options.model = CameraModel::kRadialK1;
+  scene_options.distortion = {-0.1};
+  TestScene test = MakeTestScene(scene_options);
+  const Intrinsic truth = test.scene.intrinsics.at(7);
+  Intrinsic& intrinsic = test.scene.intrinsics.at(7);
+  intrinsic.model = CameraModel::kPinhole;
+  intrinsic.distortion.clear();
+  intrinsic.fx_px *= 1.02;
+  intrinsic.fy_px *= 1.02;
+  Adjust({true, false, true}, &test.scene);
+  EXPECT_EQ(intrinsic.model, CameraModel::kRadialK1);
+  EXPECT_NEAR(intrinsic.distortion[0], -0.1, 0.004);
+  EXPECT_NEAR(intrinsic.fx_px / truth.fx_px, 1, 0.003);
+}
+
+TEST(RefineAllIntrinsicsTest, WithoutItNothingChanges) {
+  TestSceneOptions scene_options;
+  scene_options.noise_px = 0.3;
+  scene_options.pairs_per_triplet = 4;
+  TestScene plain = MakeTestScene(scene_options);
+  TestScene named = MakeTestScene(scene_options);
+  const auto intrinsics = plain.scene.intrinsics;
+  Adjust({}, &plain.scene);
+  // Named, with nothing to refine.
+  AdjustmentOptions options;
+  options.refine_intrinsics[7] = {};
+  ASSERT_THAT(BuildStructure(&named.scene, {}, {}), IsOk());
+  ASSERT_THAT(AdjustScene(&named.scene, options, {}), IsOk());
+  EXPECT_TRUE(plain.scene == named.scene);
+  EXPECT_TRUE(plain.scene.intrinsics == intrinsics);
+}
+
+TEST(DescribeIntrinsicChangesTest, NamesWhatMoved) {
+  Scene before;
+  Intrinsic& intrinsic = before.intrinsics[4];
+  intrinsic.fx_px = 800;
+  intrinsic.fy_px = 801;
+  Scene after = before;
+  EXPECT_TRUE(DescribeIntrinsicChanges(before, after).empty());
+  after.intrinsics[4].fx_px = 810;
+  after.intrinsics[4].model = CameraModel::kRadialK1;
+  after.intrinsics[4].distortion = {-0.05};
+  const auto lines = DescribeIntrinsicChanges(before, after);
+  ASSERT_EQ(lines.size(), 1u);
+  EXPECT_THAT(lines[0], HasSubstr("intrinsic 4"));
+  EXPECT_THAT(lines[0], HasSubstr("focal 800.00, 801.00 -> 810.00, 801.00"));
+  EXPECT_THAT(lines[0], HasSubstr("distortion 0.00000 -> -0.05000"));
+}
+
+}  // namespace
+}  // namespace lowlap
