@@ -19,6 +19,7 @@ struct Flags {
   std::string output;
   std::vector<std::string> features = {"points", "lines", "coplanar"};
   bool retriangulate = false;
+  std::string refine_intrinsics;
   std::string ground_truth;
 };
 
@@ -42,6 +43,13 @@ int Adjust(const Flags& flags) {
   summary.command = "adjust";
   if (*truth) {
     summary.evaluation_before_adjustment = EvaluatePoses(*scene, **truth);
+  }
+  Scene start;
+  start.intrinsics = scene->intrinsics;
+  if (const Status set =
+          SetRefinement(flags.refine_intrinsics, &*scene, &options);
+      !set) {
+    return Fail(set.error());
   }
   StageLog stages;
   SolveResult result;
@@ -79,6 +87,7 @@ int Adjust(const Flags& flags) {
   std::printf("cost %.6g -> %.6g in %d iterations, %d outlier rounds\n",
               adjustment.initial_cost, adjustment.final_cost,
               adjustment.iterations, adjustment.outlier_rounds);
+  PrintIntrinsics(start, *scene);
   if (summary.evaluation) {
     std::printf("\n%s\n", ToText(*summary.evaluation).c_str());
   }
@@ -103,6 +112,7 @@ void AddAdjust(CLI::App* program, Action* action) {
       ->delimiter(',');
   command->add_flag("--retriangulate", flags->retriangulate,
                     "Build the structure anew from the tracks first");
+  AddRefinementFlag(command, &flags->refine_intrinsics);
   command->add_option(
       "--gt", flags->ground_truth,
       "True cameras to evaluate against (folder or scene file)");

@@ -21,10 +21,17 @@ struct CommonFlags {
 void AddCommonFlags(CLI::App* command, CommonFlags* flags);
 
 /// Messages and progress go to standard error, so that standard output holds
-/// only the command's result. Progress needs a terminal.
+/// only the command's result. Progress needs a terminal. An interrupt stops
+/// the work at its next step (ErrorCode::kCancelled).
 RunContext MakeContext(const CommonFlags& flags);
 
-/// Prints "error: file: place: message" and returns the exit code 1.
+/// From here on SIGINT and SIGTERM ask the command to stop, whose files then
+/// are whole or not there; a second one ends the program at once.
+void CatchInterrupts();
+bool IsInterrupted();
+
+/// Prints "error: file: place: message" and returns the exit code: 1, or 128 +
+/// the signal's number (130 for Ctrl-C) after an interrupt.
 int Fail(const Error& error);
 
 /// What a parsed command line asks for; returns the exit code.

@@ -27,6 +27,7 @@ int main(int argc, char** argv) {
   lowlap::cli::AddSimulate(&program, &action);
 
   CLI11_PARSE(program, argc, argv);
+  lowlap::cli::CatchInterrupts();
   try {
     return action();
   } catch (const std::exception& exception) {

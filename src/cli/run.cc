@@ -7,6 +7,7 @@
 #include "lowlap/pipeline/calibrate_images.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/output_folder.h"
+#include "third_party_adapters/scene_formats.h"
 #include "third_party_adapters/strecha/strecha.h"
 
 namespace lowlap::cli {
@@ -20,27 +21,54 @@ struct RunFlags {
   std::optional<double> focal_px;
   std::string pairs = "all";
   std::vector<std::string> exclude;
+  std::string cache;
+  bool no_cache = false;
   SolveFlags solve;
 };
+
+// A calibration matrix, or the intrinsics of a scene file.
+Result<IntrinsicSource> ReadIntrinsics(const RunFlags& flags) {
+  IntrinsicSource source;
+  source.focal_px = flags.focal_px;
+  if (flags.intrinsics.empty()) return source;
+  auto scene = ReadScene(flags.intrinsics);
+  if (scene) {
+    source.scene = std::move(*scene);
+    return source;
+  }
+  if (scene.error().code != ErrorCode::kUnsupported) {
+    return tl::unexpected<Error>(scene.error());
+  }
+  const auto matrix = strecha::ReadCalibrationMatrix(flags.intrinsics);
+  if (!matrix) return tl::unexpected<Error>(matrix.error());
+  source.calibration = *matrix;
+  return source;
+}
 
 int Run(const RunFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   // Everything that can be refused is refused before the long work.
   const auto options = MakeSolveOptions(flags.solve);
   if (!options) return Fail(options.error());
-  IntrinsicSource intrinsics;
-  intrinsics.focal_px = flags.focal_px;
-  if (!flags.intrinsics.empty()) {
-    const auto matrix = strecha::ReadCalibrationMatrix(flags.intrinsics);
-    if (!matrix) return Fail(matrix.error());
-    intrinsics.calibration = *matrix;
-  }
-  auto scene = SceneFromImages(flags.images, intrinsics, flags.exclude);
+  const auto intrinsics = ReadIntrinsics(flags);
+  if (!intrinsics) return Fail(intrinsics.error());
+  auto scene = SceneFromImages(flags.images, *intrinsics, flags.exclude);
   if (!scene) return Fail(scene.error());
   const auto truth = LoadGroundTruth(flags.solve.ground_truth, *scene);
   if (!truth) return Fail(truth.error());
 
+  if (flags.intrinsics.empty() && !flags.focal_px &&
+      flags.solve.refine_intrinsics.empty()) {
+    context.Log(LogLevel::kInfo,
+                "focal lengths are those of the EXIF data, a few percent off "
+                "as a rule; --refine-intrinsics adjusts them");
+  }
+
   FrontEndOptions front_end;
+  if (!flags.no_cache) {
+    front_end.cache_folder =
+        flags.cache.empty() ? flags.output + "/cache" : flags.cache;
+  }
   front_end.pairs = flags.pairs;
   const bool needs_lines =
       options->scale.use_lines || options->scale.use_coplanar;
@@ -51,7 +79,14 @@ int Run(const RunFlags& flags) {
   RunSummary summary;
   summary.command = "run";
   auto pairs = MeasureImages(&*scene, front_end, context, &stages);
-  if (!pairs) return Fail(pairs.error());
+  if (!pairs) {
+    if (IsInterrupted() && !flags.no_cache) {
+      context.Log(LogLevel::kInfo, "what was measured is kept in " +
+                                       front_end.cache_folder +
+                                       "; the same command goes on from there");
+    }
+    return Fail(pairs.error());
+  }
   summary.pairs = std::move(*pairs);
   return SolveAndWrite(std::move(*scene), flags.solve, std::move(summary),
                        &stages, context, flags.output);
@@ -72,7 +107,8 @@ void AddRun(CLI::App* program, Action* action) {
   auto* matrix = command->add_option(
       "--intrinsics", flags->intrinsics,
       "K.txt: the 3x3 calibration matrix of all photographs, in pixels "
-      "(fx and fy are both used)");
+      "(fx and fy are both used); or a scene file whose views, by file name, "
+      "have intrinsics of any model. Without it and --focal: from EXIF data");
   auto* focal =
       command
           ->add_option("--focal", flags->focal_px,
@@ -86,6 +122,13 @@ void AddRun(CLI::App* program, Action* action) {
       ->add_option("--exclude", flags->exclude,
                    "Photographs to leave out, separated by commas")
       ->delimiter(',');
+  auto* cache = command->add_option(
+      "--cache", flags->cache,
+      "Folder of features and matches to use again; default OUTPUT/cache");
+  command
+      ->add_flag("--no-cache", flags->no_cache,
+                 "Neither use nor keep features and matches")
+      ->excludes(cache);
   AddSolveFlags(command, &flags->solve);
   AddCommonFlags(command, &flags->common);
   command->callback(

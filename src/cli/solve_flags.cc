@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "cli/command.h"
+#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/averaging/pose_warnings.h"
 #include "lowlap/averaging/strategies.h"
 #include "lowlap/pipeline/output_folder.h"
 #include "third_party_adapters/scene_formats.h"
@@ -40,25 +42,27 @@ Result<Kinds> ParseKinds(const std::vector<std::string>& names) {
 
 void PrintPoses(const PoseSummary& poses, const Scene& scene) {
   std::printf("cameras placed: %d/%d\n", poses.num_placed, poses.num_views);
-  if (!poses.unplaced.empty()) {
-    std::printf("not placed (no scale joins them to the others):");
-    for (const ViewId view : poses.unplaced) {
-      std::printf(" %s", scene.views.at(view).filename.c_str());
-    }
-    std::printf("\n");
-  }
-  if (!poses.outlier_edges.empty()) {
-    std::printf(
-        "relative poses left out, since their rotations contradict the others: "
-        "%zu of %zu (report.html names them)\n",
-        poses.outlier_edges.size(), scene.relative_poses.size());
+  for (const std::string& warning : PoseWarnings(poses, scene)) {
+    // Lists of many names are for the report.
+    constexpr std::size_t kLongest = 300;
+    std::printf("warning: %s\n",
+                warning.size() <= kLongest
+                    ? warning.c_str()
+                    : (warning.substr(0, kLongest) + "... (see report.html)")
+                          .c_str());
   }
 }
 
 void PrintCost(const std::vector<StageCost>& stages) {
   std::printf("%-16s %8s %8s\n", "stage", "wall s", "CPU s");
   double wall = 0, cpu = 0;
+  StageCost front_end;
   for (const StageCost& stage : stages) {
+    if (stage.name == "features" || stage.name == "matching" ||
+        stage.name == "relative poses") {
+      front_end.wall_s += stage.wall_s;
+      front_end.cpu_s += stage.cpu_s;
+    }
     std::printf("%-16s %8.2f %8.2f\n", stage.name.c_str(), stage.wall_s,
                 stage.cpu_s);
     wall += stage.wall_s;
@@ -66,6 +70,12 @@ void PrintCost(const std::vector<StageCost>& stages) {
   }
   std::printf("%-16s %8.2f %8.2f   peak memory %.0f MB\n", "total", wall, cpu,
               PeakMemoryMb());
+  if (front_end.cpu_s > 0) {
+    std::printf(
+        "features, matching and relative poses together: %.2f s, %.2f s of "
+        "CPU\n",
+        front_end.wall_s, front_end.cpu_s);
+  }
 }
 
 }  // namespace
@@ -123,6 +133,7 @@ void AddSolveFlags(CLI::App* command, SolveFlags* flags) {
       ->delimiter(',');
   command->add_flag("--no-adjust", flags->no_adjust,
                     "Stop before the bundle adjustment");
+  AddRefinementFlag(command, &flags->refine_intrinsics);
   command->add_option("--gt", flags->ground_truth,
                       "True cameras to evaluate against, never used for "
                       "solving: a folder of Strecha's .camera files, or a "
@@ -139,7 +150,56 @@ Status SetAdjustedFeatures(const std::vector<std::string>& features,
   return {};
 }
 
+void AddRefinementFlag(CLI::App* command, std::string* parts) {
+  command
+      ->add_option("--refine-intrinsics", *parts,
+                   "Let the bundle adjustment refine the intrinsics, each for "
+                   "all its views: a list of focal, aspect (fy / fx), "
+                   "principal-point, distortion (of a pinhole: k1), or all; "
+                   "without a list: focal,distortion")
+      ->expected(0, 1)
+      ->default_str("focal,distortion");
+}
+
+Result<IntrinsicRefinement> ParseRefinement(const std::string& parts) {
+  IntrinsicRefinement refinement;
+  for (const std::string& part : CLI::detail::split(parts, ',')) {
+    const bool all = part == "all";
+    const bool known = all || part == "focal" || part == "aspect" ||
+                       part == "principal-point" || part == "distortion";
+    if (!known && !part.empty()) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "--refine-intrinsics knows no '" + part +
+                           "'; known: focal, aspect, principal-point, "
+                           "distortion, all");
+    }
+    refinement.focal |= all || part == "focal";
+    refinement.aspect_ratio |= all || part == "aspect";
+    refinement.principal_point |= all || part == "principal-point";
+    refinement.distortion |= all || part == "distortion";
+  }
+  return refinement;
+}
+
+Status SetRefinement(const std::string& parts, Scene* scene,
+                     AdjustmentOptions* options) {
+  const auto refinement = ParseRefinement(parts);
+  if (!refinement) return tl::unexpected<Error>(refinement.error());
+  RefineAllIntrinsics(*refinement, scene, options);
+  return {};
+}
+
+void PrintIntrinsics(const Scene& before, const Scene& after) {
+  for (const std::string& line : DescribeIntrinsicChanges(before, after)) {
+    std::printf("%s\n", line.c_str());
+  }
+}
+
 Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
+  if (const auto refinement = ParseRefinement(flags.refine_intrinsics);
+      !refinement) {
+    return tl::unexpected<Error>(refinement.error());
+  }
   SolveOptions options;
   const auto scale = MakeScaleOptions(flags.scale);
   if (!scale) return tl::unexpected<Error>(scale.error());
@@ -175,10 +235,17 @@ Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
 int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
                   StageLog* stages, const RunContext& context,
                   const std::string& output) {
-  const auto options = MakeSolveOptions(flags);
+  auto options = MakeSolveOptions(flags);
   if (!options) return Fail(options.error());
   const auto truth = LoadGroundTruth(flags.ground_truth, scene);
   if (!truth) return Fail(truth.error());
+  Scene start;
+  start.intrinsics = scene.intrinsics;
+  if (const Status set =
+          SetRefinement(flags.refine_intrinsics, &scene, &options->adjustment);
+      !set) {
+    return Fail(set.error());
+  }
 
   auto result = SolveScene(&scene, *options, context, stages);
   if (!result) return Fail(result.error());
@@ -192,11 +259,13 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
   }
   summary.solve = std::move(*result);
   summary.stages = stages->stages();
+  if (IsInterrupted()) return Fail({ErrorCode::kCancelled, {}, {}, {}});
   Status written = PrepareOutputFolder(output);
   if (written) written = WriteOutputs(scene, summary, output);
   if (!written) return Fail(written.error());
 
   PrintPoses(summary.solve->poses, scene);
+  PrintIntrinsics(start, scene);
   if (summary.evaluation_before_adjustment) {
     std::printf("\nbefore adjustment: mean position error %.4f\n",
                 summary.evaluation_before_adjustment->position.mean);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/result.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/pipeline/solve_scene.h"
@@ -29,6 +30,7 @@ struct SolveFlags {
   std::string strategy = "graph";
   std::vector<std::string> adjust_features = {"points", "lines", "coplanar"};
   bool no_adjust = false;
+  std::string refine_intrinsics;
   std::string ground_truth;
 };
 
@@ -39,6 +41,15 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
 /// coplanar pairs need lines.
 Status SetAdjustedFeatures(const std::vector<std::string>& features,
                            AdjustmentOptions* options);
+
+/// --refine-intrinsics [focal,aspect,principal-point,distortion|all]
+void AddRefinementFlag(CLI::App* command, std::string* parts);
+/// Sets the options for every intrinsic of the scene (RefineAllIntrinsics).
+Status SetRefinement(const std::string& parts, Scene* scene,
+                     AdjustmentOptions* options);
+
+/// What became of refined intrinsics, a line each.
+void PrintIntrinsics(const Scene& before, const Scene& after);
 
 /// The true poses of a Strecha folder, matched by image name, or of a scene
 /// file, by view id; empty if `path` is.

@@ -47,6 +47,10 @@ std::string ReadText(const fs::path& path) {
   return text.str();
 }
 
+std::string RoomImages() {
+  return std::string(LOWLAP_SOURCE_DIR) + "/sfm_data/samples/room/images";
+}
+
 class Cli : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -166,6 +170,9 @@ TEST_F(Cli, BadInputNamesFileAndCauseAndWritesNothing) {
       {"run " + folder_.string() + " --intrinsics " + Path("K.txt"), "K.txt"},
       {"run " + folder_.string() + " --focal 1000", "at least two images"},
       {"adjust " + Path("broken.json"), "broken.json"},
+      {"run " + RoomImages(), "0000.jpg: holds no focal length in EXIF data"},
+      {"run " + RoomImages() + " --focal 9 --refine-intrinsics shape",
+       "focal, aspect, principal-point"},
   };
   for (const Case& each : cases) {
     const Outcome outcome = Lowlap(each.arguments + " -o " + Path("out"));
@@ -206,6 +213,101 @@ TEST_F(Cli, ExcludedViewsAreLeftOut) {
       Lowlap("solve " + Path("a.lowlap") + " --exclude 2,5 -o " + Path("out"));
   ASSERT_EQ(solved.exit_code, 0) << solved.output;
   EXPECT_THAT(solved.output, HasSubstr("cameras placed: 6/6"));
+}
+
+// Starts a run on photographs and sends a signal as soon as the cache holds
+// `entries` entries; the output ends with "exit CODE".
+Outcome SignalledRun(const std::string& arguments, const std::string& cache,
+                     int entries, const std::string& signal) {
+  Outcome outcome;
+  const std::string script =
+      "env --default-signal=INT " + std::string(LOWLAP_COMMAND) + " run " +
+      arguments + " & pid=$!; while [ $(ls " + cache +
+      " 2>/dev/null | grep -c 'entry$') -lt " + std::to_string(entries) +
+      " ]; do sleep 0.02; done; kill -" + signal +
+      " $pid; wait $pid; echo exit $?";
+  const std::string line = "bash -c '" + [&] {
+    std::string quoted;
+    for (const char c : script)
+      quoted += c == '\'' ? "'\\''" : std::string(1, c);
+    return quoted;
+  }() + "' 2>&1";
+  FILE* pipe = ::popen(line.c_str(), "r");
+  std::array<char, 4096> buffer;
+  for (std::size_t n;
+       (n = std::fread(buffer.data(), 1, buffer.size(), pipe));) {
+    outcome.output.append(buffer.data(), n);
+  }
+  outcome.exit_code = ::pclose(pipe);
+  return outcome;
+}
+
+TEST_F(Cli, AnInterruptedOrKilledRunGoesOnFromItsCache) {
+  const std::string run = RoomImages() + " --intrinsics " + RoomImages() +
+                          "/K.txt --pairs chain --threads 1 -o ";
+  const Outcome whole = Lowlap("run " + run + Path("whole") + " --no-cache");
+  ASSERT_EQ(whole.exit_code, 0) << whole.output;
+  EXPECT_EQ(FilesIn("whole"), 5u);
+  EXPECT_THAT(whole.output, HasSubstr("peak memory"));
+  EXPECT_THAT(whole.output,
+              HasSubstr("features, matching and relative poses together"));
+
+  const Outcome interrupted =
+      SignalledRun(run + Path("out"), Path("out/cache"), 2, "INT");
+  EXPECT_THAT(interrupted.output, HasSubstr("exit 130")) << interrupted.output;
+  EXPECT_THAT(interrupted.output,
+              HasSubstr("error: interrupted during features"));
+  EXPECT_THAT(interrupted.output, HasSubstr("the same command goes on"));
+  EXPECT_EQ(FilesIn("out"), 1u);  // the cache
+
+  const Outcome killed =
+      SignalledRun(run + Path("out"), Path("out/cache"), 5, "KILL");
+  EXPECT_THAT(killed.output, HasSubstr("exit 137")) << killed.output;
+  EXPECT_THAT(killed.output, HasSubstr("of 11 from the cache"));
+  EXPECT_EQ(FilesIn("out"), 1u);
+
+  const Outcome resumed = Lowlap("run " + run + Path("out"));
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.output;
+  EXPECT_THAT(resumed.output, HasSubstr("of 11 from the cache"));
+  EXPECT_EQ(ReadText(Path("out/scene.lowlap")),
+            ReadText(Path("whole/scene.lowlap")));
+}
+
+TEST_F(Cli, IntrinsicsOfASceneFileAndRefinement) {
+  ASSERT_EQ(Lowlap("simulate --kind room --views 8 --pairs window:2 --noise "
+                   "0.3 --seed 3 -o " +
+                   Path("room.lowlap"))
+                .exit_code,
+            0);
+  auto scene = ReadSceneBinary(Path("room.lowlap"));
+  ASSERT_TRUE(scene);
+  for (auto& [id, intrinsic] : scene->intrinsics) {
+    intrinsic.fx_px *= 1.02;
+    intrinsic.fy_px *= 1.02;
+  }
+  ASSERT_TRUE(WriteSceneBinary(*scene, Path("wrong.lowlap")));
+  const Outcome fixed =
+      Lowlap("solve " + Path("wrong.lowlap") + " -o " + Path("fixed"));
+  ASSERT_EQ(fixed.exit_code, 0) << fixed.output;
+  EXPECT_THAT(fixed.output, ::testing::Not(HasSubstr("intrinsic 0")));
+  const Outcome refined =
+      Lowlap("solve " + Path("wrong.lowlap") + " -o " + Path("refined") +
+             " --refine-intrinsics focal");
+  ASSERT_EQ(refined.exit_code, 0) << refined.output;
+  EXPECT_THAT(refined.output, HasSubstr("intrinsic 0"));
+  EXPECT_THAT(refined.output, ::testing::Not(HasSubstr("distortion")));
+  const Outcome adjusted =
+      Lowlap("adjust " + Path("fixed/scene.lowlap") + " -o " +
+             Path("adjusted") + " --refine-intrinsics");
+  ASSERT_EQ(adjusted.exit_code, 0) << adjusted.output;
+  EXPECT_THAT(adjusted.output, HasSubstr("pinhole_radial_k1"));
+
+  // The listing of another scene does not know these photographs, but its only
+  // intrinsic would do, if it were for images of this size.
+  const Outcome misfit = Lowlap("run " + RoomImages() + " --intrinsics " +
+                                Path("wrong.lowlap") + " -o " + Path("run"));
+  EXPECT_EQ(misfit.exit_code, 1);
+  EXPECT_THAT(misfit.output, HasSubstr("pixels"));
 }
 
 }  // namespace
