@@ -62,6 +62,10 @@ double ScaleWithin(const std::vector<double>& normalised, double reach) {
   return std::max(1.0, 1.4826 * Median(std::move(near)));
 }
 
+double EvidenceWeight(const RotationMeasurement& m) {
+  return 1 + std::log1p(std::max(0.0, -m.cost));
+}
+
 // The spanning trees to start from, as costs of the edges.
 std::vector<std::vector<double>> StartCosts(
     std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
@@ -76,8 +80,7 @@ std::vector<std::vector<double>> StartCosts(
             : support.error_rad[e] / std::max(3 * support.typical_rad, 1e-12);
     own.push_back(measurements[e].cost);
     cycles.push_back(x);
-    joint.push_back(-(1 + std::log1p(std::max(0.0, -own.back()))) /
-                    (1 + x * x));
+    joint.push_back(-EvidenceWeight(measurements[e]) / (1 + x * x));
   }
   std::vector<std::vector<double>> starts = {joint, own, cycles};
   // More starts pay off where they are cheap.
@@ -152,11 +155,16 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
   return {};
 }
 
+// What a start is judged by. Evidence weighs, but only with its logarithm: a
+// relative pose of thousands of matches may be wrong as well.
 double RobustCost(const std::vector<RotationMeasurement>& measurements,
                   const std::vector<Mat3>& rotations) {
+  const std::vector<double> normalised =
+      NormalisedResiduals(measurements, rotations);
   double cost = 0;
-  for (const double r : NormalisedResiduals(measurements, rotations)) {
-    cost += std::log1p(r * r);
+  for (std::size_t e = 0; e < measurements.size(); ++e) {
+    cost += EvidenceWeight(measurements[e]) *
+            std::log1p(normalised[e] * normalised[e]);
   }
   return cost;
 }

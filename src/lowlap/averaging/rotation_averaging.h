@@ -51,7 +51,7 @@ struct RotationAveragingResult {
 /// first L1, which a few wrong measurements do not move, then the Geman-McClure
 /// weight, whose scale is the median of the residuals in its own reach, and so
 /// tightens until wrong measurements are forgotten. The solution with the least
-///   sum_e log(1 + (r_e / sigma_e)^2)
+///   sum_e (1 + log(1 + max(0, -cost_e))) log(1 + (r_e / sigma_e)^2)
 /// is returned. Each step is a graph Laplacian in the tangent space
 /// (SolveDifferences). Gauge: one rotation of every connected component is the
 /// identity. A tree is reproduced exactly.

@@ -1,107 +1,68 @@
 #include "lowlap/averaging/scene_poses.h"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
+#include <utility>
 
 #include "lowlap/averaging/strategies.h"
-#include "lowlap/averaging/union_find.h"
 #include "lowlap/core/median.h"
 #include "lowlap/geometry/rotation.h"
 
 namespace lowlap {
 namespace {
 
-constexpr double kRotationFloorRad = 5e-4;
-constexpr double kDefaultRotationRad = 5e-3;
+constexpr double kDirectionFloorRad = 1e-3;
+// The median of the length of a 2-vector of normal errors, in deviations.
+constexpr double kMedianOfLength = 1.18;
 
-double RotationStddev(const RelativePose& pose) {
-  if (!pose.covariance) return kDefaultRotationRad;
-  const double variance = pose.covariance->topLeftCorner<3, 3>().trace() / 3;
-  return std::sqrt(std::max(variance, 0.0) +
-                   kRotationFloorRad * kRotationFloorRad);
+// Edges whose direction is beyond `reach` deviations from the centres of
+// component 0. `sigma_rad` is found first if it is 0, and then stays: what is
+// right must not be eroded round by round.
+std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
+                                           const TranslationSolution& solution,
+                                           double reach, double* sigma_rad) {
+  struct Residual {
+    const DirectionEdge* edge;
+    double angle_rad;
+  };
+  std::vector<Residual> residuals;
+  std::vector<double> angles;
+  for (const DirectionEdge& edge : problem.edges) {
+    if (solution.component[edge.first] != 0 ||
+        solution.component[edge.second] != 0) {
+      continue;
+    }
+    const Vec3 baseline = solution.center_in_world[edge.second] -
+                          solution.center_in_world[edge.first];
+    if (!(baseline.norm() > 0)) continue;
+    residuals.push_back(
+        {&edge, AngleBetween(baseline, edge.direction_in_world)});
+    angles.push_back(residuals.back().angle_rad);
+  }
+  if (*sigma_rad == 0) {
+    *sigma_rad = std::max(Median(angles) / kMedianOfLength, kDirectionFloorRad);
+  }
+  std::vector<OutlierEdge> outliers;
+  for (const Residual& residual : residuals) {
+    const DirectionEdge& edge = *residual.edge;
+    if (residual.angle_rad > reach * std::max(*sigma_rad, edge.stddev_rad)) {
+      outliers.push_back(
+          {ViewPair{problem.views[edge.first], problem.views[edge.second]},
+           OutlierReason::kDirection, DegFromRad(residual.angle_rad)});
+    }
+  }
+  return outliers;
 }
 
-struct AveragedRotations {
-  std::map<ViewId, Mat3> cam_from_world;
-  std::vector<ViewPair> outlier_edges;
-  double median_residual_rad = 0;
-};
-
-// The views of the largest connected component of the given edges.
-std::set<ViewId> LargestComponent(const std::vector<ViewPair>& edges) {
-  std::map<ViewId, std::size_t> index;
-  for (const ViewPair& edge : edges) {
-    index.emplace(edge.first, index.size());
-    index.emplace(edge.second, index.size());
-  }
-  UnionFind sets(index.size());
-  for (const ViewPair& edge : edges) {
-    sets.Union(index.at(edge.first), index.at(edge.second));
-  }
-  const std::vector<std::size_t> labels = sets.Labels();
-  std::map<std::size_t, std::set<ViewId>> components;
-  for (const auto& [view, n] : index) components[labels[n]].insert(view);
-  std::set<ViewId> largest;
-  for (auto& entry : components) {
-    if (entry.second.size() > largest.size()) largest = std::move(entry.second);
-  }
-  return largest;
+int CountPlaced(const TranslationSolution& solution) {
+  return static_cast<int>(
+      std::count(solution.component.begin(), solution.component.end(), 0));
 }
 
-Result<AveragedRotations> AverageSceneRotations(const Scene& scene,
-                                                const PoseOptions& options) {
-  std::vector<ViewPair> edges;
-  for (const auto& entry : scene.relative_poses) edges.push_back(entry.first);
-  AveragedRotations averaged;
-  // Leaving outliers out may take a view with it, so average again after it.
-  for (bool changed = true; changed;) {
-    changed = false;
-    const std::set<ViewId> component = LargestComponent(edges);
-    std::vector<ViewId> views(component.begin(), component.end());
-    std::map<ViewId, std::size_t> index;
-    for (const ViewId view : views) index.emplace(view, index.size());
-    std::vector<RotationMeasurement> measurements;
-    std::vector<ViewPair> used;
-    for (const ViewPair& edge : edges) {
-      if (component.count(edge.first) == 0) continue;
-      const RelativePose& pose = scene.relative_poses.at(edge);
-      RotationMeasurement m;
-      m.first = index.at(edge.first);
-      m.second = index.at(edge.second);
-      m.second_from_first = pose.rotation;
-      m.stddev_rad = RotationStddev(pose);
-      m.cost = pose.log10_nfa;
-      measurements.push_back(m);
-      used.push_back(edge);
-    }
-    const auto result =
-        AverageRotations(views.size(), measurements, options.rotation);
-    if (!result) return tl::unexpected<Error>(result.error());
-    averaged.cam_from_world.clear();
-    for (std::size_t n = 0; n < views.size(); ++n) {
-      averaged.cam_from_world[views[n]] = result->cam_from_world[n];
-    }
-    if (measurements.empty()) return averaged;
-
-    averaged.median_residual_rad = Median(result->residuals_rad);
-    // The median of the norm of a 3-vector of normal errors is 1.54 sigma.
-    const double sigma =
-        std::max(averaged.median_residual_rad / 1.54, kRotationFloorRad);
-    std::vector<ViewPair> kept;
-    for (std::size_t e = 0; e < used.size(); ++e) {
-      const double own = std::max(sigma, measurements[e].stddev_rad);
-      if (result->residuals_rad[e] > options.outlier_reach * own) {
-        averaged.outlier_edges.push_back(used[e]);
-        changed = true;
-      } else {
-        kept.push_back(used[e]);
-      }
-    }
-    edges = std::move(kept);
-  }
-  std::sort(averaged.outlier_edges.begin(), averaged.outlier_edges.end());
-  return averaged;
+std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers) {
+  std::vector<ViewPair> pairs;
+  for (const OutlierEdge& outlier : outliers) pairs.push_back(outlier.views);
+  return pairs;
 }
 
 // First placed view: identity at the origin; mean placed edge: length 1.
@@ -150,27 +111,59 @@ Status PoseOptions::Validate() const {
   return rotation.Validate();
 }
 
+Result<SceneRotations> AverageSceneRotations(const Scene& scene,
+                                             const PoseOptions& options,
+                                             const RunContext& context) {
+  if (const Status valid = options.Validate(); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  RotationAveragingOptions rotation = options.rotation;
+  rotation.seed = context.seed;
+  return AverageSceneRotations(scene, rotation, options.outlier_reach);
+}
+
 Result<PoseSummary> SolveScenePoses(Scene* scene, const PoseOptions& options,
+                                    const RunContext& context) {
+  const auto rotations = AverageSceneRotations(*scene, options, context);
+  if (!rotations) return tl::unexpected<Error>(rotations.error());
+  return SolveScenePoses(scene, *rotations, options, context);
+}
+
+Result<PoseSummary> SolveScenePoses(Scene* scene,
+                                    const SceneRotations& rotations,
+                                    const PoseOptions& options,
                                     const RunContext& context) {
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
   const auto averager = MakeTranslationAverager(options.strategy);
   if (!averager) return tl::unexpected<Error>(averager.error());
-  if (scene->relative_poses.empty()) {
-    return MakeError(ErrorCode::kInsufficientData,
-                     "the scene has no relative pose to build on");
-  }
-  const auto rotations = AverageSceneRotations(*scene, options);
-  if (!rotations) return tl::unexpected<Error>(rotations.error());
-  if (rotations->cam_from_world.empty()) {
-    return MakeError(ErrorCode::kInsufficientData,
-                     "no two relative rotations agree");
-  }
-  const TranslationProblem problem = MakeTranslationProblem(
-      *scene, rotations->cam_from_world, rotations->outlier_edges);
-  const auto solution = (*averager)->Solve(problem, context);
+  std::vector<OutlierEdge> outliers = rotations.outliers;
+  TranslationProblem problem = MakeTranslationProblem(
+      *scene, rotations.cam_from_world, PairsOf(outliers));
+  auto solution = (*averager)->Solve(problem, context);
   if (!solution) return tl::unexpected<Error>(solution.error());
+
+  double sigma_rad = 0;
+  while (true) {
+    const std::vector<OutlierEdge> wrong = DirectionOutliers(
+        problem, *solution, options.outlier_reach, &sigma_rad);
+    if (wrong.empty()) break;
+    std::vector<OutlierEdge> more = outliers;
+    more.insert(more.end(), wrong.begin(), wrong.end());
+    TranslationProblem smaller =
+        MakeTranslationProblem(*scene, rotations.cam_from_world, PairsOf(more));
+    auto again = (*averager)->Solve(smaller, context);
+    if (!again) return tl::unexpected<Error>(again.error());
+    if (CountPlaced(*again) < CountPlaced(*solution)) break;
+    outliers = std::move(more);
+    problem = std::move(smaller);
+    solution = std::move(again);
+  }
+  std::sort(outliers.begin(), outliers.end(),
+            [](const OutlierEdge& a, const OutlierEdge& b) {
+              return a.views < b.views;
+            });
 
   FixGauge(problem, *solution, scene);
   PoseSummary summary;
@@ -186,11 +179,14 @@ Result<PoseSummary> SolveScenePoses(Scene* scene, const PoseOptions& options,
     if (placed.count(entry.first) == 0) summary.unplaced.push_back(entry.first);
   }
   summary.num_placed = static_cast<int>(placed.size());
-  summary.outlier_edges = rotations->outlier_edges;
+  summary.outlier_edges = std::move(outliers);
+  summary.loops = rotations.loops;
+  summary.contested = rotations.contested;
+  summary.unchecked = rotations.unchecked;
   summary.num_edges = static_cast<int>(problem.edges.size());
   summary.num_ratios = static_cast<int>(problem.ratios.size());
   summary.median_rotation_residual_deg =
-      DegFromRad(rotations->median_residual_rad);
+      DegFromRad(rotations.median_residual_rad);
   return summary;
 }
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lowlap/averaging/rotation_averaging.h"
+#include "lowlap/averaging/scene_rotations.h"
 #include "lowlap/averaging/translation_problem.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
@@ -15,8 +16,9 @@ namespace lowlap {
 struct PoseOptions {
   std::string strategy = "graph";
   RotationAveragingOptions rotation;
-  /// A relative pose whose rotation disagrees with the averaged ones by more
-  /// than this many robust standard deviations of all residuals is left out.
+  /// A relative pose whose rotation (direction) disagrees with the averaged
+  /// rotations (the solved centres) by more than this many robust standard
+  /// deviations of all residuals is left out.
   double outlier_reach = 5.0;
 
   Status Validate() const;
@@ -29,19 +31,40 @@ struct PoseSummary {
   /// Views by component; component 0 is the one whose poses the scene gets.
   std::vector<std::vector<ViewId>> components;
   std::vector<ViewId> unplaced;
-  std::vector<ViewPair> outlier_edges;
+  std::vector<OutlierEdge> outlier_edges;  // by views
+  std::vector<LoopClosing> loops;          // as in SceneRotations
+  std::vector<ContestedLink> contested;
+  std::vector<ViewPair> unchecked;
   int num_edges = 0;
   int num_ratios = 0;
   double median_rotation_residual_deg = 0;
+
+  /// Something contradicts what is placed, and nothing decides between them:
+  /// a loop that does not close, or a contested link.
+  bool IsDoubtful() const { return !loops.empty() || !contested.empty(); }
 };
 
-/// scene.poses from scene.relative_poses and scene.scale_ratios: rotation
-/// averaging over all relative poses, outlier edges named and left out, then
-/// the chosen translation strategy. The poses of the largest component replace
+/// scene.poses from scene.relative_poses and scene.scale_ratios, with the
+/// rotations and the choice of relative poses of AverageSceneRotations, and the
+/// chosen translation strategy. Relative poses whose direction contradicts the
+/// solved centres are left out in turn, unless that loses a view, and the
+/// solution is repeated. The poses of the largest component replace
 /// scene.poses; the others have no common scale with it and are listed.
 /// Gauge: the first placed view has rotation identity and centre 0, and the
 /// mean length of the placed edges is 1.
+Result<PoseSummary> SolveScenePoses(Scene* scene,
+                                    const SceneRotations& rotations,
+                                    const PoseOptions& options,
+                                    const RunContext& context);
+
+/// The same, with AverageSceneRotations before it.
 Result<PoseSummary> SolveScenePoses(Scene* scene, const PoseOptions& options,
                                     const RunContext& context);
+
+/// AverageSceneRotations as these options ask for it; the random starts are
+/// those of context.seed.
+Result<SceneRotations> AverageSceneRotations(const Scene& scene,
+                                             const PoseOptions& options,
+                                             const RunContext& context);
 
 }  // namespace lowlap

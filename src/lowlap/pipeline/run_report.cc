@@ -2,6 +2,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <utility>
+
+#include "lowlap/averaging/pose_warnings.h"
 
 namespace lowlap {
 namespace {
@@ -106,28 +109,8 @@ void AddSolve(const SolveResult& solve, const Scene& scene,
     content->figures.emplace_back(
         "line RMSE", Number(solve.adjustment->lines.final_rmse_px, "%.2f px"));
   }
-  const auto names = [&](const std::vector<ViewId>& views) {
-    std::string list;
-    for (const ViewId view : views) list += " " + NameOf(scene, view);
-    return list;
-  };
-  if (!poses.unplaced.empty()) {
-    content->warnings.push_back(
-        "Not placed, since no scale joins them to the "
-        "others:" +
-        names(poses.unplaced));
-  }
-  if (!poses.outlier_edges.empty()) {
-    std::string list;
-    for (const ViewPair& edge : poses.outlier_edges) {
-      list += (list.empty() ? " " : ", ") + NameOf(scene, edge.first) + " - " +
-              NameOf(scene, edge.second);
-    }
-    content->warnings.push_back(
-        std::to_string(poses.outlier_edges.size()) +
-        " relative poses were left out because their rotations contradict the "
-        "others:" +
-        list);
+  for (std::string& warning : PoseWarnings(poses, scene)) {
+    content->warnings.push_back(std::move(warning));
   }
 }
 

@@ -55,6 +55,37 @@ Json TriangulationJson(const TriangulationSummary& kind) {
           {"threshold_px", kind.threshold_px}};
 }
 
+// What nothing confirms, or something contradicts.
+void AddDoubts(const PoseSummary& summary, Json* poses) {
+  Json loops = Json::array(), contested = Json::array();
+  for (const LoopClosing& loop : summary.loops) {
+    Json edges = Json::array();
+    for (const ViewPair& edge : loop.edges) edges.push_back(PairJson(edge));
+    Json entry = {{"edges", std::move(edges)},
+                  {"closing_deg", loop.closing_deg},
+                  {"expected_deg", loop.expected_deg}};
+    if (loop.left_out) entry["left_out"] = PairJson(*loop.left_out);
+    loops.push_back(std::move(entry));
+  }
+  for (const ContestedLink& link : summary.contested) {
+    Json contradictions = Json::array();
+    for (const ViewPair& edge : link.contradictions) {
+      contradictions.push_back(PairJson(edge));
+    }
+    contested.push_back({{"edge", PairJson(link.edge)},
+                         {"contradictions", std::move(contradictions)},
+                         {"views", ViewList(link.views)}});
+  }
+  Json unchecked = Json::array();
+  for (const ViewPair& edge : summary.unchecked) {
+    unchecked.push_back(PairJson(edge));
+  }
+  (*poses)["doubtful"] = summary.IsDoubtful();
+  (*poses)["open_loops"] = std::move(loops);
+  (*poses)["contested_links"] = std::move(contested);
+  (*poses)["unchecked_edges"] = std::move(unchecked);
+}
+
 Json SolveJson(const SolveResult& solve) {
   Json json;
   json["ratios"] = {{"triplets", solve.ratios.num_triplets},
@@ -71,9 +102,13 @@ Json SolveJson(const SolveResult& solve) {
     poses["components"].push_back(ViewList(component));
   }
   poses["outlier_edges"] = Json::array();
-  for (const ViewPair& edge : solve.poses.outlier_edges) {
-    poses["outlier_edges"].push_back(PairJson(edge));
+  for (const OutlierEdge& edge : solve.poses.outlier_edges) {
+    poses["outlier_edges"].push_back(
+        {{"views", PairJson(edge.views)},
+         {"reason", OutlierReasonName(edge.reason)},
+         {"error_deg", edge.error_deg}});
   }
+  AddDoubts(solve.poses, &poses);
   poses["median_rotation_residual_deg"] =
       solve.poses.median_rotation_residual_deg;
   json["structure"] = {{"points", TriangulationJson(solve.structure.points)},

@@ -1,0 +1,99 @@
+#include "lowlap/averaging/pose_warnings.h"
+
+#include <cstdio>
+
+namespace lowlap {
+namespace {
+
+class Writer {
+ public:
+  explicit Writer(const Scene& scene) : scene_(scene) {}
+
+  std::string Names(const std::vector<ViewId>& views) const {
+    std::string list;
+    for (const ViewId view : views) {
+      list += (list.empty() ? "" : ", ") + Name(view);
+    }
+    return list;
+  }
+
+  std::string Pairs(const std::vector<ViewPair>& pairs) const {
+    std::string list;
+    for (const ViewPair& pair : pairs) {
+      list += (list.empty() ? "" : ", ") + Name(pair.first) + " - " +
+              Name(pair.second);
+    }
+    return list;
+  }
+
+ private:
+  std::string Name(ViewId view) const {
+    const auto found = scene_.views.find(view);
+    return found == scene_.views.end() ? std::to_string(view)
+                                       : found->second.filename;
+  }
+
+  const Scene& scene_;
+};
+
+std::string Degrees(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2f", value);
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> PoseWarnings(const PoseSummary& summary,
+                                      const Scene& scene) {
+  const Writer writer(scene);
+  std::vector<std::string> warnings;
+  if (!summary.unplaced.empty()) {
+    warnings.push_back(
+        "Not placed, since no reliable relative pose and scale joins them to "
+        "the others: " +
+        writer.Names(summary.unplaced) + ".");
+  }
+  for (const ContestedLink& link : summary.contested) {
+    warnings.push_back(
+        "Doubtful: only the relative pose " + writer.Pairs({link.edge}) +
+        " places " + writer.Names(link.views) + ", and it is contradicted by " +
+        writer.Pairs(link.contradictions) + ", which have less evidence.");
+  }
+  for (const LoopClosing& loop : summary.loops) {
+    warnings.push_back(
+        "Doubtful: a loop of " + std::to_string(loop.edges.size()) +
+        " relative poses does not close by " + Degrees(loop.closing_deg) +
+        " degrees (" + Degrees(loop.expected_deg) +
+        " expected). Nothing tells which is wrong; " +
+        (loop.left_out ? "the one of least evidence, " +
+                             writer.Pairs({*loop.left_out}) + ", was left out: "
+                       : std::string("all are used: ")) +
+        writer.Pairs(loop.edges) + ".");
+  }
+  if (!summary.unchecked.empty()) {
+    warnings.push_back(std::to_string(summary.unchecked.size()) + " of " +
+                       std::to_string(summary.num_edges) +
+                       " relative poses in use lie on no cycle, so that no "
+                       "other one can confirm them.");
+  }
+  const auto left_out = [&](OutlierReason reason, const std::string& why) {
+    std::vector<ViewPair> pairs;
+    for (const OutlierEdge& edge : summary.outlier_edges) {
+      if (edge.reason == reason) pairs.push_back(edge.views);
+    }
+    if (pairs.empty()) return;
+    warnings.push_back(std::to_string(pairs.size()) +
+                       " relative poses were left out because " + why + ": " +
+                       writer.Pairs(pairs) + ".");
+  };
+  left_out(OutlierReason::kRotation, "their rotations contradict the others");
+  left_out(OutlierReason::kDirection,
+           "their directions contradict the solved centres");
+  left_out(OutlierReason::kContradicted,
+           "no cycle confirms them and what contradicts them has more "
+           "evidence");
+  return warnings;
+}
+
+}  // namespace lowlap

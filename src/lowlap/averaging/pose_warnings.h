@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lowlap/averaging/scene_poses.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// What a person has to know before relying on the poses, one sentence each,
+/// with image names: what was left out and why, what hangs on a contested
+/// relative pose, which loop does not close, how much nothing checks, and which
+/// views are not placed. Empty if all is well.
+std::vector<std::string> PoseWarnings(const PoseSummary& summary,
+                                      const Scene& scene);
+
+}  // namespace lowlap
