@@ -25,15 +25,22 @@ constexpr double kHalfSupport = 0.15;
 // What a match found without the pose is worth more than a new one.
 constexpr double kSeedBonus = 0.2;
 
+// A match is made only if no contradicting candidate scores more than this
+// share of its score.
+constexpr double kMaxRivalShare = 0.85;
+
 struct Candidate {
   FeatureMatch match;
   LineTransfer transfer;
   double similarity = 0;  // in [0, 1]
   double score = 0;
 
+  // The inverse of the depth at unit offset.
+  double Steepness(const Vec2& at) const {
+    return std::abs(transfer.plane.dot(Vec3(at.x(), at.y(), 1)));
+  }
   double LogDepth(const Vec2& at) const {
-    return std::log(transfer.offset /
-                    transfer.plane.dot(Vec3(at.x(), at.y(), 1)));
+    return std::log(std::abs(transfer.offset) / Steepness(at));
   }
 };
 
@@ -77,6 +84,13 @@ Neighbor ClosestPoints(const NormalizedSegment& s, const NormalizedSegment& o) {
   return closest;
 }
 
+double EpipolarSlack(const NormalizedFeatures& first,
+                     const NormalizedFeatures& second,
+                     const GuidedLineOptions& options) {
+  return options.epipolar_tolerance_px /
+         std::min(first.focal_px, second.focal_px);
+}
+
 std::vector<Candidate> CollectCandidates(const DescribedLines& first,
                                          const DescribedLines& second,
                                          const NormalizedFeatures& normalized1,
@@ -87,6 +101,7 @@ std::vector<Candidate> CollectCandidates(const DescribedLines& first,
   std::vector<FeatureMatch> sorted_seeds = seeds;
   std::sort(sorted_seeds.begin(), sorted_seeds.end());
   const double min_sine = std::sin(RadFromDeg(options.min_epipolar_angle_deg));
+  const double slack = EpipolarSlack(normalized1, normalized2, options);
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < first.segments.size(); ++i) {
     for (std::size_t j = 0; j < second.segments.size(); ++j) {
@@ -97,9 +112,9 @@ std::vector<Candidate> CollectCandidates(const DescribedLines& first,
       const int distance = internal::HammingDistance(first.descriptors[i],
                                                      second.descriptors[j]);
       if (!is_seed && distance > options.max_distance_bits) continue;
-      const auto transfer = internal::TransferLine(normalized1.segments[i],
-                                                   normalized2.segments[j],
-                                                   cam2_from_cam1, min_sine);
+      const auto transfer = internal::TransferLine(
+          normalized1.segments[i], normalized2.segments[j], cam2_from_cam1,
+          min_sine, slack);
       if (!transfer || !transfer->same_polarity ||
           transfer->overlap_of_shorter < options.min_overlap) {
         continue;
@@ -157,7 +172,7 @@ struct Support {
   double weight;
 };
 
-void Relax(const NormalizedFeatures& first,
+void Relax(const NormalizedFeatures& first, double slack,
            std::vector<Candidate>* candidates) {
   std::vector<std::vector<std::size_t>> candidates_of(first.segments.size());
   for (std::size_t c = 0; c < candidates->size(); ++c) {
@@ -169,10 +184,13 @@ void Relax(const NormalizedFeatures& first,
     const Candidate& candidate = (*candidates)[c];
     for (const Neighbor& n : neighbors[candidate.match.first]) {
       std::vector<Support> list;
-      const double tolerance = kDepthNoise + kDepthSlope * n.distance;
+      const double surface = kDepthNoise + kDepthSlope * n.distance;
       const double log_depth = candidate.LogDepth(n.here);
       for (const std::size_t o : candidates_of[n.segment]) {
         const Candidate& other = (*candidates)[o];
+        const double tolerance =
+            std::hypot(surface, slack / candidate.Steepness(n.here),
+                       slack / other.Steepness(n.there));
         const double u = (log_depth - other.LogDepth(n.there)) / tolerance;
         const double agreement = std::exp(-0.5 * u * u);
         if (agreement > 0.01) list.push_back({o, agreement * other.similarity});
@@ -228,6 +246,41 @@ bool ArePieces(const LineSegment& a, const LineSegment& b) {
          kMaxOverlap * shorter.LengthPx();
 }
 
+// For every candidate the best score of one that contradicts it: that shares a
+// segment, with partners that are not pieces of one edge.
+std::vector<double> FindRivals(const DescribedLines& first,
+                               const DescribedLines& second,
+                               const std::vector<Candidate>& by_score) {
+  std::vector<std::vector<std::size_t>> of1(first.segments.size());
+  std::vector<std::vector<std::size_t>> of2(second.segments.size());
+  for (std::size_t c = 0; c < by_score.size(); ++c) {
+    of1[by_score[c].match.first].push_back(c);
+    of2[by_score[c].match.second].push_back(c);
+  }
+  std::vector<double> rivals(by_score.size(), 0);
+  for (std::size_t c = 0; c < by_score.size(); ++c) {
+    const FeatureMatch& m = by_score[c].match;
+    for (const std::size_t o : of1[m.first]) {
+      if (o == c || ArePieces(second.segments[m.second],
+                              second.segments[by_score[o].match.second])) {
+        continue;
+      }
+      rivals[c] = by_score[o].score;
+      break;
+    }
+    for (const std::size_t o : of2[m.second]) {
+      if (o == c || ArePieces(first.segments[m.first],
+                              first.segments[by_score[o].match.first])) {
+        continue;
+      }
+      rivals[c] = std::max(rivals[c], by_score[o].score);
+      break;
+    }
+  }
+  return rivals;
+}
+
+// Best first; what is hardly better than a rival is not decided.
 std::vector<FeatureMatch> Assign(const DescribedLines& first,
                                  const DescribedLines& second,
                                  std::vector<Candidate> candidates,
@@ -236,6 +289,7 @@ std::vector<FeatureMatch> Assign(const DescribedLines& first,
             [](const Candidate& a, const Candidate& b) {
               return a.score != b.score ? a.score > b.score : a.match < b.match;
             });
+  const std::vector<double> rivals = FindRivals(first, second, candidates);
   std::vector<std::vector<FeatureIndex>> partners1(first.segments.size());
   std::vector<std::vector<FeatureIndex>> partners2(second.segments.size());
   const auto fits = [](const std::vector<LineSegment>& segments,
@@ -246,9 +300,11 @@ std::vector<FeatureMatch> Assign(const DescribedLines& first,
     });
   };
   std::vector<FeatureMatch> matches;
-  for (const Candidate& c : candidates) {
+  for (std::size_t n = 0; n < candidates.size(); ++n) {
+    const Candidate& c = candidates[n];
     if (c.score < min_score) break;
-    if (!fits(second.segments, c.match.second, partners1[c.match.first]) ||
+    if (rivals[n] > kMaxRivalShare * c.score ||
+        !fits(second.segments, c.match.second, partners1[c.match.first]) ||
         !fits(first.segments, c.match.first, partners2[c.match.second])) {
       continue;
     }
@@ -275,6 +331,10 @@ Status GuidedLineOptions::Validate() const {
     return MakeError(ErrorCode::kInvalidArgument,
                      "min_epipolar_angle_deg must lie in [0, 90)");
   }
+  if (!(epipolar_tolerance_px >= 0)) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "epipolar_tolerance_px must not be negative");
+  }
   if (!(min_score >= 0 && min_score <= 1)) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "min_score of lines must lie in [0, 1]");
@@ -292,7 +352,9 @@ std::vector<FeatureMatch> MatchLinesGuided(
       CollectCandidates(first, second, first_normalized, second_normalized,
                         cam2_from_cam1, seeds, options);
   if (candidates.empty()) return {};
-  Relax(first_normalized, &candidates);
+  Relax(first_normalized,
+        EpipolarSlack(first_normalized, second_normalized, options),
+        &candidates);
   return Assign(first, second, std::move(candidates), options.min_score);
 }
 

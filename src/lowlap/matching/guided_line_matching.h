@@ -20,8 +20,10 @@ struct GuidedLineOptions {
   /// A line closer than this to an epipolar plane has no depth, and the
   /// transfer of its end points says nothing: no match.
   double min_epipolar_angle_deg = 1.0;
-  /// Least score of a match that is not a seed, in [0, 1].
-  double min_score = 0.1;
+  /// By how much the epipolar lines of a pose may be off, in pixels.
+  double epipolar_tolerance_px = 2.0;
+  /// Least score of a match, in [0, 1].
+  double min_score = 0.07;
 
   Status Validate() const;
 };
@@ -35,9 +37,10 @@ struct GuidedLineOptions {
 /// A candidate is a pair of segments of the same polarity whose epipolar
 /// transfers overlap, whose line lies in front of both cameras, and whose
 /// descriptors are not too far apart. Its score grows with the similarity, the
-/// overlap and the agreement with the matches around it: the lines of
-/// neighbours in the image that are close in depth, or that cross the line in
-/// space. Conflicts are resolved by score.
+/// overlap and the agreement with the candidates around it, by relaxation:
+/// neighbours in the image that lie at the depth of one common surface.
+/// Conflicts are resolved by score; a match that is hardly better than
+/// one that contradicts it is not made.
 ///
 /// A segment may have several partners if these are collinear pieces of one
 /// broken edge that lie one behind the other: every match of a piece is listed.

@@ -32,7 +32,7 @@ std::vector<FeatureMatch> FilterLineMatches(
     }
     const auto transfer = internal::TransferLine(first.segments[match.first],
                                                  second.segments[match.second],
-                                                 cam2_from_cam1, min_sine);
+                                                 cam2_from_cam1, min_sine, 0);
     if (transfer && transfer->overlap_of_shorter >= options.min_overlap) {
       kept.push_back(match);
     }

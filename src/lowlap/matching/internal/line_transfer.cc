@@ -28,12 +28,12 @@ std::optional<Ends> IntersectRays(const NormalizedSegment& segment,
   return Ends{start_depth * segment.start, end_depth * segment.end};
 }
 
-// Share of the segment's length in its image that lies between two points of
-// space, given in the segment's camera and in front of it.
-double ImageShare(const NormalizedSegment& segment, const Vec3& a,
-                  const Vec3& b) {
+// `common`: length of the common part in the image of the segment.
+double ShareWithSlack(const NormalizedSegment& segment, double common,
+                      double epipolar_sine, double slack) {
   const double length = (segment.end - segment.start).norm();
-  return (a / a.z() - b / b.z()).norm() / length;
+  const double slide = slack > 0 ? slack / epipolar_sine : 0;
+  return std::min(1.0, (common + slide) / length);
 }
 
 }  // namespace
@@ -50,7 +50,8 @@ double EpipolarSine(const NormalizedSegment& segment, const Vec3& epipole) {
 std::optional<LineTransfer> TransferLine(const NormalizedSegment& first,
                                          const NormalizedSegment& second,
                                          const RigidTransform& cam2_from_cam1,
-                                         double min_epipolar_sine) {
+                                         double min_epipolar_sine,
+                                         double epipolar_slack) {
   if (!first.IsValid() || !second.IsValid()) return std::nullopt;
   const RigidTransform cam1_from_cam2 = cam2_from_cam1.Inverse();
   LineTransfer transfer;
@@ -61,11 +62,10 @@ std::optional<LineTransfer> TransferLine(const NormalizedSegment& first,
   const auto ends2 =
       IntersectRays(second, cam2_from_cam1.rotation * first.normal,
                     -first.normal.dot(cam1_from_cam2.translation));
-  if (!ends2 ||
-      EpipolarSine(first, cam1_from_cam2.translation) < min_epipolar_sine ||
-      EpipolarSine(second, cam2_from_cam1.translation) < min_epipolar_sine) {
-    return std::nullopt;
-  }
+  if (!ends2) return std::nullopt;
+  const double sine1 = EpipolarSine(first, cam1_from_cam2.translation);
+  const double sine2 = EpipolarSine(second, cam2_from_cam1.translation);
+  if (std::min(sine1, sine2) < min_epipolar_sine) return std::nullopt;
   const auto line =
       LineFromTwoViews(cam2_from_cam1, first.normal, second.normal);
   if (!line) return std::nullopt;
@@ -77,16 +77,21 @@ std::optional<LineTransfer> TransferLine(const NormalizedSegment& first,
   const double end2 = line->direction.dot(cam1_from_cam2 * ends2->end);
   const double low = std::max(std::min(start1, end1), std::min(start2, end2));
   const double high = std::min(std::max(start1, end1), std::max(start2, end2));
-  if (!(low < high)) return std::nullopt;
   transfer.same_polarity = (start1 < end1) == (start2 < end2);
-  // The overlap is a part of both segments, hence in front of both cameras.
+  // The overlap is a part of both segments, hence in front of both cameras; a
+  // gap between them counts as negative.
   const Vec3 a = line->FootPoint() + low * line->direction;
   const Vec3 b = line->FootPoint() + high * line->direction;
-  const double share1 = ImageShare(first, a, b);
-  const double share2 =
-      ImageShare(second, cam2_from_cam1 * a, cam2_from_cam1 * b);
+  const Vec3 a2 = cam2_from_cam1 * a, b2 = cam2_from_cam1 * b;
+  if (!(std::min({a.z(), b.z(), a2.z(), b2.z()}) > 0)) return std::nullopt;
+  const double sign = low < high ? 1 : -1;
+  const double share1 = ShareWithSlack(
+      first, sign * (a / a.z() - b / b.z()).norm(), sine1, epipolar_slack);
+  const double share2 = ShareWithSlack(
+      second, sign * (a2 / a2.z() - b2 / b2.z()).norm(), sine2, epipolar_slack);
+  if (!(std::max(share1, share2) > 0)) return std::nullopt;
   transfer.overlap_of_shorter = std::max(share1, share2);
-  transfer.overlap_of_longer = std::min(share1, share2);
+  transfer.overlap_of_longer = std::max(0.0, std::min(share1, share2));
   return transfer;
 }
 

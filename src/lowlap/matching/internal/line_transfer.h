@@ -22,12 +22,17 @@ struct LineTransfer {
 };
 
 /// What the epipolar lines of the end points say about a pair of segments.
+///
+/// `epipolar_slack`: by how much epipolar lines may be off, in normalised
+/// units; a segment at the angle a to them may slide along its line by slack /
+/// sin a, and the common part counts as longer by this, if at most whole.
 /// nullopt: invalid segments; one of them closer than asin(min_epipolar_sine)
 /// to an epipolar line; no common part in front of both cameras.
 std::optional<LineTransfer> TransferLine(const NormalizedSegment& first,
                                          const NormalizedSegment& second,
                                          const RigidTransform& cam2_from_cam1,
-                                         double min_epipolar_sine);
+                                         double min_epipolar_sine,
+                                         double epipolar_slack);
 
 /// Sine of the angle in the image between a segment and the epipolar line of
 /// its midpoint. `epipole` is the other camera's centre in this camera.
