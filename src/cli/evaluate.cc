@@ -5,7 +5,9 @@
 
 #include "cli/command.h"
 #include "cli/solve_flags.h"
+#include "lowlap/evaluation/line_match_errors.h"
 #include "lowlap/evaluation/pair_errors.h"
+#include "lowlap/matching/pair_selection.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {
@@ -17,6 +19,8 @@ struct Flags {
   std::string truth_option;  // --gt, the same as an option
   bool relative_poses = false;
   std::vector<std::string> expected_pairs;
+  std::string true_edges;  // --gt-lines
+  std::string line_pairs = "cycle";
   bool json = false;
 };
 
@@ -50,6 +54,19 @@ int EvaluateMeasurements(const Flags& flags, const Scene& scene,
   return 0;
 }
 
+int EvaluateLines(const Flags& flags, const Scene& scene,
+                  const GroundTruth& truth) {
+  const auto edges = ReadTrueEdges(flags.true_edges);
+  if (!edges) return Fail(edges.error());
+  const auto pairs = SelectPairs(scene, flags.line_pairs);
+  if (!pairs) return Fail(pairs.error());
+  const auto evaluation = EvaluateLineMatches(scene, truth, *edges, *pairs, {});
+  if (!evaluation) return Fail(evaluation.error());
+  std::printf("%s\n",
+              (flags.json ? ToJson(*evaluation) : ToText(*evaluation)).c_str());
+  return 0;
+}
+
 int Evaluate(const Flags& flags) {
   const auto scene = ReadScene(flags.solution);
   if (!scene) return Fail(scene.error());
@@ -62,6 +79,7 @@ int Evaluate(const Flags& flags) {
                  "the true cameras are missing: second argument, or --gt", "",
                  "evaluate"});
   }
+  if (!flags.true_edges.empty()) return EvaluateLines(flags, *scene, **truth);
   if (flags.relative_poses) {
     return EvaluateMeasurements(flags, *scene, **truth);
   }
@@ -98,6 +116,21 @@ void AddEvaluate(CLI::App* program, Action* action) {
                    "Pairs of view ids that must have a relative pose, as in "
                    "0-1,1-2 (with --relative-poses; consecutive views always)")
       ->delimiter(',');
+  CLI::Option* lines = command->add_option(
+      "--gt-lines", flags->true_edges,
+      "Judge the line matches of the pairs instead, by the true edges of this "
+      "file. Right: both segments lie on one edge (within 2.5 degrees and 2.5 "
+      "px, half of the shorter shared). Wrong: they lie on different edges, or "
+      "one on an edge that the other image shows elsewhere. Else unknown. "
+      "Recall: share of the edges shown by both images that have a right "
+      "match");
+  command
+      ->add_option("--line-pairs", flags->line_pairs,
+                   "With --gt-lines, the pairs to count: all, chain, cycle, "
+                   "window:N or a file, as for run; one without a relative "
+                   "pose has a recall of 0")
+      ->needs(lines)
+      ->capture_default_str();
   command->add_flag("--json", flags->json, "Print JSON instead of a table");
   command->callback(
       [flags, action] { *action = [flags] { return Evaluate(*flags); }; });
