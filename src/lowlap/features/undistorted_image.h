@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "lowlap/core/result.h"
 #include "lowlap/features/image.h"

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "lowlap/core/hash.h"
 #include "lowlap/core/result.h"
