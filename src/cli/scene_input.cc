@@ -37,7 +37,7 @@ Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
     }
   }
   const StageLog::Scope scope(stages, "relative poses");
-  auto pairs = EstimateRelativePoses(&loaded.scene, matches,
+  auto pairs = EstimateRelativePoses(&loaded.scene, matches, nullptr,
                                      RelativePoseOptions{}, context);
   if (!pairs) return tl::unexpected<Error>(pairs.error());
   loaded.pairs = std::move(*pairs);

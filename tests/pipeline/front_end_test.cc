@@ -70,7 +70,7 @@ TEST(EstimateRelativePoses, PairsThatFailAreReportedWithAReason) {
   auto& starved = matches.begin()->second.points;
   starved.resize(3);
   const auto reports = EstimateRelativePoses(
-      &synthetic.scene, matches, RelativePoseOptions(), RunContext());
+      &synthetic.scene, matches, nullptr, RelativePoseOptions(), RunContext());
   ASSERT_TRUE(reports);
   ASSERT_EQ(reports->size(), 3u);
   EXPECT_FALSE((*reports)[0].accepted);
@@ -94,10 +94,10 @@ TEST(EstimateRelativePoses, ThreadsDoNotChangeTheResult) {
   RunContext context;
   context.num_threads = 1;
   ASSERT_TRUE(
-      EstimateRelativePoses(&one, matches, RelativePoseOptions(), context));
+      EstimateRelativePoses(&one, matches, nullptr, RelativePoseOptions(), context));
   context.num_threads = 2;
   ASSERT_TRUE(
-      EstimateRelativePoses(&two, matches, RelativePoseOptions(), context));
+      EstimateRelativePoses(&two, matches, nullptr, RelativePoseOptions(), context));
   EXPECT_TRUE(one == two);
 }
 

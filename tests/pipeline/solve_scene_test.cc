@@ -117,7 +117,7 @@ TEST(SolveScene, RelativePosesCanBeEstimatedFromTheFeatures) {
     matches[views] = {pose.point_inliers, pose.line_inliers};
   }
   const auto reports = EstimateRelativePoses(
-      &room.scene, matches, RelativePoseOptions(), RunContext());
+      &room.scene, matches, nullptr, RelativePoseOptions(), RunContext());
   ASSERT_TRUE(reports) << reports.error().ToString();
   EXPECT_EQ(room.scene.relative_poses.size(), matches.size());
   StageLog stages;

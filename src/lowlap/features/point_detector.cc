@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "lowlap/features/internal/opencv.h"
+#include "lowlap/features/point_localization.h"
 
 namespace lowlap {
 namespace {
@@ -133,6 +134,8 @@ Result<PointFeatures> DetectPoints(const GrayImage& image,
           Vec2(point.pt.x - kDoublingOffsetPx, point.pt.y - kDoublingOffsetPx);
       keypoint.scale_px = 0.5 * point.size;
       keypoint.angle_rad = RadFromDeg(point.angle);
+      keypoint.covariance = LocalizationCovariance(
+          image, keypoint.position_px, keypoint.scale_px);
       features.keypoints.push_back(keypoint);
       features.descriptors.push_back(
           RootSift(sift_descriptors.ptr<float>(point.class_id)));

@@ -19,6 +19,8 @@ struct Keypoint {
   Vec2 position_px = Vec2::Zero();  // centre of the top-left pixel: (0, 0)
   double scale_px = 0;              // standard deviation of the blob
   double angle_rad = 0;             // dominant gradient direction, x to y
+  /// Shape of the error of the position (LocalizationCovariance).
+  Mat2 covariance = Mat2::Identity();
 };
 
 struct PointFeatures {
@@ -28,7 +30,7 @@ struct PointFeatures {
 
 /// Raised whenever keypoints or descriptors change for the same input and
 /// options: what is cached is then computed anew.
-inline constexpr int kPointDetectorVersion = 1;
+inline constexpr int kPointDetectorVersion = 2;
 
 struct PointOptions {
   /// Keypoints kept per image. More of them help thin overlaps and cost

@@ -67,7 +67,8 @@ Result<std::vector<PairReport>> MeasureImages(Scene* scene,
   }
   const StageLog::Scope scope(stages, "relative poses");
   auto reports =
-      EstimateRelativePoses(scene, matches, options.relative_poses, context);
+      EstimateRelativePoses(scene, matches, &detected.features,
+                            options.relative_poses, context);
   if (reports) KeepMatchedFeatures(scene);
   return reports;
 }

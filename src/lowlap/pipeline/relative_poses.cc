@@ -1,6 +1,8 @@
 #include "lowlap/pipeline/relative_poses.h"
 
+#include <algorithm>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "lowlap/core/parallel.h"
@@ -14,9 +16,91 @@ struct PairOutcome {
   std::optional<RelativePose> pose;
 };
 
-PairOutcome SolvePair(const Scene& scene,
-                      const std::map<ViewId, NormalizedFeatures>& features,
-                      const ViewPair& views, const PairMatches& matches,
+// What all pairs of a view use.
+struct ViewMeasurements {
+  NormalizedFeatures features;
+  std::vector<VanishingDirection> directions;
+  std::vector<Mat2> point_covariances;         // empty: unknown
+  const DetectedFeatures* detected = nullptr;  // null: matches are all we have
+  Vec2 image_size_px = Vec2::Zero();
+};
+
+TwoViewInput MakeInput(const ViewPair& views, const ViewMeasurements& first,
+                       const ViewMeasurements& second) {
+  TwoViewInput input;
+  input.views = views;
+  input.features1 = &first.features;
+  input.features2 = &second.features;
+  input.directions1 = &first.directions;
+  input.directions2 = &second.directions;
+  if (!first.point_covariances.empty() && !second.point_covariances.empty()) {
+    input.point_covariances1 = &first.point_covariances;
+    input.point_covariances2 = &second.point_covariances;
+  }
+  input.image_size1_px = first.image_size_px;
+  input.image_size2_px = second.image_size_px;
+  return input;
+}
+
+ViewMeasurements MeasureView(const Scene& scene, ViewId id,
+                             const std::map<ViewId, DetectedFeatures>* detected,
+                             const VanishingOptions& options) {
+  ViewMeasurements view;
+  view.features =
+      NormalizeFeatures(scene.features.at(id), *scene.FindIntrinsic(id));
+  view.directions = FindVanishingDirections(view.features, options);
+  view.image_size_px =
+      Vec2(scene.views.at(id).width_px, scene.views.at(id).height_px);
+  if (detected == nullptr || detected->count(id) == 0) return view;
+  view.detected = &detected->at(id);
+  for (const Keypoint& keypoint : view.detected->keypoints) {
+    view.point_covariances.push_back(keypoint.covariance);
+  }
+  return view;
+}
+
+// Adds the matches whose points have none yet.
+void AddMatches(const std::vector<FeatureMatch>& extra,
+                std::vector<FeatureMatch>* matches) {
+  std::set<FeatureIndex> used1, used2;
+  for (const FeatureMatch& match : *matches) {
+    used1.insert(match.first);
+    used2.insert(match.second);
+  }
+  for (const FeatureMatch& match : extra) {
+    if (used1.count(match.first) == 0 && used2.count(match.second) == 0) {
+      matches->push_back(match);
+    }
+  }
+  std::sort(matches->begin(), matches->end());
+}
+
+// Matches again under the pose, and refines it on what that finds.
+void UseGuidedMatches(const ViewMeasurements& first,
+                      const ViewMeasurements& second,
+                      const RelativePoseOptions& options, TwoViewInput* input,
+                      RelativePose* pose) {
+  const DetectedFeatures &d1 = *first.detected, &d2 = *second.detected;
+  input->point_matches = pose->point_inliers;
+  if (static_cast<int>(pose->point_inliers.size()) < options.starved_below) {
+    const std::vector<FeatureMatch> guided =
+        MatchPointsGuided({d1.keypoints, d1.point_descriptors, first.features},
+                          {d2.keypoints, d2.point_descriptors, second.features},
+                          pose->Cam2FromCam1(), 2 * pose->point_threshold_px,
+                          options.guided_points);
+    AddMatches(guided, &input->point_matches);
+  }
+  input->line_matches =
+      MatchLinesGuided({d1.features.segments, d1.line_descriptors},
+                       {d2.features.segments, d2.line_descriptors},
+                       first.features, second.features, pose->Cam2FromCam1(),
+                       input->line_matches, options.guided_lines);
+  *pose = ImproveRelativePose(*input, *pose, options.two_view);
+}
+
+PairOutcome SolvePair(const ViewPair& views, const ViewMeasurements& first,
+                      const ViewMeasurements& second,
+                      const PairMatches& matches,
                       const RelativePoseOptions& options, std::uint64_t seed) {
   PairOutcome outcome;
   PairReport& report = outcome.report;
@@ -24,17 +108,9 @@ PairOutcome SolvePair(const Scene& scene,
   report.num_point_matches = static_cast<int>(matches.points.size());
   report.num_line_matches = static_cast<int>(matches.lines.size());
 
-  const auto size_of = [&](ViewId id) {
-    const View& view = scene.views.at(id);
-    return Vec2(view.width_px, view.height_px);
-  };
-  TwoViewInput input;
-  input.views = views;
-  input.features1 = &features.at(views.first);
-  input.features2 = &features.at(views.second);
+  TwoViewInput input = MakeInput(views, first, second);
   input.point_matches = matches.points;
-  input.image_size1_px = size_of(views.first);
-  input.image_size2_px = size_of(views.second);
+  input.line_matches = matches.lines;
   auto result = EstimateRelativePose(input, options.two_view, seed);
   if (!result) {
     report.reason = result.error().message;
@@ -42,15 +118,19 @@ PairOutcome SolvePair(const Scene& scene,
   }
   RelativePose& pose = result->pose;
   report.geometry = TwoViewGeometryName(result->geometry);
-  report.num_point_inliers = static_cast<int>(pose.point_inliers.size());
   report.log10_nfa = pose.log10_nfa;
   if (!result->HasDirection()) {
+    report.num_point_inliers = static_cast<int>(pose.point_inliers.size());
     report.reason = "the views differ by a rotation only";
     return outcome;
   }
+  if (first.detected != nullptr && second.detected != nullptr) {
+    UseGuidedMatches(first, second, options, &input, &pose);
+  }
   pose.line_inliers =
-      FilterLineMatches(matches.lines, *input.features1, *input.features2,
+      FilterLineMatches(input.line_matches, *input.features1, *input.features2,
                         pose.Cam2FromCam1(), options.line_filter);
+  report.num_point_inliers = static_cast<int>(pose.point_inliers.size());
   report.num_line_inliers = static_cast<int>(pose.line_inliers.size());
   report.accepted = true;
   outcome.pose = std::move(pose);
@@ -61,7 +141,8 @@ PairOutcome SolvePair(const Scene& scene,
 
 Status RelativePoseOptions::Validate() const {
   for (const Status& valid :
-       {two_view.Validate(), line_filter.Validate(), line_tracks.Validate()}) {
+       {two_view.Validate(), guided_lines.Validate(), guided_points.Validate(),
+        line_filter.Validate(), line_tracks.Validate()}) {
     if (!valid) return valid;
   }
   return {};
@@ -69,38 +150,47 @@ Status RelativePoseOptions::Validate() const {
 
 Result<std::vector<PairReport>> EstimateRelativePoses(
     Scene* scene, const std::map<ViewPair, PairMatches>& matches,
+    const std::map<ViewId, DetectedFeatures>* detected,
     const RelativePoseOptions& options, const RunContext& context) {
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
   std::vector<std::pair<ViewPair, const PairMatches*>> pairs;
-  std::map<ViewId, NormalizedFeatures> features;
+  std::map<ViewId, ViewMeasurements> measurements;
   for (const auto& [views, pair_matches] : matches) {
     pairs.emplace_back(views, &pair_matches);
-    for (const ViewId view : {views.first, views.second}) {
-      const Intrinsic* intrinsic = scene->FindIntrinsic(view);
-      const auto found = scene->features.find(view);
-      if (intrinsic == nullptr || found == scene->features.end()) {
-        return MakeError(ErrorCode::kInvalidArgument,
-                         "view " + std::to_string(view) +
-                             " is matched but has no intrinsic or no features");
-      }
-      if (features.count(view) == 0) {
-        features[view] = NormalizeFeatures(found->second, *intrinsic);
-      }
+    measurements[views.first];
+    measurements[views.second];
+  }
+  std::vector<ViewId> views;
+  for (const auto& entry : measurements) views.push_back(entry.first);
+  for (const ViewId view : views) {
+    if (scene->FindIntrinsic(view) == nullptr ||
+        scene->features.count(view) == 0) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "view " + std::to_string(view) +
+                           " is matched but has no intrinsic or no features");
     }
   }
+  Status done = ParallelFor(
+      context, "vanishing directions", views.size(), [&](std::size_t n) {
+        measurements.at(views[n]) =
+            MeasureView(*scene, views[n], detected, options.vanishing);
+      });
+  if (!done) return tl::unexpected<Error>(done.error());
 
   std::vector<PairOutcome> outcomes(pairs.size());
-  const Status done =
+  done =
       ParallelFor(context, "relative poses", pairs.size(), [&](std::size_t n) {
         // A stream of its own per pair, whatever else is in the run.
         const std::uint64_t pair_seed =
             context.seed * 0x9E3779B97F4A7C15ull +
             (static_cast<std::uint64_t>(pairs[n].first.first) << 32) +
             pairs[n].first.second;
-        outcomes[n] = SolvePair(*scene, features, pairs[n].first,
-                                *pairs[n].second, options, pair_seed);
+        outcomes[n] =
+            SolvePair(pairs[n].first, measurements.at(pairs[n].first.first),
+                      measurements.at(pairs[n].first.second), *pairs[n].second,
+                      options, pair_seed);
       });
   if (!done) return tl::unexpected<Error>(done.error());
 

@@ -6,6 +6,9 @@
 
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
+#include "lowlap/features/features.h"
+#include "lowlap/matching/guided_line_matching.h"
+#include "lowlap/matching/guided_point_matching.h"
 #include "lowlap/matching/line_filter.h"
 #include "lowlap/matching/matching.h"
 #include "lowlap/matching/tracks.h"
@@ -16,6 +19,11 @@ namespace lowlap {
 
 struct RelativePoseOptions {
   TwoViewOptions two_view;
+  VanishingOptions vanishing;
+  GuidedLineOptions guided_lines;
+  GuidedPointOptions guided_points;
+  /// Points are matched again under the first pose if it has fewer inliers.
+  int starved_below = 500;
   LineFilterOptions line_filter;
   LineTrackOptions line_tracks;
 
@@ -36,12 +44,20 @@ struct PairReport {
 };
 
 /// Fills scene->relative_poses, point_tracks and line_tracks from putative
-/// matches of the scene's features: a-contrario relative pose per pair, then
-/// the line matches that are plausible under it, then tracks. Pairs that fail,
-/// or whose direction is undetermined (pure rotation), get no relative pose;
-/// the report says why. The result does not depend on the number of threads.
+/// matches of the scene's features: a-contrario relative pose per pair from
+/// points and lines, then the line matches that are plausible under it, then
+/// tracks. Pairs that fail, or whose direction is undetermined (pure rotation),
+/// get no relative pose; the report says why.
+///
+/// With `detected`, what the detectors know of the same features (same order),
+/// the shapes of the points' errors count, lines and, for starved pairs, points
+/// are matched again under the first pose, and the pose is refined on all of
+/// them. Null: matches are all there is.
+///
+/// The result does not depend on the number of threads.
 Result<std::vector<PairReport>> EstimateRelativePoses(
     Scene* scene, const std::map<ViewPair, PairMatches>& matches,
+    const std::map<ViewId, DetectedFeatures>* detected,
     const RelativePoseOptions& options, const RunContext& context);
 
 }  // namespace lowlap

@@ -21,15 +21,12 @@ class StepOfMatch {
  public:
   StepOfMatch(const PointPairs& pairs, const AContrarioLadder& ladder,
               const RigidTransform& pose)
-      : pairs_(pairs),
-        ladder_(ladder),
-        pose_(pose),
-        residual_(pose, pairs.focal1_px, pairs.focal2_px) {}
+      : pairs_(pairs), ladder_(ladder), pose_(pose), residual_(pose, pairs) {}
 
   int operator()(int first, int second) const {
     const Vec3& x1 = pairs_.x1[first];
     const Vec3& x2 = pairs_.x2[second];
-    const double r = residual_(x1, x2);
+    const double r = residual_.Between(first, second);
     const int step = ladder_.Step(static_cast<float>(r * r));
     if (step == ladder_.NumSteps()) return step;
     const double noise_rad = NoiseAngle(pairs_, ladder_.Threshold(step));

@@ -15,6 +15,14 @@ EssentialKernel::EssentialKernel(const PointPairs& pairs) : pairs_(pairs) {
     y1_.push_back(static_cast<float>(pairs.x1[i].y()));
     x2_.push_back(static_cast<float>(pairs.x2[i].x()));
     y2_.push_back(static_cast<float>(pairs.x2[i].y()));
+    const Mat2 c1 = pairs.Covariance1(i) / (pairs.focal1_px * pairs.focal1_px);
+    const Mat2 c2 = pairs.Covariance2(i) / (pairs.focal2_px * pairs.focal2_px);
+    xx1_.push_back(static_cast<float>(c1(0, 0)));
+    xy1_.push_back(static_cast<float>(2 * c1(0, 1)));
+    yy1_.push_back(static_cast<float>(c1(1, 1)));
+    xx2_.push_back(static_cast<float>(c2(0, 0)));
+    xy2_.push_back(static_cast<float>(2 * c2(0, 1)));
+    yy2_.push_back(static_cast<float>(c2(1, 1)));
   }
 }
 
@@ -43,11 +51,6 @@ void EssentialKernel::SquaredResiduals(const Model& model, int begin, int end,
   const float e00 = e(0, 0), e01 = e(0, 1), e02 = e(0, 2);
   const float e10 = e(1, 0), e11 = e(1, 1), e12 = e(1, 2);
   const float e20 = e(2, 0), e21 = e(2, 1), e22 = e(2, 2);
-  const auto inverse_square = [](double f) {
-    return static_cast<float>(1 / (f * f));
-  };
-  const float weight1 = inverse_square(pairs_.focal1_px);
-  const float weight2 = inverse_square(pairs_.focal2_px);
   for (int i = begin; i < end; ++i) {
     const float x1 = x1_[i], y1 = y1_[i], x2 = x2_[i], y2 = y2_[i];
     const float line2_x = e00 * x1 + e01 * y1 + e02;
@@ -57,8 +60,9 @@ void EssentialKernel::SquaredResiduals(const Model& model, int begin, int end,
     const float line1_y = e01 * x2 + e11 * y2 + e21;
     const float numerator = x2 * line2_x + y2 * line2_y + line2_z;
     const float squared_norm =
-        weight2 * (line2_x * line2_x + line2_y * line2_y) +
-        weight1 * (line1_x * line1_x + line1_y * line1_y) + 1e-30f;
+        xx2_[i] * line2_x * line2_x + xy2_[i] * line2_x * line2_y +
+        yy2_[i] * line2_y * line2_y + xx1_[i] * line1_x * line1_x +
+        xy1_[i] * line1_x * line1_y + yy1_[i] * line1_y * line1_y + 1e-30f;
     squared_px[i] = numerator * numerator / squared_norm;
   }
 }

@@ -40,6 +40,8 @@ class EssentialKernel {
   const PointPairs& pairs_;
   // Coordinates once more, for fast evaluation.
   std::vector<float> x1_, y1_, x2_, y2_;
+  // Covariances over squared focal lengths, xx, xy (twice), yy.
+  std::vector<float> xx1_, xy1_, yy1_, xx2_, xy2_, yy2_;
 };
 
 /// What the rays of a match say about the sign of its depths.

@@ -13,8 +13,20 @@ struct PointPairs {
   std::vector<Vec3> x2;
   double focal1_px = 1;
   double focal2_px = 1;
+  /// Shapes of their errors (LocalizationCovariance): a residual is divided by
+  /// the deviation across the epipolar line. Empty: round, of variance 1.
+  std::vector<Mat2> covariance1 = {};
+  std::vector<Mat2> covariance2 = {};
 
   int size() const { return static_cast<int>(x1.size()); }
+  const Mat2& Covariance1(int i) const { return At(covariance1, i); }
+  const Mat2& Covariance2(int i) const { return At(covariance2, i); }
+
+ private:
+  static const Mat2& At(const std::vector<Mat2>& covariance, int i) {
+    static const Mat2 kRound = Mat2::Identity();
+    return covariance.empty() ? kRound : covariance[i];
+  }
 };
 
 }  // namespace lowlap

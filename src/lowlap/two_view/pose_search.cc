@@ -2,44 +2,104 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "lowlap/core/median.h"
 #include "lowlap/geometry/epipolar.h"
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/robust/a_contrario_ransac.h"
 #include "lowlap/two_view/chance_support.h"
 #include "lowlap/two_view/five_point.h"
-#include "lowlap/two_view/refine_relative_pose.h"
 #include "lowlap/two_view/sharpen_pose.h"
+#include "lowlap/two_view/two_point_kernel.h"
 
 namespace lowlap {
+namespace {
 
-PoseSearch::PoseSearch(const PointPairs& pairs, const BackgroundLaw& law,
-                       const TwoViewOptions& options)
-    : kernel_(pairs),
-      law_(law),
-      options_(options),
-      max_threshold_px_(options.max_threshold_px) {}
+// Rotations from directions that are tried; the others contradict more of the
+// directions than these.
+constexpr std::size_t kMaxRotations = 8;
 
-AContrarioLadder PoseSearch::Ladder(double max_threshold_px) const {
-  return AContrarioLadder(kernel_.NumData(), EssentialKernel::kSampleSize,
-                          EssentialKernel::kMaxModels, law_, kMinThresholdPx,
-                          max_threshold_px);
+template <class Kernel>
+AContrarioLadder MakeLadder(const Kernel& kernel, int max_models,
+                            const BackgroundLaw& law, double max_threshold_px) {
+  return AContrarioLadder(kernel.NumData(), Kernel::kSampleSize, max_models,
+                          law, PoseSearch::kMinThresholdPx, max_threshold_px);
 }
 
-std::optional<PoseCandidate> PoseSearch::Search(Random& random,
-                                                int& num_samples) {
-  const AContrarioLadder ladder = Ladder(options_.max_threshold_px);
+}  // namespace
+
+PoseSearch::PoseSearch(const PointPairs& pairs,
+                       std::vector<DirectionPair> directions,
+                       const BackgroundLaw& law, const TwoViewOptions& options)
+    : kernel_(pairs),
+      directions_(std::move(directions)),
+      law_(law),
+      options_(options),
+      max_threshold_px_(options.max_threshold_px),
+      core_scale_px_(0.1 * options.max_threshold_px) {}
+
+std::vector<PoseCandidate> PoseSearch::Search(Random& random,
+                                              int& num_samples) {
+  std::vector<RigidTransform> motions;
+  if (auto motion = FivePointMotion(random, num_samples)) {
+    motions.push_back(*motion);
+  }
+  std::vector<Mat3> rotations = RotationsFromDirections(directions_);
+  if (rotations.size() > kMaxRotations) rotations.resize(kMaxRotations);
+  for (const Mat3& rotation : rotations) {
+    if (auto motion = MotionWithRotation(rotation, random, num_samples)) {
+      motions.push_back(*motion);
+    }
+  }
+  std::vector<PoseCandidate> candidates;
+  for (const RigidTransform& motion : motions) {
+    PoseCandidate candidate = Finish(motion);
+    const bool known = std::any_of(
+        candidates.begin(), candidates.end(), [&](const PoseCandidate& other) {
+          return SameMotion(candidate.pose, other.pose);
+        });
+    if (!known) candidates.push_back(std::move(candidate));
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const PoseCandidate& a, const PoseCandidate& b) {
+                     return a.merit > b.merit;
+                   });
+  return candidates;
+}
+
+std::optional<RigidTransform> PoseSearch::FivePointMotion(Random& random,
+                                                          int& num_samples) {
+  const AContrarioLadder ladder = MakeLadder(
+      kernel_, EssentialKernel::kMaxModels, law_, options_.max_threshold_px);
   AContrarioRansacOptions ransac;
   ransac.max_samples = options_.max_samples;
   ransac.confidence = options_.confidence;
   const auto found = AContrarioRansac(kernel_, ladder, ransac, random);
-  num_samples = found.num_samples;
+  num_samples += found.num_samples;
   if (!found.model) return std::nullopt;
   const SharpenedPose sharp =
       SharpenPose(kernel_, *found.model, found.score.threshold, random);
   // Wide enough for the tail of the precision found, not for repetitions.
   max_threshold_px_ = std::min(options_.max_threshold_px, 10 * sharp.scale_px);
-  return Finish(sharp.cam2_from_cam1);
+  core_scale_px_ = sharp.scale_px;
+  return sharp.cam2_from_cam1;
+}
+
+std::optional<RigidTransform> PoseSearch::MotionWithRotation(
+    const Mat3& rotation, Random& random, int& num_samples) const {
+  PoseRefinementOptions refinement;
+  refinement.directions = directions_;
+  refinement.point_variance_px2 = 1;
+  const TwoPointKernel kernel(kernel_, rotation, refinement);
+  const AContrarioLadder ladder =
+      MakeLadder(kernel, 1, law_, options_.max_threshold_px);
+  AContrarioRansacOptions ransac;
+  ransac.max_samples = 1000;
+  ransac.confidence = options_.confidence;
+  const auto found = AContrarioRansac(kernel, ladder, ransac, random);
+  num_samples += found.num_samples;
+  return found.model;
 }
 
 RigidTransform PoseSearch::WithMostVisible(
@@ -60,19 +120,42 @@ RigidTransform PoseSearch::WithMostVisible(
   return best;
 }
 
+double PoseSearch::PointVariancePx2(const RigidTransform& cam2_from_cam1,
+                                    double threshold_px) const {
+  const PointPairs& pairs = kernel_.pairs();
+  const SampsonResidual residual(cam2_from_cam1, pairs);
+  std::vector<double> errors_px;
+  for (const int i : kernel_.WithinThreshold(cam2_from_cam1, threshold_px)) {
+    errors_px.push_back(std::abs(residual(i)));
+  }
+  if (errors_px.empty()) return threshold_px * threshold_px;
+  const double stddev_px =
+      std::max(kMinThresholdPx, 1.4826 * Median(errors_px));
+  return stddev_px * stddev_px;
+}
+
+PoseRefinementOptions PoseSearch::RefinementOptions(
+    const PoseCandidate& candidate) const {
+  PoseRefinementOptions options;
+  options.loss_scale_px = 0.5 * candidate.score.threshold;
+  options.directions = directions_;
+  options.point_variance_px2 =
+      PointVariancePx2(candidate.pose, candidate.score.threshold);
+  return options;
+}
+
 PoseCandidate PoseSearch::Finish(const RigidTransform& cam2_from_cam1) const {
-  const AContrarioLadder ladder = Ladder(max_threshold_px_);
+  const AContrarioLadder ladder =
+      MakeLadder(kernel_, EssentialKernel::kMaxModels, law_, max_threshold_px_);
   PoseCandidate candidate;
   candidate.pose = WithMostVisible(cam2_from_cam1);
   for (int round = 0; round < 6; ++round) {
     candidate.score = ScoreAgainstChance(kernel_, ladder, candidate.pose);
-    PoseRefinementOptions refinement;
-    refinement.loss_scale_px = LossScalePx(candidate);
     const RigidTransform refined =
         RefineRelativePose(candidate.pose, kernel_.pairs(),
                            kernel_.VisibleWithinThreshold(
                                candidate.pose, 2 * candidate.score.threshold),
-                           refinement);
+                           RefinementOptions(candidate));
     const double change =
         RotationAngleBetween(refined.rotation, candidate.pose.rotation) +
         AngleBetween(refined.translation, candidate.pose.translation);
@@ -82,21 +165,29 @@ PoseCandidate PoseSearch::Finish(const RigidTransform& cam2_from_cam1) const {
   candidate.score = ScoreAgainstChance(kernel_, ladder, candidate.pose);
   candidate.inliers =
       kernel_.VisibleWithinThreshold(candidate.pose, candidate.score.threshold);
+  candidate.direction_penalty =
+      DirectionPenalty(directions_, candidate.pose.rotation);
+  candidate.merit = CoreScore(candidate.pose, core_scale_px_) / std::log(10.0) -
+                    candidate.direction_penalty;
   return candidate;
 }
 
 double PoseSearch::CoreScore(const RigidTransform& cam2_from_cam1,
                              double scale_px) const {
   const PointPairs& pairs = kernel_.pairs();
-  const SampsonResidual residual(cam2_from_cam1, pairs.focal1_px,
-                                 pairs.focal2_px);
+  const SampsonResidual residual(cam2_from_cam1, pairs);
   double score = 0;
   for (const int i :
        kernel_.VisibleWithinThreshold(cam2_from_cam1, 3 * scale_px)) {
-    const double ratio = residual(pairs.x1[i], pairs.x2[i]) / scale_px;
+    const double ratio = residual(i) / scale_px;
     score += std::log(10 / (1 + std::min(ratio * ratio, 9.0)));
   }
   return score;
+}
+
+bool SameMotion(const RigidTransform& a, const RigidTransform& b) {
+  return RotationAngleBetween(a.rotation, b.rotation) < 1e-4 &&
+         AngleBetween(a.translation, b.translation) < 1e-4;
 }
 
 }  // namespace lowlap

@@ -7,28 +7,36 @@
 #include "lowlap/geometry/rigid_transform.h"
 #include "lowlap/robust/a_contrario.h"
 #include "lowlap/two_view/essential_kernel.h"
+#include "lowlap/two_view/parallel_directions.h"
+#include "lowlap/two_view/refine_relative_pose.h"
 #include "lowlap/two_view/relative_pose_estimator.h"
 
 namespace lowlap {
 
 struct PoseCandidate {
   RigidTransform pose;
-  AContrarioScore score;     // against chance
+  AContrarioScore score;     // of the points, against chance
   std::vector<int> inliers;  // visible, within the threshold; ascending
+  double direction_penalty = 0;
+
+  /// What speaks for it, in decimal digits: the core score of the points less
+  /// the penalty of the directions.
+  double merit = 0;
 };
 
-/// The search for the motion of one pair: a-contrario RANSAC, sharpening,
-/// and refinement with the threshold re-estimated.
+/// The search for the motion of one pair, from points and common directions.
 class PoseSearch {
  public:
   static constexpr double kMinThresholdPx = 0.1;
 
   /// `pairs` are in random order and outlive the search.
-  PoseSearch(const PointPairs& pairs, const BackgroundLaw& law,
-             const TwoViewOptions& options);
+  PoseSearch(const PointPairs& pairs, std::vector<DirectionPair> directions,
+             const BackgroundLaw& law, const TwoViewOptions& options);
 
-  /// The best motion; nullopt if no sample gave one.
-  std::optional<PoseCandidate> Search(Random& random, int& num_samples);
+  /// Motions worth a look, the greatest merit first: that of five-point samples
+  /// (a-contrario RANSAC, sharpened), and for each rotation that two pairs of
+  /// directions give, that of two-point samples. Empty if no sample gave one.
+  std::vector<PoseCandidate> Search(Random& random, int& num_samples);
 
   /// A motion brought to its optimum: the signs that see most inliers, then
   /// threshold, inliers and refinement in turn until they agree.
@@ -39,20 +47,30 @@ class PoseSearch {
   /// to compare motions at one scale s.
   double CoreScore(const RigidTransform& cam2_from_cam1, double scale_px) const;
 
-  /// Scale of the Cauchy loss in the final refinement.
-  static double LossScalePx(const PoseCandidate& candidate) {
-    return 0.5 * candidate.score.threshold;
-  }
+  /// The loss of the final refinement; its scale follows the threshold.
+  PoseRefinementOptions RefinementOptions(const PoseCandidate& candidate) const;
 
  private:
-  AContrarioLadder Ladder(double max_threshold_px) const;
+  std::optional<RigidTransform> FivePointMotion(Random& random,
+                                                int& num_samples);
+  std::optional<RigidTransform> MotionWithRotation(const Mat3& rotation,
+                                                   Random& random,
+                                                   int& num_samples) const;
   RigidTransform WithMostVisible(const RigidTransform& cam2_from_cam1) const;
+  double PointVariancePx2(const RigidTransform& cam2_from_cam1,
+                          double threshold_px) const;
 
   EssentialKernel kernel_;
+  std::vector<DirectionPair> directions_;
   BackgroundLaw law_;
   TwoViewOptions options_;
-  /// Bound of the threshold once the precision of the points is known.
+  /// Bound of the threshold, and scale of the core, once the precision of the
+  /// points is known.
   double max_threshold_px_;
+  double core_scale_px_;
 };
+
+/// To within the convergence of the refinement.
+bool SameMotion(const RigidTransform& a, const RigidTransform& b);
 
 }  // namespace lowlap

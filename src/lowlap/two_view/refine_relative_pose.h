@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lowlap/geometry/rigid_transform.h"
+#include "lowlap/two_view/parallel_directions.h"
 #include "lowlap/two_view/point_pairs.h"
 
 namespace lowlap {
@@ -13,19 +14,26 @@ using Mat5 = Eigen::Matrix<double, 5, 5>;
 using Vec5 = Eigen::Matrix<double, 5, 1>;
 
 /// The signed Sampson residual of one match in pixels: with E = [t]x R,
-///   r = x2^T E x1 / sqrt( |(E x1)_12|^2 / f2^2 + |(E^T x2)_12|^2 / f1^2 ),
+///   r = x2^T E x1 / sqrt( l2^T C2 l2 / f2^2 + l1^T C1 l1 / f1^2 ),
+///   l2 = (E x1)_12,  l1 = (E^T x2)_12,
+/// C the shapes of the points' errors (identity: the usual form),
 /// and, if asked for, its derivative by (w, d) in
 ///   R <- exp([w]x) R,  t <- (t + B d) / |t + B d|,  B = TangentBasis(t).
 /// Zero where both points are epipoles.
 class SampsonResidual {
  public:
-  SampsonResidual(const RigidTransform& cam2_from_cam1, double focal1_px,
-                  double focal2_px);
+  /// `pairs` must outlive the residual.
+  SampsonResidual(const RigidTransform& cam2_from_cam1,
+                  const PointPairs& pairs);
 
-  double operator()(const Vec3& x1, const Vec3& x2,
-                    Vec5* jacobian = nullptr) const;
+  double operator()(int pair, Vec5* jacobian = nullptr) const {
+    return Between(pair, pair, jacobian);
+  }
+  /// Of the first point of one pair and the second point of another.
+  double Between(int first, int second, Vec5* jacobian = nullptr) const;
 
  private:
+  const PointPairs& pairs_;
   Mat3 essential_;
   Eigen::Matrix<double, 9, 5> derivative_;  // of E, row-major
   double weight1_;                          // 1 / f1^2
@@ -36,11 +44,17 @@ struct PoseRefinementOptions {
   /// Scale s of the Cauchy loss s^2 / 2 log(1 + r^2 / s^2).
   double loss_scale_px = 1;
   int max_iterations = 20;
+  /// Directions that bear on the rotation, each with the loss
+  ///   variance c^2 / 2 log(1 + |m|^2 / c^2),  c = 3,
+  /// m its residual (DirectionResidual), variance that of the points' core.
+  std::vector<DirectionPair> directions;
+  double point_variance_px2 = 0;
 };
 
 /// The motion (|t| = 1) that minimises the Cauchy loss of the Sampson residuals
 /// of the matches named by `indices`: Levenberg-Marquardt on SO(3) x S^2 with
-/// iterated reweighting. Returns the start if there are fewer than 5 matches.
+/// iterated reweighting. Returns the start if points and directions give fewer
+/// than 5 equations.
 RigidTransform RefineRelativePose(const RigidTransform& cam2_from_cam1,
                                   const PointPairs& pairs,
                                   const std::vector<int>& indices,
@@ -48,13 +62,13 @@ RigidTransform RefineRelativePose(const RigidTransform& cam2_from_cam1,
 
 /// Covariance of (w, d) as above at the minimum of the same loss:
 ///   (sum psi^2 / (n - 5)) / (mean psi')^2 (sum J J^T)^-1
-/// (Huber, "Robust Statistics", section 7.6), psi the derivative of the loss.
+/// (Huber, "Robust Statistics", section 7.6), psi the derivative of the loss;
+/// its inverse and the information of the directions add up.
 /// It covers independent errors of the points only: an imperfect calibration
 /// adds its own, which thousands of matches do not average down.
 /// nullopt: fewer than 6 matches, or a singular system.
-std::optional<Mat5> RelativePoseCovariance(const RigidTransform& cam2_from_cam1,
-                                           const PointPairs& pairs,
-                                           const std::vector<int>& indices,
-                                           double loss_scale_px);
+std::optional<Mat5> RelativePoseCovariance(
+    const RigidTransform& cam2_from_cam1, const PointPairs& pairs,
+    const std::vector<int>& indices, const PoseRefinementOptions& options);
 
 }  // namespace lowlap

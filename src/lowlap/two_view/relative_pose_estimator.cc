@@ -10,6 +10,7 @@
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/robust/a_contrario.h"
 #include "lowlap/two_view/chance_support.h"
+#include "lowlap/two_view/line_crossings.h"
 #include "lowlap/two_view/planar_motion.h"
 #include "lowlap/two_view/pose_search.h"
 #include "lowlap/two_view/refine_relative_pose.h"
@@ -68,31 +69,51 @@ Status ValidateInput(const TwoViewInput& input) {
   return {};
 }
 
-/// The usable matches in random order.
+/// The usable matches and the crossings of matched lines in random order.
 struct ShuffledMatches {
   PointPairs pairs;
-  std::vector<int> match_of_pair;  // index into point_matches
+  std::vector<int> match_of_pair;  // index into point_matches, or kCrossing
 };
+constexpr int kCrossing = -1;
 
 ShuffledMatches Shuffle(const TwoViewInput& input, Random& random) {
   ShuffledMatches shuffled;
-  std::vector<int>& order = shuffled.match_of_pair;
+  PointPairs& pairs = shuffled.pairs;
+  pairs.focal1_px = input.features1->focal_px;
+  pairs.focal2_px = input.features2->focal_px;
+  const auto add = [&](int match, const Vec3& x1, const Vec3& x2,
+                       const Mat2& covariance1, const Mat2& covariance2) {
+    shuffled.match_of_pair.push_back(match);
+    pairs.x1.push_back(x1);
+    pairs.x2.push_back(x2);
+    pairs.covariance1.push_back(covariance1);
+    pairs.covariance2.push_back(covariance2);
+  };
+  const auto shape = [](const std::vector<Mat2>* covariances, std::size_t n) {
+    return covariances == nullptr ? Mat2(Mat2::Identity()) : (*covariances)[n];
+  };
   for (std::size_t m = 0; m < input.point_matches.size(); ++m) {
     const FeatureMatch& match = input.point_matches[m];
-    if (input.features1->points[match.first].z() != 0 &&
-        input.features2->points[match.second].z() != 0) {
-      order.push_back(static_cast<int>(m));
+    const Vec3& x1 = input.features1->points[match.first];
+    const Vec3& x2 = input.features2->points[match.second];
+    if (x1.z() != 0 && x2.z() != 0) {
+      add(static_cast<int>(m), x1, x2,
+          shape(input.point_covariances1, match.first),
+          shape(input.point_covariances2, match.second));
     }
   }
-  for (std::size_t n = order.size(); n > 1; --n) {
-    std::swap(order[n - 1], order[random.Index(static_cast<std::uint32_t>(n))]);
+  for (const LineCrossing& crossing : FindLineCrossings(
+           *input.features1, *input.features2, input.line_matches)) {
+    add(kCrossing, crossing.x1, crossing.x2, Mat2::Identity(),
+        Mat2::Identity());
   }
-  shuffled.pairs.focal1_px = input.features1->focal_px;
-  shuffled.pairs.focal2_px = input.features2->focal_px;
-  for (const int m : order) {
-    const FeatureMatch& match = input.point_matches[m];
-    shuffled.pairs.x1.push_back(input.features1->points[match.first]);
-    shuffled.pairs.x2.push_back(input.features2->points[match.second]);
+  for (int n = pairs.size(); n > 1; --n) {
+    const auto k = random.Index(static_cast<std::uint32_t>(n));
+    std::swap(shuffled.match_of_pair[n - 1], shuffled.match_of_pair[k]);
+    std::swap(pairs.x1[n - 1], pairs.x1[k]);
+    std::swap(pairs.x2[n - 1], pairs.x2[k]);
+    std::swap(pairs.covariance1[n - 1], pairs.covariance1[k]);
+    std::swap(pairs.covariance2[n - 1], pairs.covariance2[k]);
   }
   return shuffled;
 }
@@ -105,6 +126,7 @@ std::string Decimal(double value) {
 
 RelativePose ToRelativePose(const TwoViewInput& input,
                             const ShuffledMatches& matches,
+                            const PoseSearch& search,
                             const PoseCandidate& candidate) {
   RelativePose pose;
   pose.views = input.views;
@@ -112,7 +134,9 @@ RelativePose ToRelativePose(const TwoViewInput& input,
   pose.direction = candidate.pose.translation;
   std::vector<int> inliers;
   for (const int i : candidate.inliers) {
-    inliers.push_back(matches.match_of_pair[i]);
+    if (matches.match_of_pair[i] != kCrossing) {
+      inliers.push_back(matches.match_of_pair[i]);
+    }
   }
   std::sort(inliers.begin(), inliers.end());
   for (const int m : inliers) {
@@ -122,14 +146,8 @@ RelativePose ToRelativePose(const TwoViewInput& input,
   pose.point_threshold_px = candidate.score.threshold;
   pose.covariance =
       RelativePoseCovariance(candidate.pose, matches.pairs, candidate.inliers,
-                             PoseSearch::LossScalePx(candidate));
+                             search.RefinementOptions(candidate));
   return pose;
-}
-
-/// To within the convergence of the refinement.
-bool SameMotion(const RigidTransform& a, const RigidTransform& b) {
-  return RotationAngleBetween(a.rotation, b.rotation) < 1e-4 &&
-         AngleBetween(a.translation, b.translation) < 1e-4;
 }
 
 std::optional<ScenePlane> DominantPlaneOf(const PoseCandidate& candidate,
@@ -155,6 +173,12 @@ std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
   PoseCandidate other = search.Finish(*motion);
   if (SameMotion(candidate.pose, other.pose)) return std::nullopt;
   return other;
+}
+
+std::vector<DirectionPair> CommonDirections(const TwoViewInput& input) {
+  if (input.directions1 == nullptr || input.directions2 == nullptr) return {};
+  return PairDirections(*input.features1, *input.features2, *input.directions1,
+                        *input.directions2, input.line_matches);
 }
 
 }  // namespace
@@ -210,8 +234,11 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   }
   TwoViewResult result;
   result.num_matches = pairs.size();
-  PoseSearch search(pairs, SampsonLaw(input), options);
-  std::optional<PoseCandidate> best = search.Search(random, result.num_samples);
+  PoseSearch search(pairs, CommonDirections(input), SampsonLaw(input), options);
+  const std::vector<PoseCandidate> candidates =
+      search.Search(random, result.num_samples);
+  std::optional<PoseCandidate> best;
+  if (!candidates.empty()) best = candidates.front();
   if (!best || !(best->score.log10_nfa < 0)) {
     return MakeError(
         ErrorCode::kInsufficientData,
@@ -224,9 +251,11 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   std::optional<PoseCandidate> other;
   if (plane) other = PlanarAlternative(search, pairs, *best, *plane);
   if (other) {
-    const double scale_px = PoseSearch::LossScalePx(*best);
-    const double advantage = search.CoreScore(best->pose, scale_px) -
-                             search.CoreScore(other->pose, scale_px);
+    const double scale_px = search.RefinementOptions(*best).loss_scale_px;
+    const double advantage =
+        search.CoreScore(best->pose, scale_px) -
+        search.CoreScore(other->pose, scale_px) +
+        std::log(10.0) * (other->direction_penalty - best->direction_penalty);
     if (advantage < 0) {
       std::swap(*best, *other);
       plane = DominantPlaneOf(*best, pairs, random);
@@ -244,11 +273,31 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   if (!(translation.log10_nfa < 0)) {
     result.geometry = TwoViewGeometry::kRotationOnly;
   }
-  result.pose = ToRelativePose(input, matches, *best);
+  result.pose = ToRelativePose(input, matches, search, *best);
   if (result.geometry == TwoViewGeometry::kAmbiguousPlane) {
-    result.alternatives.push_back(ToRelativePose(input, matches, *other));
+    result.alternatives.push_back(
+        ToRelativePose(input, matches, search, *other));
   }
   return result;
+}
+
+RelativePose ImproveRelativePose(const TwoViewInput& input,
+                                 const RelativePose& pose,
+                                 const TwoViewOptions& options) {
+  // No sample is drawn; the order only matters to the background of chance.
+  Random random(0);
+  const ShuffledMatches matches = Shuffle(input, random);
+  if (matches.pairs.size() < kMinMatches) return pose;
+  // The new matches were chosen by the pose: they do not widen its threshold.
+  TwoViewOptions bounded = options;
+  bounded.max_threshold_px =
+      std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
+  const PoseSearch search(matches.pairs, CommonDirections(input),
+                          SampsonLaw(input), bounded);
+  RelativePose improved = ToRelativePose(input, matches, search,
+                                         search.Finish(pose.Cam2FromCam1()));
+  improved.log10_nfa = pose.log10_nfa;
+  return improved;
 }
 
 }  // namespace lowlap

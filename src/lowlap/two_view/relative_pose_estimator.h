@@ -7,6 +7,7 @@
 #include "lowlap/geometry/types.h"
 #include "lowlap/scene/normalized_features.h"
 #include "lowlap/scene/relative_pose.h"
+#include "lowlap/two_view/vanishing_directions.h"
 
 namespace lowlap {
 
@@ -17,7 +18,14 @@ struct TwoViewInput {
   const NormalizedFeatures* features1 = nullptr;
   const NormalizedFeatures* features2 = nullptr;
   std::vector<FeatureMatch> point_matches;  // putative, with wrong ones
-  Vec2 image_size1_px = Vec2::Zero();       // width, height
+  std::vector<FeatureMatch> line_matches;   // likewise; segment indices
+  /// Shapes of the errors of all points (LocalizationCovariance); null: round.
+  const std::vector<Mat2>* point_covariances1 = nullptr;
+  const std::vector<Mat2>* point_covariances2 = nullptr;
+  /// Of the views' segments (FindVanishingDirections); null: lines say nothing.
+  const std::vector<VanishingDirection>* directions1 = nullptr;
+  const std::vector<VanishingDirection>* directions2 = nullptr;
+  Vec2 image_size1_px = Vec2::Zero();  // width, height
   Vec2 image_size2_px = Vec2::Zero();
 };
 
@@ -69,9 +77,14 @@ struct TwoViewResult {
   }
 };
 
-/// Rotation and direction of the translation of a calibrated pair from point
-/// matches, by a-contrario RANSAC (Moisan, Stival 2004) over five-point
-/// samples.
+/// Rotation and direction of the translation of a calibrated pair, by
+/// a-contrario RANSAC (Moisan, Stival 2004). Hypotheses come from five points;
+/// and from the rotation of two pairs of parallel lines (their vanishing
+/// directions, no orthogonality assumed: Salaün, Marlet, Monasse, ECCV 2016)
+/// with the translation from two points. Crossings of neighbouring matched
+/// lines take part as points. Every motion is refined on points, crossings and
+/// common directions together; the one with the greatest merit (core of small
+/// residuals, less what the directions have against it) wins.
 ///
 /// Residual: the Sampson distance of x2^T [t]x R x1 = 0 in pixels. The
 /// threshold that separates inliers is the one of least NFA; there is none to
@@ -94,5 +107,14 @@ struct TwoViewResult {
 Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
                                            const TwoViewOptions& options,
                                            std::uint64_t seed);
+
+/// The pose refined on matches that were found with its help: threshold,
+/// inliers and covariance are those of the new matches, the evidence
+/// (log10_nfa) stays that of the first ones, which knew nothing of the pose.
+/// `input` is valid; its line matches count with their crossings and
+/// directions.
+RelativePose ImproveRelativePose(const TwoViewInput& input,
+                                 const RelativePose& pose,
+                                 const TwoViewOptions& options);
 
 }  // namespace lowlap

@@ -123,6 +123,8 @@ SharpenedPose SharpenPose(const EssentialKernel& kernel,
   for (const int i : near) {
     pairs.x1.push_back(kernel.pairs().x1[i]);
     pairs.x2.push_back(kernel.pairs().x2[i]);
+    pairs.covariance1.push_back(kernel.pairs().Covariance1(i));
+    pairs.covariance2.push_back(kernel.pairs().Covariance2(i));
   }
   const EssentialKernel near_kernel(pairs);
   const std::vector<int> inliers =

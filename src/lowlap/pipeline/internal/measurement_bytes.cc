@@ -84,10 +84,11 @@ void TransferFeatures(Archive& archive, Features& detected) {
     archive.Value(stddev_px);
   });
   TransferList(archive, keypoints, [&](auto& keypoint) {
-    auto& [position_px, scale_px, angle_rad] = keypoint;
+    auto& [position_px, scale_px, angle_rad, covariance] = keypoint;
     TransferVector(archive, position_px);
     archive.Value(scale_px);
     archive.Value(angle_rad);
+    TransferVector(archive, covariance);
   });
   const auto value = [&](auto& descriptor) { archive.Value(descriptor); };
   TransferList(archive, point_descriptors, value);

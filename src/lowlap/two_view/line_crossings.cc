@@ -1,0 +1,97 @@
+#include "lowlap/two_view/line_crossings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+
+namespace lowlap {
+namespace {
+
+constexpr double kMinAngleDeg = 20;
+constexpr double kReachOfLength = 0.1;
+constexpr double kReachOfFocal = 0.01;
+constexpr int kMaxPerMatch = 4;
+
+// How far a point of its support line lies beyond the segment's ends; 0 inside.
+double Beyond(const NormalizedSegment& s, const Vec2& point) {
+  const Vec2 start = s.start.head<2>();
+  const Vec2 along = s.end.head<2>() - start;
+  const double length = along.norm();
+  const double position = (point - start).dot(along) / length;
+  return std::max({0.0, -position, position - length});
+}
+
+struct Crossing {
+  Vec3 point;
+  double gap;  // the larger distance to the two segments
+};
+
+std::optional<Crossing> Cross(const NormalizedSegment& a,
+                              const NormalizedSegment& b) {
+  if (!a.IsValid() || !b.IsValid()) return std::nullopt;
+  const Vec2 along_a = (a.end - a.start).head<2>();
+  const Vec2 along_b = (b.end - b.start).head<2>();
+  const double length_a = along_a.norm(), length_b = along_b.norm();
+  const double sine = (along_a.x() * along_b.y() - along_a.y() * along_b.x()) /
+                      (length_a * length_b);
+  if (std::abs(sine) < std::sin(RadFromDeg(kMinAngleDeg))) return std::nullopt;
+  const Vec3 x = a.normal.cross(b.normal);
+  const Vec2 point = x.head<2>() / x.z();
+  const double gap_a = Beyond(a, point), gap_b = Beyond(b, point);
+  if (gap_a > kReachOfLength * length_a + kReachOfFocal ||
+      gap_b > kReachOfLength * length_b + kReachOfFocal) {
+    return std::nullopt;
+  }
+  return Crossing{{point.x(), point.y(), 1}, std::max(gap_a, gap_b)};
+}
+
+}  // namespace
+
+std::vector<LineCrossing> FindLineCrossings(
+    const NormalizedFeatures& features1, const NormalizedFeatures& features2,
+    const std::vector<FeatureMatch>& line_matches) {
+  struct Candidate {
+    double gap;
+    std::size_t a, b;
+    LineCrossing crossing;
+  };
+  std::vector<Candidate> candidates;
+  for (std::size_t a = 0; a < line_matches.size(); ++a) {
+    for (std::size_t b = a + 1; b < line_matches.size(); ++b) {
+      const FeatureMatch &ma = line_matches[a], &mb = line_matches[b];
+      const auto in1 =
+          Cross(features1.segments[ma.first], features1.segments[mb.first]);
+      if (!in1) continue;
+      const auto in2 =
+          Cross(features2.segments[ma.second], features2.segments[mb.second]);
+      if (!in2) continue;
+      candidates.push_back({std::max(in1->gap * features1.focal_px,
+                                     in2->gap * features2.focal_px),
+                            a,
+                            b,
+                            {in1->point, in2->point}});
+    }
+  }
+  std::sort(candidates.begin(), candidates.end(),
+            [](const Candidate& p, const Candidate& q) {
+              return std::tie(p.gap, p.a, p.b) < std::tie(q.gap, q.a, q.b);
+            });
+  std::vector<int> uses(line_matches.size(), 0);
+  std::vector<Candidate> kept;
+  for (const Candidate& c : candidates) {
+    if (uses[c.a] == kMaxPerMatch || uses[c.b] == kMaxPerMatch) continue;
+    ++uses[c.a];
+    ++uses[c.b];
+    kept.push_back(c);
+  }
+  std::sort(kept.begin(), kept.end(),
+            [](const Candidate& p, const Candidate& q) {
+              return std::tie(p.a, p.b) < std::tie(q.a, q.b);
+            });
+  std::vector<LineCrossing> crossings;
+  for (const Candidate& c : kept) crossings.push_back(c.crossing);
+  return crossings;
+}
+
+}  // namespace lowlap

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/core/ids.h"
+#include "lowlap/scene/normalized_features.h"
+
+namespace lowlap {
+
+/// The point where the support lines of two segments cross, in two views.
+struct LineCrossing {
+  Vec3 x1 = Vec3::UnitZ();  // normalised, z = 1
+  Vec3 x2 = Vec3::UnitZ();
+};
+
+/// Crossings of neighbouring matched lines, as points to be tried: where the
+/// two lines lie in one plane (the frame of a door, the corner of a table),
+/// they meet in space, and the crossing is a point like any other, often more
+/// precise than a blob; where they do not, it is an outlier. Candidates are
+/// couples of matches whose segments make an angle of at least 20 degrees and
+/// come closer to their crossing, in both views, than a tenth of their length
+/// and `focal / 100`; every match joins at most four, the closest. Sorted by
+/// match.
+std::vector<LineCrossing> FindLineCrossings(
+    const NormalizedFeatures& features1, const NormalizedFeatures& features2,
+    const std::vector<FeatureMatch>& line_matches);
+
+}  // namespace lowlap
