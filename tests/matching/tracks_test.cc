@@ -143,6 +143,24 @@ TEST(BuildLineTracksTest, TheToleranceCounts) {
   EXPECT_EQ(BuildLineTracks(scene, options).at(0).size(), 4u);
 }
 
+TEST(BuildLineTracksTest, PiecesOfABentEdgeShareATrackIfTheLensIsKnown) {
+  Intrinsic lens;
+  lens.model = CameraModel::kRadialK1;
+  lens.distortion = {-0.2};
+  lens.fx_px = lens.fy_px = 100;
+  const auto bent = [&](double x0, double x1) {
+    // Of the straight edge y = 0.6.
+    return LineSegment{lens.Project({x0, 0.6, 1}), lens.Project({x1, 0.6, 1}),
+                       0.5};
+  };
+  Scene scene = LineScene(bent(0.2, 0.9));
+  scene.features.at(1).segments[0] = bent(-0.9, 0);
+  EXPECT_EQ(BuildLineTracks(scene, {}).at(0).size(), 3u);
+  scene.intrinsics[5] = lens;
+  scene.views[1].intrinsic_id = 5;
+  EXPECT_EQ(BuildLineTracks(scene, {}).at(0).size(), 4u);
+}
+
 TEST(BuildLineTracksTest, UnknownSegmentsNeverShareATrack) {
   Scene scene = LineScene(Segment(60, 10, 100, 10));
   scene.features.clear();

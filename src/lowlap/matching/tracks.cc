@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -202,20 +203,28 @@ std::map<LineTrackId, Track> BuildLineTracks(const Scene& scene,
       [](const RelativePose& pose) -> const std::vector<FeatureMatch>& {
     return pose.line_inliers;
   };
-  const auto find = [&](const FeatureRef& ref) -> const LineSegment* {
+  // Straightened: in the pixels of a pinhole with the same focal lengths.
+  const auto find = [&](const FeatureRef& ref) -> std::optional<LineSegment> {
     const auto features = scene.features.find(ref.view);
     if (features == scene.features.end() ||
         ref.feature >= features->second.segments.size()) {
-      return nullptr;
+      return std::nullopt;
     }
-    return &features->second.segments[ref.feature];
+    LineSegment segment = features->second.segments[ref.feature];
+    const Intrinsic* intrinsic = scene.FindIntrinsic(ref.view);
+    if (intrinsic == nullptr || !intrinsic->HasDistortion()) return segment;
+    for (Vec2* end_px : {&segment.start_px, &segment.end_px}) {
+      const std::optional<Vec2> end = intrinsic->Normalize(*end_px);
+      if (!end) return std::nullopt;
+      *end_px = {intrinsic->fx_px * end->x(), intrinsic->fy_px * end->y()};
+    }
+    return segment;
   };
   return Number(
       JoinTracks(CollectLinks(scene, inliers),
                  [&](const FeatureRef& a, const FeatureRef& b) {
-                   const LineSegment* segment_a = find(a);
-                   const LineSegment* segment_b = find(b);
-                   return segment_a != nullptr && segment_b != nullptr &&
+                   const auto segment_a = find(a), segment_b = find(b);
+                   return segment_a && segment_b &&
                           AreCollinear(*segment_a, *segment_b,
                                        options.max_collinear_distance_px);
                  }));

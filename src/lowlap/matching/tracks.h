@@ -11,7 +11,7 @@ namespace lowlap {
 
 struct LineTrackOptions {
   /// Two segments of one view belong to one track only if all their end points
-  /// are this close to a common line.
+  /// are this close to a common line, lens distortion removed.
   double max_collinear_distance_px = 2.0;
 
   Status Validate() const;
