@@ -1,6 +1,9 @@
 #include "lowlap/pipeline/solve_scene.h"
 
+#include <algorithm>
+#include <set>
 #include <utility>
+#include <vector>
 
 #include "lowlap/scale/scale_ratios.h"
 
@@ -34,22 +37,55 @@ RatioSummary SummarizeRatios(const std::vector<ScaleRatio>& ratios) {
   return summary;
 }
 
+namespace {
+
+// The triplets of the relative poses that are believed: the others have no
+// part in the solution, so their ratios would be computed for nothing.
+std::vector<ViewTriplet> BelievedTriplets(const Scene& scene,
+                                          const SceneRotations& rotations) {
+  std::set<ViewPair> outliers;
+  for (const OutlierEdge& outlier : rotations.outliers) {
+    outliers.insert(outlier.views);
+  }
+  const auto believed = [&](ViewId a, ViewId b) {
+    return outliers.count({std::min(a, b), std::max(a, b)}) == 0;
+  };
+  std::vector<ViewTriplet> triplets;
+  for (const ViewTriplet& views : FindTriplets(scene)) {
+    if (believed(views.first, views.middle) &&
+        believed(views.middle, views.last)) {
+      triplets.push_back(views);
+    }
+  }
+  return triplets;
+}
+
+}  // namespace
+
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
                                const RunContext& context, StageLog* stages) {
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
   SolveResult result;
+  SceneRotations rotations;
+  {
+    const StageLog::Scope scope(stages, "rotations");
+    auto averaged = AverageSceneRotations(*scene, options.poses, context);
+    if (!averaged) return tl::unexpected<Error>(averaged.error());
+    rotations = std::move(*averaged);
+  }
   {
     const StageLog::Scope scope(stages, "scale ratios");
-    auto ratios = EstimateScaleRatios(*scene, options.scale, context);
+    auto ratios = EstimateScaleRatios(
+        *scene, BelievedTriplets(*scene, rotations), options.scale, context);
     if (!ratios) return tl::unexpected<Error>(ratios.error());
     scene->scale_ratios = std::move(*ratios);
     result.ratios = SummarizeRatios(scene->scale_ratios);
   }
   {
     const StageLog::Scope scope(stages, "poses");
-    auto poses = SolveScenePoses(scene, options.poses, context);
+    auto poses = SolveScenePoses(scene, rotations, options.poses, context);
     if (!poses) return tl::unexpected<Error>(poses.error());
     result.poses = std::move(*poses);
     result.poses_before_adjustment = scene->poses;

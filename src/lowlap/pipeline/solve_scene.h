@@ -41,8 +41,9 @@ struct SolveResult {
   std::map<PoseId, Pose> poses_before_adjustment;
 };
 
-/// From measurements to a calibrated scene: ratios of all triplets, absolute
-/// poses, structure, bundle adjustment. Reads intrinsics, features, relative
+/// From measurements to a calibrated scene: rotations and the choice of
+/// relative poses, ratios of the triplets of those believed, absolute poses,
+/// structure, bundle adjustment. Reads intrinsics, features, relative
 /// poses and tracks; replaces scale ratios, poses and structure. Errors leave
 /// the scene in an intermediate state: keep a copy if you need it.
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,

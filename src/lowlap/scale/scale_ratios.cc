@@ -33,10 +33,15 @@ std::vector<ViewTriplet> FindTriplets(const Scene& scene) {
 Result<std::vector<ScaleRatio>> EstimateScaleRatios(const Scene& scene,
                                                     const ScaleOptions& options,
                                                     const RunContext& context) {
+  return EstimateScaleRatios(scene, FindTriplets(scene), options, context);
+}
+
+Result<std::vector<ScaleRatio>> EstimateScaleRatios(
+    const Scene& scene, const std::vector<ViewTriplet>& triplets,
+    const ScaleOptions& options, const RunContext& context) {
   if (const Status status = options.Validate(); !status) {
     return tl::unexpected<Error>(status.error());
   }
-  const std::vector<ViewTriplet> triplets = FindTriplets(scene);
   const NormalizedFeaturesByView features = NormalizeAllFeatures(scene);
   const std::unique_ptr<ScaleEstimator> estimator = MakeScaleEstimator(options);
   std::vector<Result<ScaleRatio>> results(triplets.size());

@@ -22,4 +22,9 @@ Result<std::vector<ScaleRatio>> EstimateScaleRatios(const Scene& scene,
                                                     const ScaleOptions& options,
                                                     const RunContext& context);
 
+/// The same for the given triplets only, in their order.
+Result<std::vector<ScaleRatio>> EstimateScaleRatios(
+    const Scene& scene, const std::vector<ViewTriplet>& triplets,
+    const ScaleOptions& options, const RunContext& context);
+
 }  // namespace lowlap
