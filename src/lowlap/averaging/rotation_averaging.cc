@@ -52,20 +52,24 @@ std::vector<double> NormalisedResiduals(
   return normalised;
 }
 
-// A robust scale of those residuals that are within `reach`: from their lower
-// quartile, which three in four false ones do not move. The factor makes it
-// 1.4826 times the median of the norms of normal 3-vectors.
-double ScaleWithin(const std::vector<double>& normalised, double reach) {
+// 1.4826 times the median of norms of normal 3-vectors, from the given share of
+// the residuals within `reach`: the lower quartile is moved by nothing that
+// less than three in four of them do, the median is better where few are false.
+enum class ScaleFrom { kQuartile, kMedian };
+double ScaleWithin(const std::vector<double>& normalised, double reach,
+                   ScaleFrom from) {
   std::vector<double> near;
   for (const double r : normalised) {
     if (r <= reach) near.push_back(r);
   }
   if (near.empty()) return 1;
-  const auto quartile =
-      near.begin() + static_cast<std::ptrdiff_t>(near.size() / 4);
-  std::nth_element(near.begin(), quartile, near.end());
+  const bool quartile = from == ScaleFrom::kQuartile;
+  const auto middle = near.begin() + static_cast<std::ptrdiff_t>(
+                                         near.size() / (quartile ? 4 : 2));
+  std::nth_element(near.begin(), middle, near.end());
   constexpr double kMedianFromQuartile = 1.40;
-  return std::max(1.0, 1.4826 * kMedianFromQuartile * *quartile);
+  return std::max(1.0,
+                  1.4826 * (quartile ? kMedianFromQuartile : 1.0) * *middle);
 }
 
 double EvidenceWeight(const RotationMeasurement& m) {
@@ -117,7 +121,7 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
   Eigen::MatrixXd steps(count, 3);
   // L1 has done its work long before half of the iterations.
   const int num_l1_iterations = options.max_iterations / 2;
-  bool robust_phase = false;
+  enum class Phase { kL1, kTighten, kPolish } phase = Phase::kL1;
   double scale = HUGE_VAL;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     std::vector<double> normalised(measurements.size());
@@ -125,14 +129,23 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
       steps.row(e) = Residual(measurements[e], rotations);
       normalised[e] = steps.row(e).norm() / measurements[e].stddev_rad;
     }
-    // Tightens, and never widens again, once wrong measurements stand out.
-    scale = robust_phase ? std::min(scale, ScaleWithin(normalised, 5 * scale))
-                         : ScaleWithin(normalised, HUGE_VAL);
+    switch (phase) {
+      case Phase::kL1:
+        scale = ScaleWithin(normalised, HUGE_VAL, ScaleFrom::kQuartile);
+        break;
+      case Phase::kTighten:
+        scale = std::min(
+            scale, ScaleWithin(normalised, 5 * scale, ScaleFrom::kQuartile));
+        break;
+      case Phase::kPolish:
+        scale = ScaleWithin(normalised, 5 * scale, ScaleFrom::kMedian);
+        break;
+    }
     for (Eigen::Index e = 0; e < count; ++e) {
       const double r = normalised[e] / scale;
       weights(e) = 1.0 / std::pow(measurements[e].stddev_rad, 2);
       if (measurements[e].trusted) continue;
-      if (robust_phase) {
+      if (phase != Phase::kL1) {
         const double x = r / kReach;
         weights(e) /= std::pow(1 + x * x, 2);
       } else {
@@ -150,14 +163,17 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
       rotations[n] = rotations[n] * RotationFromAngleAxis(w);
     }
     result->num_iterations = iteration + 1;
-    if (robust_phase && largest < options.tolerance_rad) break;
-    if (largest < 1e3 * options.tolerance_rad ||
-        iteration + 1 >= num_l1_iterations) {
-      robust_phase = true;
+    if (phase == Phase::kPolish && largest < options.tolerance_rad) break;
+    const bool settled = largest < 1e3 * options.tolerance_rad;
+    if (phase == Phase::kTighten && settled) phase = Phase::kPolish;
+    if (phase == Phase::kL1 &&
+        (settled || iteration + 1 >= num_l1_iterations)) {
+      phase = Phase::kTighten;
     }
   }
   result->deviation_scale =
-      ScaleWithin(NormalisedResiduals(measurements, rotations), 5 * scale);
+      ScaleWithin(NormalisedResiduals(measurements, rotations), 5 * scale,
+                  ScaleFrom::kMedian);
   return {};
 }
 

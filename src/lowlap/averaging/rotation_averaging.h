@@ -50,8 +50,8 @@ struct RotationAveragingResult {
 /// iteratively reweighted Gauss-Newton on SO(3) (Chatterjee and Govindu 2013):
 /// first L1, which a few wrong measurements do not move, then the Geman-McClure
 /// weight, whose scale comes from the lower quartile of the residuals in its
-/// own reach, and so tightens until wrong measurements are forgotten. The
-/// solution with the least
+/// own reach, and so tightens until wrong measurements are forgotten, and in
+/// the end from their median. The solution with the least
 ///   sum_e (1 + log(1 + max(0, -cost_e))) log(1 + (r_e / sigma_e)^2)
 /// is returned. Each step is a graph Laplacian in the tangent space
 /// (SolveDifferences). Gauge: one rotation of every connected component is the
