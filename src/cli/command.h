@@ -43,6 +43,7 @@ void AddSolve(CLI::App* program, Action* action);
 void AddScales(CLI::App* program, Action* action);
 void AddAdjust(CLI::App* program, Action* action);
 void AddEvaluate(CLI::App* program, Action* action);
+void AddFeatures(CLI::App* program, Action* action);
 void AddInspect(CLI::App* program, Action* action);
 void AddConvert(CLI::App* program, Action* action);
 void AddValidate(CLI::App* program, Action* action);

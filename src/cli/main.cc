@@ -21,6 +21,7 @@ int main(int argc, char** argv) {
   lowlap::cli::AddScales(&program, &action);
   lowlap::cli::AddAdjust(&program, &action);
   lowlap::cli::AddEvaluate(&program, &action);
+  lowlap::cli::AddFeatures(&program, &action);
   lowlap::cli::AddInspect(&program, &action);
   lowlap::cli::AddConvert(&program, &action);
   lowlap::cli::AddValidate(&program, &action);

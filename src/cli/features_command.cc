@@ -1,0 +1,89 @@
+#include <chrono>
+#include <cstdio>
+#include <memory>
+
+#include "cli/command.h"
+#include "lowlap/features/features.h"
+#include "lowlap/features/overlay.h"
+
+namespace lowlap::cli {
+namespace {
+
+struct Flags {
+  std::string image;
+  std::string draw;
+  bool points = false;
+  bool lines = false;
+};
+
+class Stopwatch {
+ public:
+  double Milliseconds() const {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start_)
+        .count();
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+int Features(const Flags& flags) {
+  const bool both = flags.points == flags.lines;
+  const auto image = ReadGrayImage(flags.image);
+  if (!image) return Fail(image.error());
+  const double megapixels = 1e-6 * image->width * image->height;
+  std::printf("%s: %d x %d px\n", flags.image.c_str(), image->width,
+              image->height);
+  ViewFeatures features;
+  if (flags.points || both) {
+    const Stopwatch stopwatch;
+    const auto points = DetectPoints(*image, {});
+    if (!points) return Fail(points.error());
+    for (const Keypoint& keypoint : points->keypoints) {
+      features.points_px.push_back(keypoint.position_px);
+    }
+    const double ms = stopwatch.Milliseconds();
+    std::printf("points:   %6zu, %7.1f ms, %6.1f ms per megapixel\n",
+                features.points_px.size(), ms, ms / megapixels);
+  }
+  if (flags.lines || both) {
+    const Stopwatch stopwatch;
+    auto segments = DetectLines(*image, {});
+    if (!segments) return Fail(segments.error());
+    const double ms = stopwatch.Milliseconds();
+    const auto descriptors = DescribeLines(*image, *segments);
+    if (!descriptors) return Fail(descriptors.error());
+    const double described_ms = stopwatch.Milliseconds() - ms;
+    std::printf(
+        "segments: %6zu, %7.1f ms, %6.1f ms per megapixel; descriptors "
+        "%.1f ms\n",
+        segments->size(), ms, ms / megapixels, described_ms);
+    features.segments = std::move(*segments);
+  }
+  if (flags.draw.empty()) return 0;
+  if (const Status s = WriteOverlay(*image, features, flags.draw); !s) {
+    return Fail(s.error());
+  }
+  std::printf("written to %s\n", flags.draw.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void AddFeatures(CLI::App* program, Action* action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = program->add_subcommand(
+      "features",
+      "Detect the points and line segments of one image, count them, "
+      "tell the time, and draw them");
+  command->add_option("image", flags->image, "Image file")->required();
+  command->add_option("--draw", flags->draw,
+                      "Write the image with its features as this PNG");
+  command->add_flag("--points", flags->points, "Points only");
+  command->add_flag("--lines", flags->lines, "Segments only");
+  command->callback(
+      [flags, action] { *action = [flags] { return Features(*flags); }; });
+}
+
+}  // namespace lowlap::cli
