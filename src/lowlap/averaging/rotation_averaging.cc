@@ -76,8 +76,14 @@ double EvidenceWeight(const RotationMeasurement& m) {
   return 1 + std::log1p(std::max(0.0, -m.cost));
 }
 
-// The spanning trees to start from, as costs of the edges.
-std::vector<std::vector<double>> StartCosts(
+/// Where a search begins. L1 finds one optimum from everywhere, and trusts the
+/// stated deviations; without it the tree itself is tried.
+struct Start {
+  std::vector<double> costs;  // of the edges: the least spanning forest
+  bool with_l1 = true;
+};
+
+std::vector<Start> MakeStarts(
     std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
     const RotationAveragingOptions& options) {
   std::vector<double> own, cycles, joint;
@@ -92,7 +98,8 @@ std::vector<std::vector<double>> StartCosts(
     cycles.push_back(x);
     joint.push_back(-EvidenceWeight(measurements[e]) / (1 + x * x));
   }
-  std::vector<std::vector<double>> starts = {joint, own, cycles};
+  std::vector<Start> starts = {
+      {joint, true}, {joint, false}, {own, false}, {cycles, false}};
   // More starts pay off where they are cheap.
   constexpr std::size_t kBudget = 20000;
   const std::size_t affordable =
@@ -103,16 +110,16 @@ std::vector<std::vector<double>> StartCosts(
     Random random(options.seed, n);
     std::vector<double> shaken = joint;
     for (double& cost : shaken) cost *= random.Uniform();
-    starts.push_back(std::move(shaken));
+    starts.push_back({std::move(shaken), false});
   }
-  starts.resize(count);
+  if (starts.size() > count) starts.resize(count);
   return starts;
 }
 
 // Reweighted Gauss-Newton from the rotations in `result`.
 Status Refine(const std::vector<RotationMeasurement>& measurements,
               const std::vector<DifferenceEdge>& edges,
-              const RotationAveragingOptions& options,
+              const RotationAveragingOptions& options, bool with_l1,
               RotationAveragingResult* result) {
   constexpr double kReach = 3.0;
   std::vector<Mat3>& rotations = result->cam_from_world;
@@ -121,7 +128,8 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
   Eigen::MatrixXd steps(count, 3);
   // L1 has done its work long before half of the iterations.
   const int num_l1_iterations = options.max_iterations / 2;
-  enum class Phase { kL1, kTighten, kPolish } phase = Phase::kL1;
+  enum class Phase { kL1, kTighten, kPolish };
+  Phase phase = with_l1 ? Phase::kL1 : Phase::kTighten;
   double scale = HUGE_VAL;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     std::vector<double> normalised(measurements.size());
@@ -224,12 +232,12 @@ Result<RotationAveragingResult> AverageRotations(
   best.cam_from_world.assign(num_views, Mat3::Identity());
   if (measurements.empty()) return best;
   double best_cost = HUGE_VAL;
-  for (const std::vector<double>& costs :
-       StartCosts(num_views, measurements, options)) {
+  for (const Start& start : MakeStarts(num_views, measurements, options)) {
     RotationAveragingResult result;
     result.cam_from_world =
-        ComposeAlongForest(num_views, measurements, edges, costs);
-    if (const Status done = Refine(measurements, edges, options, &result);
+        ComposeAlongForest(num_views, measurements, edges, start.costs);
+    if (const Status done =
+            Refine(measurements, edges, options, start.with_l1, &result);
         !done) {
       return tl::unexpected<Error>(done.error());
     }

@@ -48,7 +48,8 @@ struct RotationAveragingResult {
 /// Starts: composed spanning forests that prefer low cost, the support of
 /// cycles (ScoreCycles), both, and both at random. Each is followed by
 /// iteratively reweighted Gauss-Newton on SO(3) (Chatterjee and Govindu 2013):
-/// first L1, which a few wrong measurements do not move, then the Geman-McClure
+/// first, from one of them, L1, which a few wrong measurements do not move as
+/// long as their stated deviations are honest, then the Geman-McClure
 /// weight, whose scale comes from the lower quartile of the residuals in its
 /// own reach, and so tightens until wrong measurements are forgotten, and in
 /// the end from their median. The solution with the least
