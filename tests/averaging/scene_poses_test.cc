@@ -1,7 +1,9 @@
 #include "lowlap/averaging/scene_poses.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "lowlap/averaging/pose_warnings.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/synthetic/synthetic_scene.h"
@@ -67,9 +69,61 @@ TEST(SolveScenePoses, AContradictoryRotationIsNamedAndLeftOut) {
   const auto summary =
       SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
   ASSERT_TRUE(summary);
-  EXPECT_EQ(summary->outlier_edges.size(), 1u);
+  ASSERT_EQ(summary->outlier_edges.size(), 1u);
+  EXPECT_EQ(summary->outlier_edges[0].views, wrong.views);
+  EXPECT_EQ(summary->outlier_edges[0].reason, OutlierReason::kRotation);
   EXPECT_LT(EvaluatePoses(synthetic.scene, synthetic.true_poses).position.max,
             1e-6);
+}
+
+TEST(SolveScenePoses, AContradictoryDirectionIsNamedAndLeftOut) {
+  SyntheticOptions options;
+  options.num_views = 12;
+  options.pairs = "window:3";
+  SyntheticScene synthetic = SceneWithTrueRatios(options);
+  RelativePose& wrong = synthetic.scene.relative_poses.at({4, 6});
+  wrong.direction =
+      RotationFromAngleAxis(0.6 * TangentBasis(wrong.direction).col(0)) *
+      wrong.direction;
+  const auto summary =
+      SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  ASSERT_EQ(summary->outlier_edges.size(), 1u);
+  EXPECT_EQ(summary->outlier_edges[0].views, wrong.views);
+  EXPECT_EQ(summary->outlier_edges[0].reason, OutlierReason::kDirection);
+  EXPECT_NEAR(summary->outlier_edges[0].error_deg, DegFromRad(0.6), 2);
+  EXPECT_EQ(summary->num_placed, 12);
+  EXPECT_FALSE(summary->IsDoubtful());
+  EXPECT_LT(EvaluatePoses(synthetic.scene, synthetic.true_poses).position.max,
+            1e-6);
+}
+
+TEST(PoseWarnings, ALoopThatDoesNotCloseIsSaid) {
+  SyntheticOptions options;
+  options.num_views = 14;
+  options.pairs = "cycle";
+  SyntheticScene synthetic = SceneWithTrueRatios(options);
+  RelativePose& wrong = synthetic.scene.relative_poses.at({5, 6});
+  wrong.rotation = RotationFromAngleAxis(Vec3(0, 0.5, 0)) * wrong.rotation;
+  const auto summary =
+      SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_TRUE(summary->IsDoubtful());
+  const auto warnings = PoseWarnings(*summary, synthetic.scene);
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_THAT(warnings, ::testing::Contains(::testing::HasSubstr(
+                            "a loop of 14 relative poses does not close")));
+}
+
+TEST(PoseWarnings, NoneWhereAllIsWell) {
+  SyntheticOptions options;
+  options.num_views = 12;
+  options.pairs = "window:2";
+  SyntheticScene synthetic = SceneWithTrueRatios(options);
+  const auto summary =
+      SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_TRUE(PoseWarnings(*summary, synthetic.scene).empty());
 }
 
 TEST(SolveScenePoses, ViewsWithoutAScaleAreListedNotPlaced) {

@@ -72,10 +72,11 @@ std::vector<std::string> PoseWarnings(const PoseSummary& summary,
         writer.Pairs(loop.edges) + ".");
   }
   if (!summary.unchecked.empty()) {
-    warnings.push_back(std::to_string(summary.unchecked.size()) + " of " +
-                       std::to_string(summary.num_edges) +
-                       " relative poses in use lie on no cycle, so that no "
-                       "other one can confirm them.");
+    warnings.push_back(
+        "Relative poses in use that lie on no cycle, so that no "
+        "other one can confirm them: " +
+        std::to_string(summary.unchecked.size()) + " of " +
+        std::to_string(summary.num_edges) + ".");
   }
   const auto left_out = [&](OutlierReason reason, const std::string& why) {
     std::vector<ViewPair> pairs;
@@ -83,9 +84,9 @@ std::vector<std::string> PoseWarnings(const PoseSummary& summary,
       if (edge.reason == reason) pairs.push_back(edge.views);
     }
     if (pairs.empty()) return;
-    warnings.push_back(std::to_string(pairs.size()) +
-                       " relative poses were left out because " + why + ": " +
-                       writer.Pairs(pairs) + ".");
+    warnings.push_back("Relative poses left out because " + why + " (" +
+                       std::to_string(pairs.size()) +
+                       "): " + writer.Pairs(pairs) + ".");
   };
   left_out(OutlierReason::kRotation, "their rotations contradict the others");
   left_out(OutlierReason::kDirection,

@@ -181,8 +181,20 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   summary.num_placed = static_cast<int>(placed.size());
   summary.outlier_edges = std::move(outliers);
   summary.loops = rotations.loops;
-  summary.contested = rotations.contested;
-  summary.unchecked = rotations.unchecked;
+  const auto is_placed = [&](ViewId view) { return placed.count(view) > 0; };
+  for (ContestedLink link : rotations.contested) {
+    if (!is_placed(link.edge.first) || !is_placed(link.edge.second)) continue;
+    link.views.erase(
+        std::remove_if(link.views.begin(), link.views.end(),
+                       [&](ViewId view) { return !is_placed(view); }),
+        link.views.end());
+    summary.contested.push_back(std::move(link));
+  }
+  for (const ViewPair& edge : rotations.unchecked) {
+    if (is_placed(edge.first) && is_placed(edge.second)) {
+      summary.unchecked.push_back(edge);
+    }
+  }
   summary.num_edges = static_cast<int>(problem.edges.size());
   summary.num_ratios = static_cast<int>(problem.ratios.size());
   summary.median_rotation_residual_deg =

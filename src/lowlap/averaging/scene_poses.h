@@ -32,7 +32,8 @@ struct PoseSummary {
   std::vector<std::vector<ViewId>> components;
   std::vector<ViewId> unplaced;
   std::vector<OutlierEdge> outlier_edges;  // by views
-  std::vector<LoopClosing> loops;          // as in SceneRotations
+  // As in SceneRotations; the last two among the placed views only.
+  std::vector<LoopClosing> loops;
   std::vector<ContestedLink> contested;
   std::vector<ViewPair> unchecked;
   int num_edges = 0;

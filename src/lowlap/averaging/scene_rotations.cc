@@ -151,20 +151,18 @@ class SceneRotationSolver {
     return changed;
   }
 
-  // Decides on rejected edges whose loop holds two unchecked edges or more, if
-  // no other rejected edge crosses any of them: see AverageSceneRotations.
+  // Decides on rejected edges whose loop holds two unchecked edges or more that
+  // nothing else contradicts: see AverageSceneRotations.
   bool SettleLoops() {
     const auto states = ExamineBridges(views_.size(), graph_, is_kept_);
     const auto loops = BridgesClosedBy(views_.size(), graph_, is_kept_);
     bool changed = false;
     for (std::size_t e = 0; e < loops.size(); ++e) {
-      const bool alone = std::all_of(
+      const auto suspects = std::count_if(
           loops[e].begin(), loops[e].end(), [&](std::size_t bridge) {
             return states[bridge].contradictions.size() == 1;
           });
-      if (loops[e].size() < 2 || !alone || settled_.count(used_[e]) > 0) {
-        continue;
-      }
+      if (suspects < 2 || settled_.count(used_[e]) > 0) continue;
       SettleLoop(used_[e], loops[e]);
       changed = true;
     }

@@ -70,11 +70,11 @@ struct SceneRotations {
 ///   bridge) is left out too if those left out across it have more evidence
 ///   together (-log10 NFA) than it has itself: then the views beyond it are not
 ///   placed by it. If they have less, it is kept, and `contested`.
-/// - Where one relative pose left out closes a single loop of otherwise
-///   unchecked ones, there is one contradiction for several suspects. Up to
-///   `outlier_reach` times the expected closing error all are kept, and share
-///   it with full weights; beyond, the one of least evidence is left out. Both
-///   are listed in `loops`.
+/// - Where one relative pose left out closes a loop with two or more that
+///   nothing else checks, there is one contradiction for several suspects. Up
+///   to `outlier_reach` times the expected closing error all are kept, and
+///   share it with full weights; beyond, the one of least evidence is left out.
+///   Both are listed in `loops`.
 ///
 /// Errors: those of AverageRotations; kInsufficientData if nothing remains.
 Result<SceneRotations> AverageSceneRotations(
