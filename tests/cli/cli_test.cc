@@ -19,6 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct Outcome {
   int exit_code = -1;
@@ -81,8 +82,9 @@ class Cli : public ::testing::Test {
 TEST_F(Cli, HelpNamesEveryCommand) {
   const Outcome help = Lowlap("--help");
   EXPECT_EQ(help.exit_code, 0);
-  for (const char* command : {"run", "solve", "scales", "adjust", "evaluate",
-                              "inspect", "convert", "validate", "simulate"}) {
+  for (const char* command :
+       {"run", "solve", "scales", "adjust", "evaluate", "features", "inspect",
+        "convert", "validate", "simulate"}) {
     EXPECT_THAT(help.output, HasSubstr(command));
     const Outcome own = Lowlap(std::string(command) + " --help");
     EXPECT_EQ(own.exit_code, 0) << command;
@@ -203,6 +205,34 @@ TEST_F(Cli, UnknownFeaturesAndFlagsAreRefused) {
   EXPECT_NE(Lowlap(solve + "--threads -2").exit_code, 0);
   EXPECT_NE(Lowlap(solve + "--exclude nobody").exit_code, 0);
   EXPECT_EQ(FilesIn("out"), 0u);
+}
+
+TEST_F(Cli, FeaturesAreCountedAndDrawn) {
+  std::string image;
+  for (const auto& entry : fs::directory_iterator(RoomImages())) {
+    if (entry.path().extension() == ".jpg") image = entry.path().string();
+  }
+  const Outcome both = Lowlap("features " + image + " --draw " + Path("o.png"));
+  ASSERT_EQ(both.exit_code, 0) << both.output;
+  EXPECT_THAT(both.output, HasSubstr("points: "));
+  EXPECT_THAT(both.output, HasSubstr("segments: "));
+  EXPECT_EQ(ReadText(Path("o.png")).substr(1, 3), "PNG");
+  const Outcome lines = Lowlap("features --lines " + image);
+  EXPECT_THAT(lines.output, Not(HasSubstr("points: ")));
+  EXPECT_THAT(Lowlap("features none.jpg").output, HasSubstr("none.jpg"));
+}
+
+TEST_F(Cli, LineMatchesAreJudgedByTrueEdges) {
+  ASSERT_EQ(Lowlap("simulate --kind room --views 4 -o " + Path("room.lowlap"))
+                .exit_code,
+            0);
+  const std::string evaluate =
+      "evaluate " + Path("room.lowlap") + " --gt " + Path("room.lowlap");
+  Write("edges.json", R"({"edges": [{"p0": [0,0]}]})");
+  const Outcome bad = Lowlap(evaluate + " --gt-lines " + Path("edges.json"));
+  EXPECT_EQ(bad.exit_code, 1);
+  EXPECT_THAT(bad.output, HasSubstr("edges.json: edge 0"));
+  EXPECT_NE(Lowlap(evaluate + " --line-pairs all").exit_code, 0);
 }
 
 TEST_F(Cli, ExcludedViewsAreLeftOut) {
