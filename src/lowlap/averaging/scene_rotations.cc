@@ -151,18 +151,20 @@ class SceneRotationSolver {
     return changed;
   }
 
-  // Decides on rejected edges whose loop holds two unchecked edges or more that
-  // nothing else contradicts: see AverageSceneRotations.
+  // Decides on rejected edges whose loop holds two unchecked edges or more, if
+  // no other rejected edge crosses any of them: see AverageSceneRotations.
   bool SettleLoops() {
     const auto states = ExamineBridges(views_.size(), graph_, is_kept_);
     const auto loops = BridgesClosedBy(views_.size(), graph_, is_kept_);
     bool changed = false;
     for (std::size_t e = 0; e < loops.size(); ++e) {
-      const auto suspects = std::count_if(
+      const bool alone = std::all_of(
           loops[e].begin(), loops[e].end(), [&](std::size_t bridge) {
             return states[bridge].contradictions.size() == 1;
           });
-      if (suspects < 2 || settled_.count(used_[e]) > 0) continue;
+      if (loops[e].size() < 2 || !alone || settled_.count(used_[e]) > 0) {
+        continue;
+      }
       SettleLoop(used_[e], loops[e]);
       changed = true;
     }
@@ -192,7 +194,14 @@ class SceneRotationSolver {
                             });
       LeaveOut(*loop.left_out, OutlierReason::kOpenLoop);
     } else {
-      trusted_.insert(loop.edges.begin(), loop.edges.end());
+      // A loop that also runs over checked edges must not bend these.
+      std::set<ViewId> views;
+      for (const ViewPair& edge : loop.edges) {
+        views.insert({edge.first, edge.second});
+      }
+      if (views.size() == loop.edges.size()) {
+        trusted_.insert(loop.edges.begin(), loop.edges.end());
+      }
     }
     result_.loops.push_back(std::move(loop));
   }
@@ -201,6 +210,7 @@ class SceneRotationSolver {
     const auto states = ExamineBridges(views_.size(), graph_, is_kept_);
     bool changed = false;
     for (std::size_t e = 0; e < states.size(); ++e) {
+      if (settled_.count(used_[e]) > 0) continue;
       double against = 0;
       for (const std::size_t c : states[e].contradictions) {
         against += Evidence(PoseOf(used_[c]));
