@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "cli/solve_flags.h"
+#include "lowlap/adjustment/intrinsic_refinement.h"
 #include "lowlap/pipeline/calibrate_images.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/output_folder.h"
@@ -45,6 +46,41 @@ Result<IntrinsicSource> ReadIntrinsics(const RunFlags& flags) {
   return source;
 }
 
+// Relative poses and, where asked for, intrinsics: relative poses from a wrong
+// focal length are wrong themselves. If a first solution moves the intrinsics
+// by more than a pixel, they are estimated once more with the refined ones.
+Result<std::vector<PairReport>> Measure(const RunFlags& flags,
+                                        const FrontEndOptions& front_end,
+                                        SolveOptions options,
+                                        const RunContext& context,
+                                        StageLog* stages, Scene* scene) {
+  const auto measurements = MatchImages(*scene, front_end, context, stages);
+  if (!measurements) return tl::unexpected<Error>(measurements.error());
+  auto pairs = RelatePairs(*measurements, front_end, context, stages, scene);
+  if (!pairs || !options.adjust || flags.solve.refine_intrinsics.empty()) {
+    return pairs;
+  }
+  Scene first = *scene;
+  if (const Status set = SetRefinement(flags.solve.refine_intrinsics, &first,
+                                       &options.adjustment);
+      !set) {
+    return tl::unexpected<Error>(set.error());
+  }
+  const auto solved = SolveScene(&first, options, context, stages);
+  if (!solved && solved.error().code == ErrorCode::kCancelled) {
+    return tl::unexpected<Error>(solved.error());
+  }
+  constexpr double kLargeShiftPx = 1;
+  if (!solved || LargestIntrinsicShiftPx(*scene, first) <= kLargeShiftPx) {
+    return pairs;
+  }
+  context.Log(LogLevel::kInfo,
+              "relative poses once more, with refined intrinsics");
+  PrintIntrinsics(*scene, first);
+  scene->intrinsics = first.intrinsics;
+  return RelatePairs(*measurements, front_end, context, stages, scene);
+}
+
 int Run(const RunFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   // Everything that can be refused is refused before the long work.
@@ -78,7 +114,7 @@ int Run(const RunFlags& flags) {
   StageLog stages;
   RunSummary summary;
   summary.command = "run";
-  auto pairs = MeasureImages(&*scene, front_end, context, &stages);
+  auto pairs = Measure(flags, front_end, *options, context, &stages, &*scene);
   if (!pairs) {
     if (IsInterrupted() && !flags.no_cache) {
       context.Log(LogLevel::kInfo, "what was measured is kept in " +

@@ -122,6 +122,21 @@ TEST(RefineAllIntrinsicsTest, WithoutItNothingChanges) {
   EXPECT_TRUE(plain.scene.intrinsics == intrinsics);
 }
 
+TEST(LargestIntrinsicShiftTest, IsThatOfTheCorners) {
+  Scene before;
+  Intrinsic& intrinsic = before.intrinsics[4];
+  intrinsic.width_px = 800;
+  intrinsic.height_px = 600;
+  intrinsic.fx_px = intrinsic.fy_px = 1000;
+  intrinsic.principal_point_px = {400, 300};
+  Scene after = before;
+  EXPECT_LT(LargestIntrinsicShiftPx(before, after), 1e-9);
+  after.intrinsics[4].fx_px = after.intrinsics[4].fy_px = 1010;
+  EXPECT_NEAR(LargestIntrinsicShiftPx(before, after), 5, 1e-9);
+  after.intrinsics[5] = after.intrinsics[4];  // in one of them only
+  EXPECT_NEAR(LargestIntrinsicShiftPx(before, after), 5, 1e-9);
+}
+
 TEST(DescribeIntrinsicChangesTest, NamesWhatMoved) {
   Scene before;
   Intrinsic& intrinsic = before.intrinsics[4];

@@ -1,6 +1,8 @@
 #include "lowlap/adjustment/intrinsic_refinement.h"
 
+#include <algorithm>
 #include <cstdio>
+#include <optional>
 
 namespace lowlap {
 namespace {
@@ -36,6 +38,24 @@ void RefineAllIntrinsics(const IntrinsicRefinement& refinement, Scene* scene,
     }
     options->refine_intrinsics[id] = refinement;
   }
+}
+
+double LargestIntrinsicShiftPx(const Scene& before, const Scene& after) {
+  double largest_px = 0;
+  for (const auto& [id, now] : after.intrinsics) {
+    const auto found = before.intrinsics.find(id);
+    if (found == before.intrinsics.end()) continue;
+    for (const double x : {0.0, 0.5, 1.0}) {
+      for (const double y : {0.0, 0.5, 1.0}) {
+        const Vec2 pixel(x * now.width_px, y * now.height_px);
+        const std::optional<Vec3> ray = found->second.Bearing(pixel);
+        if (ray) {
+          largest_px = std::max(largest_px, (now.Project(*ray) - pixel).norm());
+        }
+      }
+    }
+  }
+  return largest_px;
 }
 
 std::vector<std::string> DescribeIntrinsicChanges(const Scene& before,

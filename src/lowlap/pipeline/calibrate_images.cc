@@ -22,14 +22,14 @@ Status FrontEndOptions::Validate() const {
   return {};
 }
 
-Result<std::vector<PairReport>> MeasureImages(Scene* scene,
-                                              const FrontEndOptions& options,
-                                              const RunContext& context,
-                                              StageLog* stages) {
+Result<ImageMeasurements> MatchImages(const Scene& scene,
+                                      const FrontEndOptions& options,
+                                      const RunContext& context,
+                                      StageLog* stages) {
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
-  const auto pairs = SelectPairs(*scene, options.pairs);
+  const auto pairs = SelectPairs(scene, options.pairs);
   if (!pairs) return tl::unexpected<Error>(pairs.error());
 
   std::optional<CacheFolder> cache;
@@ -42,11 +42,11 @@ Result<std::vector<PairReport>> MeasureImages(Scene* scene,
   {
     const StageLog::Scope scope(stages, "features");
     if (cache) {
-      auto result = DetectFeatures(*scene, options.features, *cache, context);
+      auto result = DetectFeatures(scene, options.features, *cache, context);
       if (!result) return tl::unexpected<Error>(result.error());
       detected = std::move(*result);
     } else {
-      auto result = DetectFeatures(*scene, options.features, context);
+      auto result = DetectFeatures(scene, options.features, context);
       if (!result) return tl::unexpected<Error>(result.error());
       detected.features = std::move(*result);
     }
@@ -62,15 +62,30 @@ Result<std::vector<PairReport>> MeasureImages(Scene* scene,
     matches = std::move(*result);
     if (cache) cache->Prune(options.max_cache_gb * 1e9);
   }
-  for (const auto& [view, features] : detected.features) {
+  return ImageMeasurements{std::move(detected.features), std::move(matches)};
+}
+
+Result<std::vector<PairReport>> RelatePairs(
+    const ImageMeasurements& measurements, const FrontEndOptions& options,
+    const RunContext& context, StageLog* stages, Scene* scene) {
+  for (const auto& [view, features] : measurements.features) {
     scene->features[view] = features.features;
   }
   const StageLog::Scope scope(stages, "relative poses");
   auto reports =
-      EstimateRelativePoses(scene, matches, &detected.features,
+      EstimateRelativePoses(scene, measurements.matches, &measurements.features,
                             options.relative_poses, context);
   if (reports) KeepMatchedFeatures(scene);
   return reports;
+}
+
+Result<std::vector<PairReport>> MeasureImages(Scene* scene,
+                                              const FrontEndOptions& options,
+                                              const RunContext& context,
+                                              StageLog* stages) {
+  const auto measurements = MatchImages(*scene, options, context, stages);
+  if (!measurements) return tl::unexpected<Error>(measurements.error());
+  return RelatePairs(*measurements, options, context, stages, scene);
 }
 
 }  // namespace lowlap

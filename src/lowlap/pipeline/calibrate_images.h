@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,11 +27,28 @@ struct FrontEndOptions {
   Status Validate() const;
 };
 
-/// From photographs to measurements: detects features in the images of all
-/// views, matches the selected pairs, and fills scene->features,
-/// relative_poses and tracks. Features that no inlier uses are dropped
-/// (KeepMatchedFeatures), so that the scene stays small. The result does not
-/// depend on what a cache holds. A cancelled run leaves the cache in order.
+/// What is measured in the photographs themselves.
+struct ImageMeasurements {
+  std::map<ViewId, DetectedFeatures> features;
+  std::map<ViewPair, PairMatches> matches;  // of the selected pairs
+};
+
+/// Detects features in the images of all views and matches the selected pairs.
+/// The result does not depend on what a cache holds. A cancelled run leaves
+/// the cache in order.
+Result<ImageMeasurements> MatchImages(const Scene& scene,
+                                      const FrontEndOptions& options,
+                                      const RunContext& context,
+                                      StageLog* stages);
+
+/// Fills scene->features, relative_poses and tracks, with the intrinsics that
+/// the scene has. Features that no inlier uses are dropped
+/// (KeepMatchedFeatures), so that the scene stays small.
+Result<std::vector<PairReport>> RelatePairs(
+    const ImageMeasurements& measurements, const FrontEndOptions& options,
+    const RunContext& context, StageLog* stages, Scene* scene);
+
+/// From photographs to measurements: both.
 Result<std::vector<PairReport>> MeasureImages(Scene* scene,
                                               const FrontEndOptions& options,
                                               const RunContext& context,
