@@ -340,5 +340,19 @@ TEST_F(Cli, IntrinsicsOfASceneFileAndRefinement) {
   EXPECT_THAT(misfit.output, HasSubstr("pixels"));
 }
 
+TEST_F(Cli, AWrongFocalLengthIsFoundAndTheRelativePosesWithIt) {
+  // The room's true focal length is 997.5.
+  const Outcome outcome =
+      Lowlap("run " + RoomImages() +
+             " --focal 1030 --pairs chain --refine-intrinsics focal -o " +
+             Path("out"));
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("relative poses once more"));
+  const auto scene = ReadSceneBinary(Path("out/scene.lowlap"));
+  ASSERT_TRUE(scene);
+  EXPECT_NEAR(scene->intrinsics.at(0).fx_px, 997.5, 10);
+  EXPECT_EQ(scene->intrinsics.at(0).model, CameraModel::kPinhole);
+}
+
 }  // namespace
 }  // namespace lowlap
