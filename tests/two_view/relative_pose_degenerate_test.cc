@@ -136,8 +136,9 @@ TEST(EstimateRelativePose, FiveMatchesAreInsufficientData) {
   TwoViewSceneOptions options;
   options.num_right = 5;
   const TwoViewScene scene = MakeTwoViewScene(options, 310);
-  EXPECT_THAT(EstimateRelativePose(scene.Input(), {}, 1),
-              IsError(ErrorCode::kInsufficientData, "5 usable point matches"));
+  EXPECT_THAT(
+      EstimateRelativePose(scene.Input(), {}, 1),
+      IsError(ErrorCode::kInsufficientData, "5 usable points and crossings"));
 }
 
 TEST(EstimateRelativePose, PointsThatCannotBeNormalisedAreNotUsed) {

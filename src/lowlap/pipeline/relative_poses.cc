@@ -78,11 +78,13 @@ void AddMatches(const std::vector<FeatureMatch>& extra,
 // Matches again under the pose, and refines it on what that finds.
 void UseGuidedMatches(const ViewMeasurements& first,
                       const ViewMeasurements& second,
-                      const RelativePoseOptions& options, TwoViewInput* input,
-                      RelativePose* pose) {
+                      const RelativePoseOptions& options,
+                      std::vector<FeatureMatch>* line_matches,
+                      TwoViewInput* input, RelativePose* pose) {
   const DetectedFeatures &d1 = *first.detected, &d2 = *second.detected;
   input->point_matches = pose->point_inliers;
-  if (static_cast<int>(pose->point_inliers.size()) < options.starved_below) {
+  if (options.use_points &&
+      static_cast<int>(pose->point_inliers.size()) < options.starved_below) {
     const std::vector<FeatureMatch> guided =
         MatchPointsGuided({d1.keypoints, d1.point_descriptors, first.features},
                           {d2.keypoints, d2.point_descriptors, second.features},
@@ -90,11 +92,12 @@ void UseGuidedMatches(const ViewMeasurements& first,
                           options.guided_points);
     AddMatches(guided, &input->point_matches);
   }
-  input->line_matches =
+  *line_matches =
       MatchLinesGuided({d1.features.segments, d1.line_descriptors},
                        {d2.features.segments, d2.line_descriptors},
                        first.features, second.features, pose->Cam2FromCam1(),
-                       input->line_matches, options.guided_lines);
+                       *line_matches, options.guided_lines);
+  if (options.use_lines) input->line_matches = *line_matches;
   *pose = ImproveRelativePose(*input, *pose, options.two_view);
 }
 
@@ -109,8 +112,8 @@ PairOutcome SolvePair(const ViewPair& views, const ViewMeasurements& first,
   report.num_line_matches = static_cast<int>(matches.lines.size());
 
   TwoViewInput input = MakeInput(views, first, second);
-  input.point_matches = matches.points;
-  input.line_matches = matches.lines;
+  if (options.use_points) input.point_matches = matches.points;
+  if (options.use_lines) input.line_matches = matches.lines;
   auto result = EstimateRelativePose(input, options.two_view, seed);
   if (!result) {
     report.reason = result.error().message;
@@ -124,11 +127,12 @@ PairOutcome SolvePair(const ViewPair& views, const ViewMeasurements& first,
     report.reason = "the views differ by a rotation only";
     return outcome;
   }
+  std::vector<FeatureMatch> line_matches = matches.lines;
   if (first.detected != nullptr && second.detected != nullptr) {
-    UseGuidedMatches(first, second, options, &input, &pose);
+    UseGuidedMatches(first, second, options, &line_matches, &input, &pose);
   }
   pose.line_inliers =
-      FilterLineMatches(input.line_matches, *input.features1, *input.features2,
+      FilterLineMatches(line_matches, *input.features1, *input.features2,
                         pose.Cam2FromCam1(), options.line_filter);
   report.num_point_inliers = static_cast<int>(pose.point_inliers.size());
   report.num_line_inliers = static_cast<int>(pose.line_inliers.size());
@@ -144,6 +148,10 @@ Status RelativePoseOptions::Validate() const {
        {two_view.Validate(), guided_lines.Validate(), guided_points.Validate(),
         line_filter.Validate(), line_tracks.Validate()}) {
     if (!valid) return valid;
+  }
+  if (!use_points && !use_lines) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "relative poses need points or lines");
   }
   return {};
 }

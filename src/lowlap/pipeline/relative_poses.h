@@ -19,11 +19,14 @@ namespace lowlap {
 
 struct RelativePoseOptions {
   TwoViewOptions two_view;
+  /// What the relative poses are estimated from; at least one.
+  bool use_points = true;
+  bool use_lines = true;
   VanishingOptions vanishing;
   GuidedLineOptions guided_lines;
   GuidedPointOptions guided_points;
   /// Points are matched again under the first pose if it has fewer inliers.
-  int starved_below = 500;
+  int starved_below = 2000;
   LineFilterOptions line_filter;
   LineTrackOptions line_tracks;
 

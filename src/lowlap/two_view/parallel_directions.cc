@@ -12,6 +12,7 @@ namespace lowlap {
 namespace {
 
 constexpr int kMinVotes = 2;
+constexpr int kMinVotesForAll = 5;
 constexpr int kMaxDigits = 10;
 // Scale of the Cauchy loss, in standard deviations.
 constexpr double kLossScale = 3;
@@ -102,6 +103,8 @@ std::vector<DirectionPair> PairDirections(
         FitDirection(features2, segments2, directions2[n2].direction, matched);
     pairs.push_back(
         {d1.direction, d2.direction, d1.covariance, d2.covariance, count});
+    // That the two sets are one direction is known from the matched ones alone.
+    if (count < kMinVotesForAll) continue;
     const VanishingDirection &a1 = directions1[n1], &a2 = directions2[n2];
     pairs.push_back(
         {a1.direction, a2.direction, a1.covariance, a2.covariance, count});

@@ -23,9 +23,12 @@ struct DirectionPair {
 /// The vanishing directions of two views that the matched lines connect: each
 /// match of a segment of one with a segment of the other is a vote. A pair is
 /// kept with at least two votes, and half as many as any other pair that its
-/// two directions are part of; the most voted first. Both directions are fitted
-/// anew to the matched segments only, so that what the lines deviate from
-/// parallel is the same in both views.
+/// two directions are part of; the most voted first.
+///
+/// Both directions are fitted anew to the matched segments, so that what these
+/// lines deviate from parallel is the same in both views. From five votes on
+/// the directions of all segments come as a second pair: more lines, but not
+/// the same ones in both views.
 std::vector<DirectionPair> PairDirections(
     const NormalizedFeatures& features1, const NormalizedFeatures& features2,
     const std::vector<VanishingDirection>& directions1,

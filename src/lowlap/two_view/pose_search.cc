@@ -54,12 +54,7 @@ std::vector<PoseCandidate> PoseSearch::Search(Random& random,
   }
   std::vector<PoseCandidate> candidates;
   for (const RigidTransform& motion : motions) {
-    PoseCandidate candidate = Finish(motion);
-    const bool known = std::any_of(
-        candidates.begin(), candidates.end(), [&](const PoseCandidate& other) {
-          return SameMotion(candidate.pose, other.pose);
-        });
-    if (!known) candidates.push_back(std::move(candidate));
+    candidates.push_back(Finish(motion));
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const PoseCandidate& a, const PoseCandidate& b) {
@@ -186,8 +181,8 @@ double PoseSearch::CoreScore(const RigidTransform& cam2_from_cam1,
 }
 
 bool SameMotion(const RigidTransform& a, const RigidTransform& b) {
-  return RotationAngleBetween(a.rotation, b.rotation) < 1e-4 &&
-         AngleBetween(a.translation, b.translation) < 1e-4;
+  return RotationAngleBetween(a.rotation, b.rotation) < RadFromDeg(0.5) &&
+         AngleBetween(a.translation, b.translation) < RadFromDeg(2);
 }
 
 }  // namespace lowlap

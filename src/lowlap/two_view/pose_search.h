@@ -70,7 +70,8 @@ class PoseSearch {
   double core_scale_px_;
 };
 
-/// To within the convergence of the refinement.
+/// To within half a degree of rotation and two of direction: closer than that,
+/// refinement from either side is expected to meet.
 bool SameMotion(const RigidTransform& a, const RigidTransform& b);
 
 }  // namespace lowlap

@@ -66,6 +66,15 @@ Status ValidateInput(const TwoViewInput& input) {
                            " refers to a point that does not exist");
     }
   }
+  for (const FeatureMatch& match : input.line_matches) {
+    if (match.first >= input.features1->segments.size() ||
+        match.second >= input.features2->segments.size()) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "relative pose: match " + std::to_string(match.first) +
+                           "-" + std::to_string(match.second) +
+                           " refers to a segment that does not exist");
+    }
+  }
   return {};
 }
 
@@ -229,7 +238,7 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   if (pairs.size() < kMinMatches) {
     return MakeError(ErrorCode::kInsufficientData,
                      "relative pose: " + std::to_string(pairs.size()) +
-                         " usable point matches, " +
+                         " usable points and crossings of lines, " +
                          std::to_string(kMinMatches) + " needed");
   }
   TwoViewResult result;
@@ -243,7 +252,8 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
     return MakeError(
         ErrorCode::kInsufficientData,
         "relative pose: no motion explains the " +
-            std::to_string(pairs.size()) + " point matches better than chance" +
+            std::to_string(pairs.size()) +
+            " points and crossings of lines better than chance" +
             (best ? " (log10 NFA " + Decimal(best->score.log10_nfa) + ")"
                   : ""));
   }

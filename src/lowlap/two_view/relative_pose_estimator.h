@@ -65,7 +65,7 @@ struct TwoViewResult {
   std::vector<RelativePose> alternatives;
 
   // Diagnostics.
-  int num_matches = 0;  // matches whose points could be normalised
+  int num_matches = 0;  // usable points and crossings
   int num_samples = 0;
   /// Inliers that a rotation alone explains.
   int num_rotation_inliers = 0;
@@ -101,9 +101,9 @@ struct TwoViewResult {
 /// inliers are left to the caller. The same input and seed give the same
 /// result.
 ///
-/// Errors: kInsufficientData when fewer than 6 matches are usable or no pose
-/// has log10 NFA < 0 (the message says which); kInvalidArgument for matches
-/// that refer to features that do not exist, or empty images.
+/// Errors: kInsufficientData when fewer than 6 points and crossings are usable
+/// or no pose has log10 NFA < 0 (the message says which); kInvalidArgument for
+/// matches that refer to features that do not exist, or empty images.
 Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
                                            const TwoViewOptions& options,
                                            std::uint64_t seed);

@@ -1,0 +1,69 @@
+#include "lowlap/two_view/line_crossings.h"
+
+#include <gtest/gtest.h>
+
+#include "two_view/line_scene.h"
+
+namespace lowlap {
+namespace {
+
+using testing::MakeSegment;
+
+constexpr double kFocal = 1000;
+
+// Two segments of one view that meet at a corner, `gap` (normalised) apart.
+NormalizedFeatures Corner(const Vec3& corner, double gap, double turn_rad) {
+  NormalizedFeatures features;
+  features.focal_px = kFocal;
+  const Vec3 along(1, 0, 0), up(std::cos(turn_rad), std::sin(turn_rad), 0);
+  features.segments = {
+      MakeSegment(corner + gap * along, corner + (0.2 + gap) * along),
+      MakeSegment(corner + gap * up, corner + (0.2 + gap) * up)};
+  return features;
+}
+
+const std::vector<FeatureMatch> kBoth = {{0, 0}, {1, 1}};
+
+TEST(FindLineCrossings, FindsTheCornerInBothViews) {
+  const Vec3 corner1(0.1, 0.2, 1), corner2(-0.3, 0.1, 1);
+  const auto crossings = FindLineCrossings(Corner(corner1, 0.01, 1.5),
+                                           Corner(corner2, 0.02, 1.2), kBoth);
+  ASSERT_EQ(crossings.size(), 1u);
+  EXPECT_LT((crossings[0].x1 - corner1).norm(), 1e-12);
+  EXPECT_LT((crossings[0].x2 - corner2).norm(), 1e-12);
+}
+
+TEST(FindLineCrossings, LeavesOutWhatMeetsFarFromTheSegments) {
+  const Vec3 corner(0, 0, 1);
+  EXPECT_TRUE(
+      FindLineCrossings(Corner(corner, 0.1, 1.5), Corner(corner, 0, 1.5), kBoth)
+          .empty());
+}
+
+TEST(FindLineCrossings, LeavesOutAlmostParallelLines) {
+  const Vec3 corner(0, 0, 1);
+  EXPECT_TRUE(
+      FindLineCrossings(Corner(corner, 0, 0.3), Corner(corner, 0, 1.5), kBoth)
+          .empty());
+}
+
+TEST(FindLineCrossings, KeepsAFewPerLine) {
+  // One long segment crossed by many.
+  NormalizedFeatures features;
+  features.focal_px = kFocal;
+  std::vector<FeatureMatch> matches;
+  features.segments.push_back(MakeSegment({-0.5, 0, 1}, {0.5, 0, 1}));
+  for (int n = 0; n < 20; ++n) {
+    const double x = -0.45 + 0.045 * n;
+    features.segments.push_back(MakeSegment({x, -0.1, 1}, {x, 0.1, 1}));
+  }
+  for (FeatureIndex n = 0; n <= 20; ++n) matches.push_back({n, n});
+  EXPECT_EQ(FindLineCrossings(features, features, matches).size(), 4u);
+}
+
+TEST(FindLineCrossings, HasNoneForNoMatches) {
+  EXPECT_TRUE(FindLineCrossings({}, {}, {}).empty());
+}
+
+}  // namespace
+}  // namespace lowlap

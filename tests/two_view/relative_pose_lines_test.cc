@@ -1,0 +1,135 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "lowlap/two_view/relative_pose_estimator.h"
+#include "lowlap/two_view/two_point_kernel.h"
+#include "support/matchers.h"
+#include "two_view/line_scene.h"
+
+namespace lowlap {
+namespace {
+
+using testing::DirectionErrorDeg;
+using testing::LineScene;
+using testing::LineSceneOptions;
+using testing::MakeLineScene;
+using testing::MakeTwoViewScene;
+using testing::RotationErrorDeg;
+using testing::TwoViewSceneOptions;
+
+struct WithDirections {
+  explicit WithDirections(const LineScene& scene)
+      : directions1(FindVanishingDirections(scene.views.features1, {})),
+        directions2(FindVanishingDirections(scene.views.features2, {})),
+        input(scene.Input()) {
+    input.directions1 = &directions1;
+    input.directions2 = &directions2;
+  }
+  std::vector<VanishingDirection> directions1, directions2;
+  TwoViewInput input;
+};
+
+TEST(TwoPointKernel, FindsTheDirectionFromTwoMatches) {
+  const auto scene = MakeTwoViewScene({}, 1);
+  const PointPairs pairs = scene.Pairs();
+  const EssentialKernel essential(pairs);
+  const TwoPointKernel kernel(essential, scene.cam2_from_cam1.rotation, {});
+  for (int n = 0; n < 20; ++n) {
+    std::vector<RigidTransform> models;
+    kernel.Solve({n, n + 30}, models);
+    ASSERT_EQ(models.size(), 1u);
+    EXPECT_LT(DirectionErrorDeg(models[0].translation,
+                                scene.cam2_from_cam1.translation),
+              1e-6);
+  }
+}
+
+TEST(TwoPointKernel, HasNoModelForOnePointTwice) {
+  const auto scene = MakeTwoViewScene({}, 1);
+  const PointPairs pairs = scene.Pairs();
+  const EssentialKernel essential(pairs);
+  const TwoPointKernel kernel(essential, scene.cam2_from_cam1.rotation, {});
+  std::vector<RigidTransform> models;
+  kernel.Solve({4, 4}, models);
+  EXPECT_TRUE(models.empty());
+}
+
+TEST(RelativePoseFromLines, NeedsNoPoint) {
+  for (int seed = 0; seed < 5; ++seed) {
+    LineSceneOptions options;
+    options.noise_px = 0.3;
+    options.lines_per_family = 24;
+    const auto scene = MakeLineScene(options, 20 + seed);
+    const WithDirections lines(scene);
+    const auto result = EstimateRelativePose(lines.input, {}, 1);
+    ASSERT_TRUE(result) << result.error().message;
+    EXPECT_LT(
+        RotationErrorDeg(result->pose.rotation, scene.cam2_from_cam1.rotation),
+        0.5)
+        << "seed " << seed;
+    EXPECT_LT(DirectionErrorDeg(result->pose.direction,
+                                scene.cam2_from_cam1.translation),
+              3)
+        << "seed " << seed;
+    EXPECT_TRUE(result->pose.point_inliers.empty());
+  }
+}
+
+TEST(RelativePoseFromLines, LinesSharpenTheRotationOfFewNoisyPoints) {
+  double with_lines = 0, points_only = 0;
+  constexpr int kTrials = 15;
+  for (int seed = 0; seed < kTrials; ++seed) {
+    LineSceneOptions options;
+    options.noise_px = 0.3;
+    LineScene scene = MakeLineScene(options, 200 + seed);
+    TwoViewSceneOptions points;
+    points.num_right = 30;
+    points.num_wrong = 10;
+    points.noise_px = 1;
+    const auto cloud = MakeTwoViewScene(points, 300 + seed);
+    scene.views.features1.points = cloud.features1.points;
+    scene.views.features2.points = cloud.features2.points;
+    scene.views.matches = cloud.matches;
+    const WithDirections lines(scene);
+    TwoViewInput alone = lines.input;
+    alone.line_matches.clear();
+    const auto both = EstimateRelativePose(lines.input, {}, 1);
+    const auto only = EstimateRelativePose(alone, {}, 1);
+    ASSERT_TRUE(both && only);
+    const Mat3& truth = scene.cam2_from_cam1.rotation;
+    with_lines += RotationErrorDeg(both->pose.rotation, truth) / kTrials;
+    points_only += RotationErrorDeg(only->pose.rotation, truth) / kTrials;
+  }
+  EXPECT_LT(with_lines, 0.5 * points_only);
+}
+
+TEST(RelativePoseFromLines, RefusesMatchesOfSegmentsThatDoNotExist) {
+  LineScene scene = MakeLineScene({}, 1);
+  scene.line_matches.push_back({0, 9999});
+  const auto result = EstimateRelativePose(scene.Input(), {}, 1);
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, ErrorCode::kInvalidArgument);
+}
+
+TEST(ImproveRelativePose, RefinesAndKeepsTheEvidence) {
+  TwoViewSceneOptions options;
+  options.noise_px = 0.3;
+  const auto scene = MakeTwoViewScene(options, 7);
+  RelativePose start;
+  start.views = {3, 8};
+  start.rotation = RotationFromAngleAxis(Vec3(0.002, 0, 0.001)) *
+                   scene.cam2_from_cam1.rotation;
+  start.direction = scene.cam2_from_cam1.translation;
+  start.log10_nfa = -12.5;
+  start.point_threshold_px = 2;
+  const RelativePose improved = ImproveRelativePose(scene.Input(), start, {});
+  EXPECT_EQ(improved.log10_nfa, -12.5);
+  EXPECT_LT(RotationErrorDeg(improved.rotation, scene.cam2_from_cam1.rotation),
+            0.05);
+  EXPECT_GT(improved.point_inliers.size(), 150u);
+  EXPECT_TRUE(improved.covariance);
+}
+
+}  // namespace
+}  // namespace lowlap
