@@ -45,11 +45,11 @@ void PrintPoses(const PoseSummary& poses, const Scene& scene) {
   for (const std::string& warning : PoseWarnings(poses, scene)) {
     // Lists of many names are for the report.
     constexpr std::size_t kLongest = 300;
-    std::printf("warning: %s\n",
-                warning.size() <= kLongest
-                    ? warning.c_str()
-                    : (warning.substr(0, kLongest) + "... (see report.html)")
-                          .c_str());
+    std::printf(
+        "warning: %s\n",
+        warning.size() <= kLongest
+            ? warning.c_str()
+            : (warning.substr(0, kLongest) + "... (see report.html)").c_str());
   }
 }
 
