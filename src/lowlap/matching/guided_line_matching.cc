@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lowlap/matching/internal/hamming.h"
+#include "lowlap/matching/internal/line_rivals.h"
 #include "lowlap/matching/internal/line_transfer.h"
 
 namespace lowlap {
@@ -224,62 +225,6 @@ void Relax(const NormalizedFeatures& first, double slack,
   }
 }
 
-// Whether two segments of one view are pieces of one edge: collinear, and one
-// behind the other.
-bool ArePieces(const LineSegment& a, const LineSegment& b) {
-  constexpr double kMaxDistancePx = 2.0;
-  constexpr double kMaxOverlap = 0.1;
-  const LineSegment& longer = a.LengthPx() >= b.LengthPx() ? a : b;
-  const LineSegment& shorter = a.LengthPx() >= b.LengthPx() ? b : a;
-  const double length = longer.LengthPx();
-  const Vec2 d = (longer.end_px - longer.start_px) / length;
-  const Vec2 start = shorter.start_px - longer.start_px;
-  const Vec2 end = shorter.end_px - longer.start_px;
-  const double low = d.dot(start), high = d.dot(end);
-  if (low >= high) return false;
-  const auto across = [&](const Vec2& v) {
-    return std::abs(d.x() * v.y() - d.y() * v.x());
-  };
-  // A short piece far away on the axis may be off by its own share of noise.
-  if (std::max(across(start), across(end)) > kMaxDistancePx) return false;
-  return std::min(high, length) - std::max(low, 0.0) <
-         kMaxOverlap * shorter.LengthPx();
-}
-
-// For every candidate the best score of one that contradicts it: that shares a
-// segment, with partners that are not pieces of one edge.
-std::vector<double> FindRivals(const DescribedLines& first,
-                               const DescribedLines& second,
-                               const std::vector<Candidate>& by_score) {
-  std::vector<std::vector<std::size_t>> of1(first.segments.size());
-  std::vector<std::vector<std::size_t>> of2(second.segments.size());
-  for (std::size_t c = 0; c < by_score.size(); ++c) {
-    of1[by_score[c].match.first].push_back(c);
-    of2[by_score[c].match.second].push_back(c);
-  }
-  std::vector<double> rivals(by_score.size(), 0);
-  for (std::size_t c = 0; c < by_score.size(); ++c) {
-    const FeatureMatch& m = by_score[c].match;
-    for (const std::size_t o : of1[m.first]) {
-      if (o == c || ArePieces(second.segments[m.second],
-                              second.segments[by_score[o].match.second])) {
-        continue;
-      }
-      rivals[c] = by_score[o].score;
-      break;
-    }
-    for (const std::size_t o : of2[m.second]) {
-      if (o == c || ArePieces(first.segments[m.first],
-                              first.segments[by_score[o].match.first])) {
-        continue;
-      }
-      rivals[c] = std::max(rivals[c], by_score[o].score);
-      break;
-    }
-  }
-  return rivals;
-}
-
 // Best first; what is hardly better than a rival is not decided.
 std::vector<FeatureMatch> Assign(const DescribedLines& first,
                                  const DescribedLines& second,
@@ -289,14 +234,17 @@ std::vector<FeatureMatch> Assign(const DescribedLines& first,
             [](const Candidate& a, const Candidate& b) {
               return a.score != b.score ? a.score > b.score : a.match < b.match;
             });
-  const std::vector<double> rivals = FindRivals(first, second, candidates);
+  std::vector<internal::ScoredMatch> scored;
+  for (const Candidate& c : candidates) scored.push_back({c.match, c.score});
+  const std::vector<double> rivals =
+      internal::FindRivals(first.segments, second.segments, scored);
   std::vector<std::vector<FeatureIndex>> partners1(first.segments.size());
   std::vector<std::vector<FeatureIndex>> partners2(second.segments.size());
   const auto fits = [](const std::vector<LineSegment>& segments,
                        FeatureIndex piece,
                        const std::vector<FeatureIndex>& others) {
     return std::all_of(others.begin(), others.end(), [&](FeatureIndex other) {
-      return ArePieces(segments[piece], segments[other]);
+      return internal::ArePieces(segments[piece], segments[other]);
     });
   };
   std::vector<FeatureMatch> matches;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lowlap/matching/internal/hamming.h"
+#include "lowlap/matching/internal/line_rivals.h"
 
 namespace lowlap {
 namespace {
@@ -22,6 +23,10 @@ constexpr double kHalfSupport = 0.07;
 constexpr double kSideTolerancePx = 4.0;
 
 using internal::HammingDistance;
+
+// A match is made only if no contradicting candidate scores more than this
+// share of its score.
+constexpr double kMaxRivalShare = 0.9;
 
 struct Candidate {
   FeatureMatch match;
@@ -235,10 +240,16 @@ std::vector<FeatureMatch> MatchLines(const DescribedLines& first,
             [](const Candidate& a, const Candidate& b) {
               return a.score != b.score ? a.score > b.score : a.match < b.match;
             });
+  std::vector<internal::ScoredMatch> scored;
+  for (const Candidate& c : candidates) scored.push_back({c.match, c.score});
+  const std::vector<double> rivals =
+      internal::FindRivals(first.segments, second.segments, scored);
   std::vector<bool> used1(first.segments.size()), used2(second.segments.size());
   std::vector<FeatureMatch> matches;
-  for (const Candidate& c : candidates) {
+  for (std::size_t n = 0; n < candidates.size(); ++n) {
+    const Candidate& c = candidates[n];
     if (c.score < options.min_score) break;
+    if (rivals[n] > kMaxRivalShare * c.score) continue;
     if (used1[c.match.first] || used2[c.match.second]) continue;
     used1[c.match.first] = used2[c.match.second] = true;
     matches.push_back(c.match);

@@ -11,13 +11,13 @@ namespace lowlap {
 
 /// Raised whenever the matches change for the same input and options: what is
 /// cached is then computed anew.
-inline constexpr int kLineMatchingVersion = 1;
+inline constexpr int kLineMatchingVersion = 2;
 
 struct LineMatchOptions {
   /// Greatest Hamming distance of two descriptors of 256 bits.
-  int max_distance_bits = 80;
+  int max_distance_bits = 90;
   /// Partners that a segment may have before the neighbours decide.
-  int max_candidates = 2;
+  int max_candidates = 4;
   /// Least agreement with the neighbours, relative to the best match; in [0,
   /// 1].
   double min_score = 0.2;
@@ -40,7 +40,8 @@ struct DescribedLines {
 /// Each segment keeps its nearest partners by descriptor, mutually; relaxation
 /// over the neighbours in the image then scores every candidate by how well
 /// the best candidates around it agree, and the best scores are taken first.
-/// A match that nothing around it confirms is not made.
+/// A match that nothing around it confirms, or that a contradicting one comes
+/// close to, is not made.
 std::vector<FeatureMatch> MatchLines(const DescribedLines& first,
                                      const DescribedLines& second,
                                      const LineMatchOptions& options);
