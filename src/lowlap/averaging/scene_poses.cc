@@ -12,6 +12,8 @@ namespace lowlap {
 namespace {
 
 constexpr double kDirectionFloorRad = 1e-3;
+// A direction this close to the solved centres is not a false one.
+const double kLeastFalseRad = RadFromDeg(3.0);
 // The median of the length of a 2-vector of normal errors, in deviations.
 constexpr double kMedianOfLength = 1.18;
 
@@ -45,7 +47,8 @@ std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
   std::vector<OutlierEdge> outliers;
   for (const Residual& residual : residuals) {
     const DirectionEdge& edge = *residual.edge;
-    if (residual.angle_rad > reach * std::max(*sigma_rad, edge.stddev_rad)) {
+    const double own = std::max(*sigma_rad, edge.stddev_rad);
+    if (residual.angle_rad > std::max(reach * own, kLeastFalseRad)) {
       outliers.push_back(
           {ViewPair{problem.views[edge.first], problem.views[edge.second]},
            OutlierReason::kDirection, DegFromRad(residual.angle_rad)});

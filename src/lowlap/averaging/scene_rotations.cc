@@ -14,6 +14,10 @@ namespace {
 
 constexpr double kRotationFloorRad = 5e-4;
 constexpr double kDefaultRotationRad = 5e-3;
+// A relative pose this close to the others is not a false one, however small
+// its stated deviation: that covers neither calibration nor what errors have in
+// common. Robust weights deal with it.
+const double kLeastFalseRad = RadFromDeg(1.0);
 // The median of the norm of a 3-vector of normal errors, in deviations.
 constexpr double kMedianOfNorm = 1.54;
 
@@ -143,7 +147,7 @@ class SceneRotationSolver {
     for (std::size_t e = 0; e < used_.size(); ++e) {
       if (!is_kept_[e] || settled_.count(used_[e]) > 0) continue;
       const double own = std::max(sigma_, RotationStddev(PoseOf(used_[e])));
-      if (ResidualRad(used_[e]) > reach_ * own) {
+      if (ResidualRad(used_[e]) > std::max(reach_ * own, kLeastFalseRad)) {
         LeaveOut(used_[e], OutlierReason::kRotation);
         changed = true;
       }
