@@ -175,7 +175,7 @@ TEST_P(PureNoise, IsMeaningfulAtMostOnceInAHundredTriplets) {
   options.num_points = counts[0];
   options.num_lines = counts[1];
   options.num_lines_ij = options.num_lines_jk = counts[2];
-  constexpr int kTriplets = 600;
+  constexpr int kTriplets = 2000;
   int meaningful = 0;
   for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
     const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 5000 + seed);

@@ -27,9 +27,10 @@ class LineRanks {
   int size_ = 0;
 };
 
+// kPairTiers: too far to be used.
 int TierOfCrossing(double crossing_px, double image_diagonal_px) {
   int tier = 0;
-  while (tier < kPairTiers - 1 &&
+  while (tier < kPairTiers &&
          crossing_px > kTierOfDiagonal[tier] * image_diagonal_px) {
     ++tier;
   }

@@ -21,14 +21,14 @@ struct Hypothesis {
 };
 
 /// Coplanar pairs are tried in nested tiers of proximity: those whose crossing
-/// is within 1 %, within 5 % of the image diagonal of both segments, and all.
-/// Lines that meet in the image are far more often coplanar (in the rendered
-/// rooms 80 to 90 % of the pairs that nearly touch give the right ratio, 20 %
-/// of those more than 100 px apart), but where everything lies on one facade
-/// the far ones say as much; the criterion takes the tier that says most.
-inline constexpr int kPairTiers = 3;
-inline constexpr std::array<double, kPairTiers - 1> kTierOfDiagonal = {0.01,
-                                                                       0.05};
+/// is within 1 % and within 3.5 % of the image diagonal of both segments. Lines
+/// that meet in the image are far more often coplanar than others (in the
+/// rendered rooms 80 to 90 % of the pairs that nearly touch give the right
+/// ratio, 20 % of those more than 100 px apart); pairs that meet farther off
+/// are not used: what they agree on by chance, since whole families of them are
+/// parallel, is wrong too often. The criterion takes the tier that says most.
+inline constexpr int kPairTiers = 2;
+inline constexpr std::array<double, kPairTiers> kTierOfDiagonal = {0.01, 0.035};
 
 /// The sizes of a tier, the nearer tiers included.
 struct PairTier {

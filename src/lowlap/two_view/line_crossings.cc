@@ -9,7 +9,7 @@ namespace lowlap {
 namespace {
 
 constexpr double kMinAngleDeg = 20;
-constexpr double kReachOfLength = 0.1;
+constexpr double kReachOfLength = 0.05;
 constexpr double kReachOfFocal = 0.01;
 constexpr int kMaxPerMatch = 4;
 

@@ -18,9 +18,9 @@ struct LineCrossing {
 /// they meet in space, and the crossing is a point like any other, often more
 /// precise than a blob; where they do not, it is an outlier. Candidates are
 /// couples of matches whose segments make an angle of at least 20 degrees and
-/// come closer to their crossing, in both views, than a tenth of their length
-/// and `focal / 100`; every match joins at most four, the closest. Sorted by
-/// match.
+/// come closer to their crossing, in both views, than a twentieth of their
+/// length and `focal / 100`; every match joins at most four, the closest.
+/// Sorted by match.
 std::vector<LineCrossing> FindLineCrossings(
     const NormalizedFeatures& features1, const NormalizedFeatures& features2,
     const std::vector<FeatureMatch>& line_matches);

@@ -12,7 +12,7 @@ namespace lowlap {
 namespace {
 
 constexpr int kMinVotes = 2;
-constexpr int kMinVotesForAll = 5;
+constexpr int kMinVotesForAll = 8;
 constexpr int kMaxDigits = 10;
 // Scale of the Cauchy loss, in standard deviations.
 constexpr double kLossScale = 3;

@@ -26,7 +26,7 @@ struct DirectionPair {
 /// two directions are part of; the most voted first.
 ///
 /// Both directions are fitted anew to the matched segments, so that what these
-/// lines deviate from parallel is the same in both views. From five votes on
+/// lines deviate from parallel is the same in both views. From eight votes on
 /// the directions of all segments come as a second pair: more lines, but not
 /// the same ones in both views.
 std::vector<DirectionPair> PairDirections(
