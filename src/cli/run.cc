@@ -151,9 +151,11 @@ void AddRun(CLI::App* program, Action* action) {
                        "Focal length in pixels; principal point in the middle")
           ->check(CLI::PositiveNumber);
   matrix->excludes(focal);
-  command->add_option("--pairs", flags->pairs,
-                      "Pairs to match: all, chain, cycle, window:N, or a file "
-                      "with two view names or ids a line");
+  command->add_option(
+      "--pairs", flags->pairs,
+      "Pairs to match: all, chain, cycle, window:N, auto (those "
+      "that look alike), or a file with two view names or ids "
+      "a line");
   command
       ->add_option("--exclude", flags->exclude,
                    "Photographs to leave out, separated by commas")

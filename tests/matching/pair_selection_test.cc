@@ -88,6 +88,8 @@ TEST(SelectPairsTest, ReadsAFile) {
   std::remove(path.c_str());
   EXPECT_THAT(SelectPairs(FourViews(), path),
               IsError(ErrorCode::kNotFound, "all, chain, cycle, window:N"));
+  EXPECT_THAT(SelectPairs(FourViews(), "auto"),
+              IsError(ErrorCode::kInvalidArgument, "features"));
 }
 
 TEST(ParsePairsTest, IdsNamesQuotesCommentsAndOrder) {

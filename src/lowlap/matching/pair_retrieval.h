@@ -12,7 +12,7 @@ namespace lowlap {
 
 struct RetrievalOptions {
   /// Points per view that are compared; the cost grows with the square.
-  int sample_points = 1000;
+  int sample_points = 500;
   /// Partners that every view proposes; the pairs are those that either of
   /// their views proposes.
   int max_partners = 12;

@@ -139,13 +139,18 @@ Result<std::vector<ViewPair>> SelectPairs(const Scene& scene,
     }
     return WindowPairs(ids, *reach);
   }
+  if (specification == "auto") {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "the pairs of \"auto\" are known only once photographs "
+                     "have features");
+  }
   const Result<std::string> text = ReadWholeFile(specification);
   if (!text) {
     Error error = text.error();
     if (error.code == ErrorCode::kNotFound) {
       error.message =
-          "pairs are all, chain, cycle, window:N or a file of pairs; there is "
-          "no such file";
+          "pairs are all, chain, cycle, window:N, auto (where photographs are "
+          "matched) or a file of pairs; there is no such file";
     }
     return tl::unexpected<Error>(std::move(error));
   }

@@ -16,6 +16,7 @@ namespace lowlap {
 ///   cycle     the same, and the last with the first
 ///   window:N  views at most N places apart
 ///   anything else: the path of a file of pairs (ParsePairs).
+/// "auto" is refused: it takes features to find those pairs (RetrievePairs).
 /// Errors: kInvalidArgument, kNotFound, kParse (with file and line).
 Result<std::vector<ViewPair>> SelectPairs(const Scene& scene,
                                           const std::string& specification);

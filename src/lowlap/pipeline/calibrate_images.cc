@@ -11,8 +11,8 @@
 namespace lowlap {
 
 Status FrontEndOptions::Validate() const {
-  for (const Status& valid :
-       {features.Validate(), matching.Validate(), relative_poses.Validate()}) {
+  for (const Status& valid : {features.Validate(), retrieval.Validate(),
+                              matching.Validate(), relative_poses.Validate()}) {
     if (!valid) return valid;
   }
   if (!(max_cache_gb >= 0 && std::isfinite(max_cache_gb))) {
@@ -29,8 +29,13 @@ Result<ImageMeasurements> MatchImages(const Scene& scene,
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
-  const auto pairs = SelectPairs(scene, options.pairs);
-  if (!pairs) return tl::unexpected<Error>(pairs.error());
+  const bool retrieve = options.pairs == "auto";
+  std::vector<ViewPair> pairs;
+  if (!retrieve) {  // what can be refused is refused before the long work
+    auto selected = SelectPairs(scene, options.pairs);
+    if (!selected) return tl::unexpected<Error>(selected.error());
+    pairs = std::move(*selected);
+  }
 
   std::optional<CacheFolder> cache;
   if (!options.cache_folder.empty()) {
@@ -51,12 +56,18 @@ Result<ImageMeasurements> MatchImages(const Scene& scene,
       detected.features = std::move(*result);
     }
   }
+  if (retrieve) {
+    const StageLog::Scope scope(stages, "pair retrieval");
+    auto found = RetrievePairs(detected.features, options.retrieval, context);
+    if (!found) return tl::unexpected<Error>(found.error());
+    pairs = std::move(*found);
+  }
   std::map<ViewPair, PairMatches> matches;
   {
     const StageLog::Scope scope(stages, "matching");
-    auto result = cache ? MatchFeatures(detected, *pairs, options.matching,
+    auto result = cache ? MatchFeatures(detected, pairs, options.matching,
                                         *cache, context)
-                        : MatchFeatures(detected.features, *pairs,
+                        : MatchFeatures(detected.features, pairs,
                                         options.matching, context);
     if (!result) return tl::unexpected<Error>(result.error());
     matches = std::move(*result);

@@ -8,6 +8,7 @@
 #include "lowlap/core/run_context.h"
 #include "lowlap/features/features.h"
 #include "lowlap/matching/matching.h"
+#include "lowlap/matching/pair_retrieval.h"
 #include "lowlap/pipeline/relative_poses.h"
 #include "lowlap/pipeline/stage_log.h"
 #include "lowlap/scene/scene.h"
@@ -15,7 +16,9 @@
 namespace lowlap {
 
 struct FrontEndOptions {
-  std::string pairs = "all";  // see SelectPairs
+  /// See SelectPairs; or "auto", what RetrievePairs finds in the features.
+  std::string pairs = "all";
+  RetrievalOptions retrieval;
   FeatureOptions features;
   MatchOptions matching;
   RelativePoseOptions relative_poses;

@@ -1,0 +1,47 @@
+// The pairs of unordered photographs of a bland room.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "lowlap/matching/pair_selection.h"
+#include "lowlap/pipeline/calibrate_images.h"
+#include "lowlap/pipeline/image_collection.h"
+#include "support/data_folder.h"
+#include "support/matchers.h"
+#include "third_party_adapters/strecha/strecha.h"
+
+namespace lowlap {
+namespace {
+
+using testing::IsOk;
+
+TEST(PairsAuto, FindTheNeighboursOfARoom) {
+  const std::string images = DataFolder() + "/rooms/study/images";
+  if (!std::filesystem::exists(images)) GTEST_SKIP() << "skipped: no data";
+  IntrinsicSource source;
+  source.calibration = *strecha::ReadCalibrationMatrix(images + "/K.txt");
+  const auto scene = SceneFromImages(images, source, {});
+  ASSERT_THAT(scene, IsOk());
+  FrontEndOptions options;
+  options.pairs = "auto";
+  options.features.detect_lines = false;
+  options.matching.match_lines = false;
+  // With the default, everybody's partners are everybody in so small a set.
+  options.retrieval.max_partners = 4;
+  StageLog stages;
+  const auto measured = MatchImages(*scene, options, RunContext(), &stages);
+  ASSERT_THAT(measured, IsOk());
+  ASSERT_EQ(stages.stages().size(), 3u);
+  EXPECT_EQ(stages.stages()[1].name, "pair retrieval");
+  EXPECT_LT(measured->matches.size(), 40u);  // of 55
+  const auto neighbours = SelectPairs(*scene, "cycle");
+  ASSERT_THAT(neighbours, IsOk());
+  for (const ViewPair& views : *neighbours) {
+    EXPECT_EQ(measured->matches.count(views), 1u)
+        << views.first << " and " << views.second;
+  }
+}
+
+}  // namespace
+}  // namespace lowlap
