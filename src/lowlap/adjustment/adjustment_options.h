@@ -36,6 +36,9 @@ struct AdjustmentOptions {
   bool use_points = true;
   bool use_lines = true;
   bool use_coplanar = true;  // needs use_lines
+  /// Hold poses to the measured relative poses, as far as their covariances
+  /// say. It decides where structure is thin, and hardly shows elsewhere.
+  bool use_relative_poses = true;
   AdjustedCoplanarResidual coplanar_residual =
       AdjustedCoplanarResidual::kTransfer;
 

@@ -366,6 +366,9 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
   state.points = LoadPoints(*scene, cameras);
   state.lines = LoadLines(*scene, cameras, !options.refine_intrinsics.empty());
   state.pairs = LoadPairs(*scene, state.lines);
+  if (options.use_relative_poses) {
+    state.priors = internal::LoadRelativePosePriors(*scene, cameras);
+  }
   summary.observations_without_camera =
       CountObservationsWithoutCamera(*scene, cameras);
 

@@ -70,6 +70,7 @@ ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
   AddPoints();
   AddLines();
   AddPairs();
+  AddPriors();
   SetManifolds();
 }
 
@@ -206,6 +207,28 @@ void ProblemBuilder::AddPairs() {
       }
       problem_->AddResidualBlock(cost, loss, blocks);
     }
+  }
+}
+
+void ProblemBuilder::AddPriors() {
+  // In standard deviations; a false relative pose loses its hold.
+  constexpr double kLossScale = 3;
+  losses_.push_back(std::make_unique<ceres::CauchyLoss>(kLossScale));
+  ceres::LossFunction* loss = losses_.back().get();
+  std::vector<int> component_of(cameras_->poses.size(), -1);
+  for (std::size_t n = 0; n < components_.size(); ++n) {
+    for (const int pose : components_[n].poses) {
+      component_of[pose] = static_cast<int>(n);
+    }
+  }
+  for (const RelativePosePrior& prior : state_->priors) {
+    const int component = component_of[prior.first];
+    if (component < 0 || component != component_of[prior.second]) continue;
+    problem_->AddResidualBlock(
+        new ceres::AutoDiffCostFunction<RelativePoseCost, 5, 4, 3, 4, 3>(
+            new RelativePoseCost(prior.cost)),
+        loss, RotationBlock(prior.first), CenterBlock(prior.first),
+        RotationBlock(prior.second), CenterBlock(prior.second));
   }
 }
 

@@ -38,6 +38,7 @@ class ProblemBuilder {
   void AddPoints();
   void AddLines();
   void AddPairs();
+  void AddPriors();
   void SetManifolds();
   bool IsRefined(int intrinsic) const;
   double* RotationBlock(int pose);

@@ -6,6 +6,7 @@
 #include "lowlap/adjustment/internal/line_track.h"
 #include "lowlap/adjustment/internal/noise_scale.h"
 #include "lowlap/adjustment/internal/point_track.h"
+#include "lowlap/adjustment/internal/relative_pose_prior.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 
@@ -25,6 +26,7 @@ struct StructureState {
   std::vector<PointTrackState> points;  // by id
   std::vector<LineTrackState> lines;    // by id
   std::vector<PairState> pairs;
+  std::vector<RelativePosePrior> priors;
 };
 
 struct NoiseLevels {
