@@ -71,6 +71,17 @@ std::vector<std::string> PoseWarnings(const PoseSummary& summary,
                        : std::string("all are used: ")) +
         writer.Pairs(loop.edges) + ".");
   }
+  if (!summary.weak_ratios.empty()) {
+    std::string triplets;
+    for (const ViewTriplet& views : summary.weak_ratios) {
+      triplets += (triplets.empty() ? "" : "; ") +
+                  writer.Names({views.first, views.middle, views.last});
+    }
+    warnings.push_back(
+        "Doubtful: scale ratios in use that chance explains as well, since "
+        "nothing else places one of their views: " +
+        triplets + ".");
+  }
   if (!summary.unchecked.empty()) {
     warnings.push_back(
         "Relative poses in use that lie on no cycle, so that no "

@@ -68,6 +68,30 @@ std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers) {
   return pairs;
 }
 
+// Ratios that are not meaningful, but the only ones that something agrees on
+// for a view that has not been placed.
+std::set<ViewTriplet> WeakRatios(const Scene& scene,
+                                 const TranslationProblem& problem,
+                                 const TranslationSolution& solution) {
+  std::set<ViewId> unplaced;
+  for (std::size_t n = 0; n < problem.views.size(); ++n) {
+    if (solution.component[n] != 0) unplaced.insert(problem.views[n]);
+  }
+  std::set<ViewTriplet> weak;
+  for (const ScaleRatio& ratio : scene.scale_ratios) {
+    const ViewTriplet& views = ratio.views;
+    const bool is_supported = ratio.points.inliers + ratio.lines.inliers >= 2 ||
+                              ratio.coplanar.inliers >= 3;
+    if (ratio.verdict == RatioVerdict::kNotMeaningful && is_supported &&
+        unplaced.count(views.first) + unplaced.count(views.middle) +
+                unplaced.count(views.last) >
+            0) {
+      weak.insert(views);
+    }
+  }
+  return weak;
+}
+
 // First placed view: identity at the origin; mean placed edge: length 1.
 void FixGauge(const TranslationProblem& problem,
               const TranslationSolution& solution, Scene* scene) {
@@ -147,6 +171,20 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   auto solution = (*averager)->Solve(problem, context);
   if (!solution) return tl::unexpected<Error>(solution.error());
 
+  std::set<ViewTriplet> weak = WeakRatios(*scene, problem, *solution);
+  if (!weak.empty()) {
+    TranslationProblem wider = MakeTranslationProblem(
+        *scene, rotations.cam_from_world, PairsOf(outliers), weak);
+    auto again = (*averager)->Solve(wider, context);
+    if (!again) return tl::unexpected<Error>(again.error());
+    if (CountPlaced(*again) > CountPlaced(*solution)) {
+      problem = std::move(wider);
+      solution = std::move(again);
+    } else {
+      weak.clear();
+    }
+  }
+
   double sigma_rad = 0;
   while (true) {
     const std::vector<OutlierEdge> wrong = DirectionOutliers(
@@ -154,8 +192,8 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
     if (wrong.empty()) break;
     std::vector<OutlierEdge> more = outliers;
     more.insert(more.end(), wrong.begin(), wrong.end());
-    TranslationProblem smaller =
-        MakeTranslationProblem(*scene, rotations.cam_from_world, PairsOf(more));
+    TranslationProblem smaller = MakeTranslationProblem(
+        *scene, rotations.cam_from_world, PairsOf(more), weak);
     auto again = (*averager)->Solve(smaller, context);
     if (!again) return tl::unexpected<Error>(again.error());
     if (CountPlaced(*again) < CountPlaced(*solution)) break;
@@ -196,6 +234,12 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   for (const ViewPair& edge : rotations.unchecked) {
     if (is_placed(edge.first) && is_placed(edge.second)) {
       summary.unchecked.push_back(edge);
+    }
+  }
+  for (const ViewTriplet& views : weak) {
+    if (is_placed(views.first) && is_placed(views.middle) &&
+        is_placed(views.last)) {
+      summary.weak_ratios.push_back(views);
     }
   }
   summary.num_edges = static_cast<int>(problem.edges.size());

@@ -36,23 +36,30 @@ struct PoseSummary {
   std::vector<LoopClosing> loops;
   std::vector<ContestedLink> contested;
   std::vector<ViewPair> unchecked;
+  /// Triplets whose ratio chance explains as well, used since nothing else
+  /// joins one of their views.
+  std::vector<ViewTriplet> weak_ratios;
   int num_edges = 0;
   int num_ratios = 0;
   double median_rotation_residual_deg = 0;
 
-  /// Something contradicts what is placed, and nothing decides between them:
-  /// a loop that does not close, or a contested link.
-  bool IsDoubtful() const { return !loops.empty() || !contested.empty(); }
+  /// Something contradicts what is placed, and nothing decides between them (a
+  /// loop that does not close, a contested link), or a weak ratio places it.
+  bool IsDoubtful() const {
+    return !loops.empty() || !contested.empty() || !weak_ratios.empty();
+  }
 };
 
 /// scene.poses from scene.relative_poses and scene.scale_ratios, with the
 /// rotations and the choice of relative poses of AverageSceneRotations, and the
 /// chosen translation strategy. Relative poses whose direction contradicts the
 /// solved centres are left out in turn, unless that loses a view, and the
-/// solution is repeated. The poses of the largest component replace
-/// scene.poses; the others have no common scale with it and are listed.
-/// Gauge: the first placed view has rotation identity and centre 0, and the
-/// mean length of the placed edges is 1.
+/// solution is repeated. Views that no meaningful ratio joins are placed by
+/// ratios that are not, if at least two points or lines, or three coplanar
+/// pairs, agree on them; these are listed (`weak_ratios`). The poses of the
+/// largest component replace scene.poses; the others have no common scale with
+/// it and are listed. Gauge: the first placed view has rotation identity and
+/// centre 0, and the mean length of the placed edges is 1.
 Result<PoseSummary> SolveScenePoses(Scene* scene,
                                     const SceneRotations& rotations,
                                     const PoseOptions& options,

@@ -12,6 +12,7 @@ namespace {
 constexpr double kDirectionFloorRad = 5e-4;
 constexpr double kDefaultDirectionRad = 0.02;
 constexpr double kRatioFloor = 1e-3;
+constexpr double kWeakRatioFloor = 0.2;
 
 double DirectionStddev(const RelativePose& pose) {
   if (!pose.covariance) return kDefaultDirectionRad;
@@ -25,7 +26,8 @@ double DirectionStddev(const RelativePose& pose) {
 
 TranslationProblem MakeTranslationProblem(
     const Scene& scene, const std::map<ViewId, Mat3>& cam_from_world,
-    const std::vector<ViewPair>& excluded_edges) {
+    const std::vector<ViewPair>& excluded_edges,
+    const std::set<ViewTriplet>& weak) {
   TranslationProblem problem;
   std::map<ViewId, std::size_t> index_of_view;
   for (const auto& [view, rotation] : cam_from_world) {
@@ -57,7 +59,8 @@ TranslationProblem MakeTranslationProblem(
     return index_of_edge.find({std::min(a, b), std::max(a, b)});
   };
   for (const ScaleRatio& ratio : scene.scale_ratios) {
-    if (ratio.verdict != RatioVerdict::kMeaningful) continue;
+    const bool is_meaningful = ratio.verdict == RatioVerdict::kMeaningful;
+    if (!is_meaningful && weak.count(ratio.views) == 0) continue;
     const auto reference = find_edge(ratio.views.first, ratio.views.middle);
     const auto target = find_edge(ratio.views.middle, ratio.views.last);
     if (reference == index_of_edge.end() || target == index_of_edge.end()) {
@@ -67,7 +70,8 @@ TranslationProblem MakeTranslationProblem(
     measurement.reference = reference->second;
     measurement.target = target->second;
     measurement.log_ratio = ratio.log_ratio;
-    measurement.stddev = std::hypot(ratio.log_ratio_stddev, kRatioFloor);
+    measurement.stddev = std::hypot(
+        ratio.log_ratio_stddev, is_meaningful ? kRatioFloor : kWeakRatioFloor);
     measurement.log10_nfa = ratio.log10_nfa;
     problem.ratios.push_back(measurement);
   }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -37,7 +38,7 @@ struct TranslationProblem {
   std::vector<ViewId> views;
   std::vector<Mat3> cam_from_world;  // rotations, one per view
   std::vector<DirectionEdge> edges;
-  std::vector<RatioMeasurement> ratios;  // meaningful ones only
+  std::vector<RatioMeasurement> ratios;
 };
 
 /// Centres up to one similarity (scale and translation) per component.
@@ -62,10 +63,12 @@ class TranslationAverager {
 /// The problem of a scene whose rotations are known: every relative pose whose
 /// two views are in `cam_from_world` gives an edge, every meaningful scale
 /// ratio between such edges a ratio. Scale ratios and edges named in
-/// `excluded_edges` are left out.
+/// `excluded_edges` are left out. Ratios of the triplets in `weak` take part
+/// though they are not meaningful, with a deviation of at least 0.2.
 TranslationProblem MakeTranslationProblem(
     const Scene& scene, const std::map<ViewId, Mat3>& cam_from_world,
-    const std::vector<ViewPair>& excluded_edges);
+    const std::vector<ViewPair>& excluded_edges,
+    const std::set<ViewTriplet>& weak = {});
 
 /// Indices in range, numbers finite, deviations positive.
 Status ValidateProblem(const TranslationProblem& problem);

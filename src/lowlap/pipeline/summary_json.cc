@@ -84,6 +84,11 @@ void AddDoubts(const PoseSummary& summary, Json* poses) {
   (*poses)["open_loops"] = std::move(loops);
   (*poses)["contested_links"] = std::move(contested);
   (*poses)["unchecked_edges"] = std::move(unchecked);
+  Json weak = Json::array();
+  for (const ViewTriplet& views : summary.weak_ratios) {
+    weak.push_back({views.first, views.middle, views.last});
+  }
+  (*poses)["weak_ratios"] = std::move(weak);
 }
 
 Json SolveJson(const SolveResult& solve) {
