@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -21,11 +22,17 @@ struct RunFlags {
   std::string intrinsics;
   std::optional<double> focal_px;
   std::string pairs = "all";
+  std::vector<std::string> two_view = {"points", "lines"};
   std::vector<std::string> exclude;
   std::string cache;
   bool no_cache = false;
+  bool refine_points = false;
   SolveFlags solve;
 };
+
+bool IsNamed(const char* name, const std::vector<std::string>& names) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
 
 // A calibration matrix, or the intrinsics of a scene file.
 Result<IntrinsicSource> ReadIntrinsics(const RunFlags& flags) {
@@ -106,8 +113,12 @@ int Run(const RunFlags& flags) {
         flags.cache.empty() ? flags.output + "/cache" : flags.cache;
   }
   front_end.pairs = flags.pairs;
-  const bool needs_lines =
-      options->scale.use_lines || options->scale.use_coplanar;
+  front_end.refine_points = flags.refine_points;
+  front_end.relative_poses.use_points = IsNamed("points", flags.two_view);
+  front_end.relative_poses.use_lines = IsNamed("lines", flags.two_view);
+  const bool needs_lines = front_end.relative_poses.use_lines ||
+                           options->scale.use_lines ||
+                           options->scale.use_coplanar;
   front_end.features.detect_lines = needs_lines;
   front_end.matching.match_lines = needs_lines;
 
@@ -160,6 +171,12 @@ void AddRun(CLI::App* program, Action* action) {
       ->add_option("--exclude", flags->exclude,
                    "Photographs to leave out, separated by commas")
       ->delimiter(',');
+  command
+      ->add_option("--two-view", flags->two_view,
+                   "What relative poses are estimated from, separated by "
+                   "commas: points, lines")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"points", "lines"}));
   auto* cache = command->add_option(
       "--cache", flags->cache,
       "Folder of features and matches to use again; default OUTPUT/cache");
@@ -167,6 +184,9 @@ void AddRun(CLI::App* program, Action* action) {
       ->add_flag("--no-cache", flags->no_cache,
                  "Neither use nor keep features and matches")
       ->excludes(cache);
+  command->add_flag("--refine-points", flags->refine_points,
+                    "Align matched points by their grey values, to a fraction "
+                    "of a pixel");
   AddSolveFlags(command, &flags->solve);
   AddCommonFlags(command, &flags->common);
   command->callback(

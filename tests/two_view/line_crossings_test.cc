@@ -61,6 +61,18 @@ TEST(FindLineCrossings, KeepsAFewPerLine) {
   EXPECT_EQ(FindLineCrossings(features, features, matches).size(), 4u);
 }
 
+TEST(FindLineCrossings, StatesTheErrorOfTheCrossing) {
+  // At the start of both segments, which are orthogonal, the crossing is as
+  // good as their end points; in the middle twice that.
+  const Vec3 corner(0, 0, 1);
+  const double right_angle = kPi / 2;
+  const auto at_start = FindLineCrossings(
+      Corner(corner, 0, right_angle), Corner(corner, -0.1, right_angle), kBoth);
+  ASSERT_EQ(at_start.size(), 1u);
+  EXPECT_LT((at_start[0].covariance1 - Mat2::Identity()).norm(), 1e-9);
+  EXPECT_LT((at_start[0].covariance2 - 0.5 * Mat2::Identity()).norm(), 1e-9);
+}
+
 TEST(FindLineCrossings, HasNoneForNoMatches) {
   EXPECT_TRUE(FindLineCrossings({}, {}, {}).empty());
 }

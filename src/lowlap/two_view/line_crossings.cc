@@ -1,5 +1,6 @@
 #include "lowlap/two_view/line_crossings.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -22,8 +23,17 @@ double Beyond(const NormalizedSegment& s, const Vec2& point) {
   return std::max({0.0, -position, position - length});
 }
 
+// Variance of the support line at a point of it; 1 at the ends.
+double VarianceAt(const NormalizedSegment& s, const Vec2& point) {
+  const Vec2 along = (s.end - s.start).head<2>();
+  const double share =
+      (point - s.start.head<2>()).dot(along) / along.squaredNorm();
+  return (1 - share) * (1 - share) + share * share;
+}
+
 struct Crossing {
   Vec3 point;
+  Mat2 covariance;
   double gap;  // the larger distance to the two segments
 };
 
@@ -43,7 +53,16 @@ std::optional<Crossing> Cross(const NormalizedSegment& a,
       gap_b > kReachOfLength * length_b + kReachOfFocal) {
     return std::nullopt;
   }
-  return Crossing{{point.x(), point.y(), 1}, std::max(gap_a, gap_b)};
+  // Both lines hold the point across themselves: N dx = (e_a, e_b).
+  Mat2 normals;
+  normals << -along_a.y() / length_a, along_a.x() / length_a,
+      -along_b.y() / length_b, along_b.x() / length_b;
+  const Mat2 inverse = normals.inverse();
+  const Mat2 covariance =
+      inverse * Vec2(VarianceAt(a, point), VarianceAt(b, point)).asDiagonal() *
+      inverse.transpose();
+  return Crossing{
+      {point.x(), point.y(), 1}, covariance, std::max(gap_a, gap_b)};
 }
 
 }  // namespace
@@ -66,11 +85,12 @@ std::vector<LineCrossing> FindLineCrossings(
       const auto in2 =
           Cross(features2.segments[ma.second], features2.segments[mb.second]);
       if (!in2) continue;
-      candidates.push_back({std::max(in1->gap * features1.focal_px,
-                                     in2->gap * features2.focal_px),
-                            a,
-                            b,
-                            {in1->point, in2->point}});
+      candidates.push_back(
+          {std::max(in1->gap * features1.focal_px,
+                    in2->gap * features2.focal_px),
+           a,
+           b,
+           {in1->point, in2->point, in1->covariance, in2->covariance}});
     }
   }
   std::sort(candidates.begin(), candidates.end(),

@@ -11,6 +11,11 @@ namespace lowlap {
 struct LineCrossing {
   Vec3 x1 = Vec3::UnitZ();  // normalised, z = 1
   Vec3 x2 = Vec3::UnitZ();
+  /// Of its position, in units of the variance of a segment's end point across
+  /// the segment: with the crossing at share s of a segment's way from start to
+  /// end, its line is there to within (1 - s)^2 + s^2.
+  Mat2 covariance1 = Mat2::Identity();
+  Mat2 covariance2 = Mat2::Identity();
 };
 
 /// Crossings of neighbouring matched lines, as points to be tried: where the

@@ -84,6 +84,8 @@ struct ShuffledMatches {
   std::vector<int> match_of_pair;  // index into point_matches, or kCrossing
 };
 constexpr int kCrossing = -1;
+/// The variance of a segment's end point over that of a keypoint.
+constexpr double kLineVariance = 0.25;
 
 ShuffledMatches Shuffle(const TwoViewInput& input, Random& random) {
   ShuffledMatches shuffled;
@@ -113,8 +115,9 @@ ShuffledMatches Shuffle(const TwoViewInput& input, Random& random) {
   }
   for (const LineCrossing& crossing : FindLineCrossings(
            *input.features1, *input.features2, input.line_matches)) {
-    add(kCrossing, crossing.x1, crossing.x2, Mat2::Identity(),
-        Mat2::Identity());
+    add(kCrossing, crossing.x1, crossing.x2,
+        kLineVariance * crossing.covariance1,
+        kLineVariance * crossing.covariance2);
   }
   for (int n = pairs.size(); n > 1; --n) {
     const auto k = random.Index(static_cast<std::uint32_t>(n));
