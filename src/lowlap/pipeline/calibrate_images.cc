@@ -9,10 +9,38 @@
 #include "lowlap/pipeline/scene_reduction.h"
 
 namespace lowlap {
+namespace {
+
+Status RefinePoints(const std::map<ViewId, DetectedFeatures>& detected,
+                    const FrontEndOptions& options, const RunContext& context,
+                    Scene* scene) {
+  const auto summary =
+      RefinePointTracks(detected, options.refinement, context, scene);
+  if (!summary) return tl::unexpected<Error>(summary.error());
+  context.Log(LogLevel::kInfo,
+              "point refinement: " + std::to_string(summary->refined) + " of " +
+                  std::to_string(summary->observations) +
+                  " observations aligned");
+  return RefineRelativePoses(scene, detected, options.relative_poses, context);
+}
+
+void UpdateCounts(const Scene& scene, std::vector<PairReport>* reports) {
+  for (PairReport& report : *reports) {
+    const auto found = scene.relative_poses.find(report.views);
+    if (found == scene.relative_poses.end()) continue;
+    report.num_point_inliers =
+        static_cast<int>(found->second.point_inliers.size());
+    report.num_line_inliers =
+        static_cast<int>(found->second.line_inliers.size());
+  }
+}
+
+}  // namespace
 
 Status FrontEndOptions::Validate() const {
-  for (const Status& valid : {features.Validate(), retrieval.Validate(),
-                              matching.Validate(), relative_poses.Validate()}) {
+  for (const Status& valid :
+       {features.Validate(), retrieval.Validate(), matching.Validate(),
+        relative_poses.Validate(), refinement.Validate()}) {
     if (!valid) return valid;
   }
   if (!(max_cache_gb >= 0 && std::isfinite(max_cache_gb))) {
@@ -82,11 +110,22 @@ Result<std::vector<PairReport>> RelatePairs(
   for (const auto& [view, features] : measurements.features) {
     scene->features[view] = features.features;
   }
-  const StageLog::Scope scope(stages, "relative poses");
-  auto reports =
-      EstimateRelativePoses(scene, measurements.matches, &measurements.features,
-                            options.relative_poses, context);
-  if (reports) KeepMatchedFeatures(scene);
+  Result<std::vector<PairReport>> reports;
+  {
+    const StageLog::Scope scope(stages, "relative poses");
+    reports = EstimateRelativePoses(scene, measurements.matches,
+                                    &measurements.features,
+                                    options.relative_poses, context);
+    if (!reports) return reports;
+  }
+  if (options.refine_points) {
+    const StageLog::Scope scope(stages, "point refinement");
+    const Status refined =
+        RefinePoints(measurements.features, options, context, scene);
+    if (!refined) return tl::unexpected<Error>(refined.error());
+    UpdateCounts(*scene, &*reports);
+  }
+  KeepMatchedFeatures(scene);
   return reports;
 }
 

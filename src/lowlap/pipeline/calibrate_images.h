@@ -9,6 +9,7 @@
 #include "lowlap/features/features.h"
 #include "lowlap/matching/matching.h"
 #include "lowlap/matching/pair_retrieval.h"
+#include "lowlap/matching/subpixel_refinement.h"
 #include "lowlap/pipeline/relative_poses.h"
 #include "lowlap/pipeline/stage_log.h"
 #include "lowlap/scene/scene.h"
@@ -22,6 +23,10 @@ struct FrontEndOptions {
   FeatureOptions features;
   MatchOptions matching;
   RelativePoseOptions relative_poses;
+  /// Moves the points of tracks by comparing grey values (RefinePointTracks),
+  /// and refines the relative poses on them.
+  bool refine_points = false;
+  PatchAlignmentOptions refinement;
   /// Folder of features and matches that are used again; empty: none.
   std::string cache_folder;
   /// Entries that were not used for long are removed beyond this.

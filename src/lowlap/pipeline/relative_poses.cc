@@ -215,4 +215,44 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
   return reports;
 }
 
+Status RefineRelativePoses(Scene* scene,
+                           const std::map<ViewId, DetectedFeatures>& detected,
+                           const RelativePoseOptions& options,
+                           const RunContext& context) {
+  if (const Status valid = options.Validate(); !valid) return valid;
+  std::vector<RelativePose*> poses;
+  std::map<ViewId, ViewMeasurements> measurements;
+  for (auto& [views, pose] : scene->relative_poses) {
+    poses.push_back(&pose);
+    measurements[views.first];
+    measurements[views.second];
+  }
+  std::vector<ViewId> views;
+  for (const auto& entry : measurements) views.push_back(entry.first);
+  Status done = ParallelFor(
+      context, "vanishing directions", views.size(), [&](std::size_t n) {
+        measurements.at(views[n]) =
+            MeasureView(*scene, views[n], &detected, options.vanishing);
+      });
+  if (!done) return done;
+  done =
+      ParallelFor(context, "relative poses", poses.size(), [&](std::size_t n) {
+        RelativePose& pose = *poses[n];
+        TwoViewInput input =
+            MakeInput(pose.views, measurements.at(pose.views.first),
+                      measurements.at(pose.views.second));
+        if (options.use_points) input.point_matches = pose.point_inliers;
+        if (options.use_lines) input.line_matches = pose.line_inliers;
+        const std::vector<FeatureMatch> lines = pose.line_inliers;
+        pose = ImproveRelativePose(input, pose, options.two_view);
+        pose.line_inliers =
+            FilterLineMatches(lines, *input.features1, *input.features2,
+                              pose.Cam2FromCam1(), options.line_filter);
+      });
+  if (!done) return done;
+  scene->point_tracks = BuildPointTracks(*scene);
+  scene->line_tracks = BuildLineTracks(*scene, options.line_tracks);
+  return {};
+}
+
 }  // namespace lowlap

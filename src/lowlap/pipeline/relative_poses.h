@@ -63,4 +63,11 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
     const std::map<ViewId, DetectedFeatures>* detected,
     const RelativePoseOptions& options, const RunContext& context);
 
+/// The relative poses refined once more, each on its inliers, after features
+/// have moved; tracks are built anew. `detected` as above.
+Status RefineRelativePoses(Scene* scene,
+                           const std::map<ViewId, DetectedFeatures>& detected,
+                           const RelativePoseOptions& options,
+                           const RunContext& context);
+
 }  // namespace lowlap
