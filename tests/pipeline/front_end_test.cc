@@ -67,8 +67,8 @@ TEST(EstimateRelativePoses, PairsThatFailAreReportedWithAReason) {
   for (const auto& [views, pose] : synthetic.scene.relative_poses) {
     matches[views] = {pose.point_inliers, pose.line_inliers};
   }
-  auto& starved = matches.begin()->second.points;
-  starved.resize(3);
+  matches.begin()->second.points.resize(3);
+  matches.begin()->second.lines.resize(3);
   const auto reports = EstimateRelativePoses(
       &synthetic.scene, matches, nullptr, RelativePoseOptions(), RunContext());
   ASSERT_TRUE(reports);

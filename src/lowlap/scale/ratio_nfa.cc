@@ -52,14 +52,17 @@ LadderProbabilities Log10Law(const LadderSums& counts, double num_errors,
   return law;
 }
 
-// Every hypothesis, and every choice of the kinds that speak (are not capped);
-// once more 2 as a margin, since the background is measured on few features.
+// Every hypothesis, and what the kinds together gain by chance: the product of
+// m uniform numbers is below x with probability x sum_j<m (-ln x)^j / j!, which
+// for x around 1 / 500 is 1, 7 and 26 times x. More for one and for two kinds,
+// since the background is measured on few features.
 double Log10Tests(const RatioSupport& support) {
   const int num_kinds = (support.num_points() > 0) + (support.num_lines() > 0) +
                         (support.num_pairs() > 0);
   const double num_hypotheses =
       std::max<double>(1.0, static_cast<double>(support.hypotheses().size()));
-  return std::log10(num_hypotheses) + (num_kinds + 1) * std::log10(2.0);
+  constexpr double kByKinds[] = {1, 4, 8, 26};
+  return std::log10(num_hypotheses) + std::log10(kByKinds[num_kinds]);
 }
 
 }  // namespace
