@@ -65,13 +65,20 @@ TEST(FindNearestTwoTest, EqualsBruteForceForEverySizeAndWithTies) {
       auto database = RandomDescriptors(2, count, levels);
       // Two equal ones: the lower index wins.
       if (count > 16) database[16] = database[3] = queries[5];
-      const auto nearest = FindNearestTwo(queries, database);
-      ASSERT_EQ(nearest.size(), queries.size());
-      for (std::size_t i = 0; i < queries.size(); ++i) {
-        const NearestTwo expected = BruteForce(queries[i], database);
-        EXPECT_EQ(nearest[i].index, expected.index);
-        EXPECT_EQ(nearest[i].distance2, expected.distance2);
-        EXPECT_EQ(nearest[i].second_distance2, expected.second_distance2);
+      std::vector<std::vector<NearestTwo>> forms = {
+          FindNearestTwo(queries, database),
+          internal::FindNearestTwoInFloats(queries, database)};
+      if (internal::HasByteProducts()) {
+        forms.push_back(internal::FindNearestTwoInBytes(queries, database));
+      }
+      for (const std::vector<NearestTwo>& nearest : forms) {
+        ASSERT_EQ(nearest.size(), queries.size());
+        for (std::size_t i = 0; i < queries.size(); ++i) {
+          const NearestTwo expected = BruteForce(queries[i], database);
+          EXPECT_EQ(nearest[i].index, expected.index);
+          EXPECT_EQ(nearest[i].distance2, expected.distance2);
+          EXPECT_EQ(nearest[i].second_distance2, expected.second_distance2);
+        }
       }
     }
   }

@@ -104,14 +104,17 @@ std::vector<Candidate> CollectCandidates(const DescribedLines& first,
   const double min_sine = std::sin(RadFromDeg(options.min_epipolar_angle_deg));
   const double slack = EpipolarSlack(normalized1, normalized2, options);
   std::vector<Candidate> candidates;
+  auto seed = sorted_seeds.begin();
+  std::vector<int> distances;
   for (std::size_t i = 0; i < first.segments.size(); ++i) {
+    internal::HammingDistances(first.descriptors[i], second.descriptors,
+                               &distances);
     for (std::size_t j = 0; j < second.segments.size(); ++j) {
       const FeatureMatch match = {static_cast<FeatureIndex>(i),
                                   static_cast<FeatureIndex>(j)};
-      const bool is_seed =
-          std::binary_search(sorted_seeds.begin(), sorted_seeds.end(), match);
-      const int distance = internal::HammingDistance(first.descriptors[i],
-                                                     second.descriptors[j]);
+      while (seed != sorted_seeds.end() && *seed < match) ++seed;
+      const bool is_seed = seed != sorted_seeds.end() && *seed == match;
+      const int distance = distances[j];
       if (!is_seed && distance > options.max_distance_bits) continue;
       const auto transfer = internal::TransferLine(
           normalized1.segments[i], normalized2.segments[j], cam2_from_cam1,

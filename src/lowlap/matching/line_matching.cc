@@ -22,8 +22,6 @@ constexpr double kHalfSupport = 0.07;
 // Closer to a line than this, the side says nothing.
 constexpr double kSideTolerancePx = 4.0;
 
-using internal::HammingDistance;
-
 // A match is made only if no contradicting candidate scores more than this
 // share of its score.
 constexpr double kMaxRivalShare = 0.9;
@@ -90,11 +88,13 @@ std::vector<Candidate> CollectCandidates(const DescribedLines& first,
     if (list->size() > keep) list->pop_back();
   };
   std::vector<std::vector<Nearest>> forward(n1), backward(n2);
+  std::vector<int> distances;
   for (std::size_t i = 0; i < n1; ++i) {
     const double length1 = first.segments[i].LengthPx();
+    internal::HammingDistances(first.descriptors[i], second.descriptors,
+                               &distances);
     for (std::size_t j = 0; j < n2; ++j) {
-      const int distance =
-          HammingDistance(first.descriptors[i], second.descriptors[j]);
+      const int distance = distances[j];
       if (distance > options.max_distance_bits) continue;
       const double length2 = second.segments[j].LengthPx();
       if (std::max(length1, length2) >

@@ -163,6 +163,13 @@ NearestTwo Reduce(const Minima& minima, float query_norm2) {
 std::vector<NearestTwo> FindNearestTwo(
     const std::vector<PointDescriptor>& queries,
     const std::vector<PointDescriptor>& database) {
+  return HasByteProducts() ? FindNearestTwoInBytes(queries, database)
+                           : FindNearestTwoInFloats(queries, database);
+}
+
+std::vector<NearestTwo> FindNearestTwoInFloats(
+    const std::vector<PointDescriptor>& queries,
+    const std::vector<PointDescriptor>& database) {
   const std::vector<Group> groups = PackDatabase(database);
   const std::size_t padded =
       (queries.size() + kQueries - 1) / kQueries * kQueries;

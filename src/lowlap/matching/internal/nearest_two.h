@@ -17,10 +17,23 @@ struct NearestTwo {
   std::int32_t second_distance2 = kNone;  // kNone: fewer than two
 };
 
-/// Exhaustive search. All values are integers below 2^24, which makes single
-/// precision arithmetic exact: the result does not depend on the order of
-/// summation, hence not on the instruction set.
+/// Exhaustive search, in the faster of the two forms below that the processor
+/// has; both are exact, so that the result does not depend on it.
 std::vector<NearestTwo> FindNearestTwo(
+    const std::vector<PointDescriptor>& queries,
+    const std::vector<PointDescriptor>& database);
+
+/// All values are integers below 2^24, which makes single precision arithmetic
+/// exact, whatever the order of summation.
+std::vector<NearestTwo> FindNearestTwoInFloats(
+    const std::vector<PointDescriptor>& queries,
+    const std::vector<PointDescriptor>& database);
+
+/// Whether the processor multiplies and sums vectors of bytes (AVX-512 VNNI).
+bool HasByteProducts();
+
+/// Needs HasByteProducts().
+std::vector<NearestTwo> FindNearestTwoInBytes(
     const std::vector<PointDescriptor>& queries,
     const std::vector<PointDescriptor>& database);
 
