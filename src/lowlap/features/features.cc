@@ -8,6 +8,7 @@
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/core/parallel.h"
+#include "lowlap/features/image_memory.h"
 #include "lowlap/features/undistorted_image.h"
 
 namespace lowlap {
@@ -144,6 +145,7 @@ Result<std::map<ViewId, DetectedFeatures>> DetectFeatures(
   std::vector<std::optional<Result<DetectedFeatures>>> results(ids.size());
   RunContext limited = context;
   limited.num_threads = DetectionThreads(scene, options, context);
+  const ReusedImageMemory reused_memory;
   const Status done =
       ParallelFor(limited, "features", ids.size(), [&](std::size_t i) {
         const Result<std::string> bytes =

@@ -22,8 +22,24 @@ double Sample(const GrayImage& image, double x, double y) {
          fy * ((1 - fx) * p[image.width] + fx * p[image.width + 1]);
 }
 
+// Gaussian weights of the grid of gradients.
+struct GridWeights {
+  double at[2 * kHalf + 1][2 * kHalf + 1];
+
+  GridWeights() {
+    for (int row = 0; row <= 2 * kHalf; ++row) {
+      for (int column = 0; column <= 2 * kHalf; ++column) {
+        const double dx = (column - kHalf) / (0.5 * kHalf);
+        const double dy = (row - kHalf) / (0.5 * kHalf);
+        at[row][column] = std::exp(-0.5 * (dx * dx + dy * dy));
+      }
+    }
+  }
+};
+
 Mat2 StructureTensor(const GrayImage& image, const Vec2& position_px,
                      double scale_px) {
+  static const GridWeights weights;
   constexpr int kSide = 2 * kHalf + 3;
   // The window reaches two standard deviations of the blob.
   const double spacing = std::max(1.0, 2 * scale_px / kHalf);
@@ -40,10 +56,8 @@ Mat2 StructureTensor(const GrayImage& image, const Vec2& position_px,
     for (int column = 1; column + 1 < kSide; ++column) {
       const Vec2 gradient(grid[row][column + 1] - grid[row][column - 1],
                           grid[row + 1][column] - grid[row - 1][column]);
-      const double dx = (column - kHalf - 1) / (0.5 * kHalf);
-      const double dy = (row - kHalf - 1) / (0.5 * kHalf);
-      tensor += std::exp(-0.5 * (dx * dx + dy * dy)) * gradient *
-                gradient.transpose();
+      tensor +=
+          weights.at[row - 1][column - 1] * gradient * gradient.transpose();
     }
   }
   return tensor;

@@ -7,6 +7,7 @@
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/core/parallel.h"
+#include "lowlap/features/image_memory.h"
 #include "lowlap/pipeline/internal/measurement_bytes.h"
 #include "lowlap/pipeline/internal/measurement_key.h"
 
@@ -114,6 +115,7 @@ Result<KeyedFeatures> DetectFeatures(const Scene& scene,
   cache.LogUse(slots.size() - missing.size(), slots.size());
   RunContext limited = context;
   limited.num_threads = DetectionThreads(scene, options, context);
+  const ReusedImageMemory reused_memory;
   done = ParallelFor(limited, "features", missing.size(), [&](std::size_t n) {
     ViewSlot* slot = missing[n];
     // Read again rather than kept: all images together may be large. The key

@@ -160,11 +160,18 @@ void ApplyGuide(const RawSegment& guide, std::vector<RawSegment>* segments) {
            OverlapWithAxis(axis, Project(axis, segment)) >=
                0.5 * segment.LengthPx();
   };
-  const auto first_piece =
-      std::stable_partition(segments->begin(), segments->end(),
-                            [&](const RawSegment& s) { return !is_piece(s); });
-  const std::vector<RawSegment> pieces(first_piece, segments->end());
-  segments->erase(first_piece, segments->end());
+  std::vector<RawSegment> pieces;
+  std::size_t num_others = 0;
+  for (std::size_t n = 0; n < segments->size(); ++n) {
+    const RawSegment& segment = (*segments)[n];
+    if (is_piece(segment)) {
+      pieces.push_back(segment);
+    } else {
+      if (num_others < n) (*segments)[num_others] = segment;
+      ++num_others;
+    }
+  }
+  segments->resize(num_others);
   if (pieces.empty()) {
     segments->push_back(guide);
     return;
