@@ -8,6 +8,7 @@ namespace lowlap {
 
 Status MatchOptions::Validate() const {
   if (const Status s = points.Validate(); !s) return s;
+  if (const Status s = relaxed_points.Validate(); !s) return s;
   return lines.Validate();
 }
 
@@ -36,6 +37,11 @@ Result<std::map<ViewPair, PairMatches>> MatchFeatures(
           results[i].points =
               MatchPoints(first.point_descriptors, second.point_descriptors,
                           options.points);
+          if (results[i].points.size() <
+              static_cast<std::size_t>(options.relaxed_points.starved_below)) {
+            results[i].points = MatchPointsRelaxed(
+                first, second, results[i].points, options.relaxed_points);
+          }
         }
         if (options.match_lines) {
           results[i].lines =

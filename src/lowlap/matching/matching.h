@@ -9,6 +9,7 @@
 #include "lowlap/features/features.h"
 #include "lowlap/matching/line_matching.h"
 #include "lowlap/matching/point_matching.h"
+#include "lowlap/matching/relaxed_point_matching.h"
 
 namespace lowlap {
 
@@ -16,6 +17,7 @@ struct MatchOptions {
   bool match_points = true;
   bool match_lines = true;
   PointMatchOptions points;
+  RelaxedPointOptions relaxed_points;
   LineMatchOptions lines;
 
   Status Validate() const;
@@ -27,8 +29,9 @@ struct PairMatches {
   std::vector<FeatureMatch> lines;
 };
 
-/// Matches every pair, one pair per thread. A pair that names a view without
-/// features is kInvalidArgument.
+/// Matches every pair, one pair per thread; points of a starved pair once more
+/// with a wider ratio test (MatchPointsRelaxed). A pair that names a view
+/// without features is kInvalidArgument.
 Result<std::map<ViewPair, PairMatches>> MatchFeatures(
     const std::map<ViewId, DetectedFeatures>& features,
     const std::vector<ViewPair>& pairs, const MatchOptions& options,

@@ -28,6 +28,13 @@ void AddOptions(const PointMatchOptions& options, Hash128* hash) {
   AddAll(hash, kPointMatchingVersion, max_ratio);
 }
 
+void AddOptions(const RelaxedPointOptions& options, Hash128* hash) {
+  const auto& [starved_below, max_ratio, neighbors, min_agreeing,
+               max_deviation] = options;
+  AddAll(hash, starved_below, max_ratio, neighbors, min_agreeing,
+         max_deviation);
+}
+
 void AddOptions(const LineMatchOptions& options, Hash128* hash) {
   const auto& [max_distance_bits, max_candidates, min_score, max_length_ratio] =
       options;
@@ -68,10 +75,14 @@ Hash128::Value FeatureKey(std::string_view image_bytes,
 Hash128::Value MatchKey(const Hash128::Value& first,
                         const Hash128::Value& second,
                         const MatchOptions& options) {
-  const auto& [match_points, match_lines, points, lines] = options;
+  const auto& [match_points, match_lines, points, relaxed_points, lines] =
+      options;
   Hash128 hash;
   AddAll(&hash, "matches", first, second, match_points, match_lines);
-  if (match_points) AddOptions(points, &hash);
+  if (match_points) {
+    AddOptions(points, &hash);
+    AddOptions(relaxed_points, &hash);
+  }
   if (match_lines) AddOptions(lines, &hash);
   return hash.value();
 }
