@@ -12,8 +12,6 @@ namespace lowlap {
 namespace {
 
 constexpr double kDirectionFloorRad = 1e-3;
-// A direction this close to the solved centres is not a false one.
-const double kLeastFalseRad = RadFromDeg(3.0);
 // The median of the length of a 2-vector of normal errors, in deviations.
 constexpr double kMedianOfLength = 1.18;
 
@@ -22,7 +20,8 @@ constexpr double kMedianOfLength = 1.18;
 // right must not be eroded round by round.
 std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
                                            const TranslationSolution& solution,
-                                           double reach, double* sigma_rad) {
+                                           const PoseOptions& options,
+                                           double* sigma_rad) {
   struct Residual {
     const DirectionEdge* edge;
     double angle_rad;
@@ -48,7 +47,9 @@ std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
   for (const Residual& residual : residuals) {
     const DirectionEdge& edge = *residual.edge;
     const double own = std::max(*sigma_rad, edge.stddev_rad);
-    if (residual.angle_rad > std::max(reach * own, kLeastFalseRad)) {
+    if (residual.angle_rad >
+        std::max(options.outlier_reach * own,
+                 3 * RadFromDeg(options.least_false_deg))) {
       outliers.push_back(
           {ViewPair{problem.views[edge.first], problem.views[edge.second]},
            OutlierReason::kDirection, DegFromRad(residual.angle_rad)});
@@ -135,6 +136,10 @@ Status PoseOptions::Validate() const {
     return MakeError(ErrorCode::kInvalidArgument,
                      "poses: the outlier reach must be positive");
   }
+  if (!(least_false_deg >= 0)) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "poses: least_false_deg must not be negative");
+  }
   return rotation.Validate();
 }
 
@@ -146,7 +151,8 @@ Result<SceneRotations> AverageSceneRotations(const Scene& scene,
   }
   RotationAveragingOptions rotation = options.rotation;
   rotation.seed = context.seed;
-  return AverageSceneRotations(scene, rotation, options.outlier_reach);
+  return AverageSceneRotations(scene, rotation, options.outlier_reach,
+                               RadFromDeg(options.least_false_deg));
 }
 
 Result<PoseSummary> SolveScenePoses(Scene* scene, const PoseOptions& options,
@@ -187,8 +193,8 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
 
   double sigma_rad = 0;
   while (true) {
-    const std::vector<OutlierEdge> wrong = DirectionOutliers(
-        problem, *solution, options.outlier_reach, &sigma_rad);
+    const std::vector<OutlierEdge> wrong =
+        DirectionOutliers(problem, *solution, options, &sigma_rad);
     if (wrong.empty()) break;
     std::vector<OutlierEdge> more = outliers;
     more.insert(more.end(), wrong.begin(), wrong.end());

@@ -20,6 +20,11 @@ struct PoseOptions {
   /// rotations (the solved centres) by more than this many robust standard
   /// deviations of all residuals is left out.
   double outlier_reach = 5.0;
+  /// Nor is a relative pose left out that is closer than this (its direction:
+  /// three times this), however small its stated deviation, which covers
+  /// neither calibration nor what errors have in common. Robust weights deal
+  /// with it.
+  double least_false_deg = 1.0;
 
   Status Validate() const;
 };

@@ -14,10 +14,6 @@ namespace {
 
 constexpr double kRotationFloorRad = 5e-4;
 constexpr double kDefaultRotationRad = 5e-3;
-// A relative pose this close to the others is not a false one, however small
-// its stated deviation: that covers neither calibration nor what errors have in
-// common. Robust weights deal with it.
-const double kLeastFalseRad = RadFromDeg(1.0);
 // The median of the norm of a 3-vector of normal errors, in deviations.
 constexpr double kMedianOfNorm = 1.54;
 
@@ -56,8 +52,12 @@ std::set<ViewId> LargestComponent(const std::set<ViewPair>& edges) {
 class SceneRotationSolver {
  public:
   SceneRotationSolver(const Scene& scene,
-                      const RotationAveragingOptions& options, double reach)
-      : scene_(scene), options_(options), reach_(reach) {
+                      const RotationAveragingOptions& options, double reach,
+                      double least_false_rad)
+      : scene_(scene),
+        options_(options),
+        reach_(reach),
+        least_false_rad_(least_false_rad) {
     for (const auto& entry : scene.relative_poses) kept_.insert(entry.first);
   }
 
@@ -147,7 +147,7 @@ class SceneRotationSolver {
     for (std::size_t e = 0; e < used_.size(); ++e) {
       if (!is_kept_[e] || settled_.count(used_[e]) > 0) continue;
       const double own = std::max(sigma_, RotationStddev(PoseOf(used_[e])));
-      if (ResidualRad(used_[e]) > std::max(reach_ * own, kLeastFalseRad)) {
+      if (ResidualRad(used_[e]) > std::max(reach_ * own, least_false_rad_)) {
         LeaveOut(used_[e], OutlierReason::kRotation);
         changed = true;
       }
@@ -256,6 +256,7 @@ class SceneRotationSolver {
   const Scene& scene_;
   const RotationAveragingOptions& options_;
   const double reach_;
+  const double least_false_rad_;
 
   std::set<ViewPair> kept_;
   std::map<ViewPair, OutlierEdge> outliers_;
@@ -290,12 +291,13 @@ const char* OutlierReasonName(OutlierReason reason) {
 
 Result<SceneRotations> AverageSceneRotations(
     const Scene& scene, const RotationAveragingOptions& options,
-    double outlier_reach) {
+    double outlier_reach, double least_false_rad) {
   if (scene.relative_poses.empty()) {
     return MakeError(ErrorCode::kInsufficientData,
                      "the scene has no relative pose to build on");
   }
-  return SceneRotationSolver(scene, options, outlier_reach).Solve();
+  return SceneRotationSolver(scene, options, outlier_reach, least_false_rad)
+      .Solve();
 }
 
 }  // namespace lowlap

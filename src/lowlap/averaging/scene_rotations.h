@@ -65,7 +65,8 @@ struct SceneRotations {
 /// of these to believe.
 ///
 /// - A relative pose whose rotation is off by more than `outlier_reach` robust
-///   standard deviations is left out, and the rest is averaged again.
+///   standard deviations, and by more than `least_false_rad`, is left out, and
+///   the rest is averaged again.
 /// - What remains is checked by its cycles. A relative pose on no cycle (a
 ///   bridge) is left out too if those left out across it have more evidence
 ///   together (-log10 NFA) than it has itself: then the views beyond it are not
@@ -79,6 +80,6 @@ struct SceneRotations {
 /// Errors: those of AverageRotations; kInsufficientData if nothing remains.
 Result<SceneRotations> AverageSceneRotations(
     const Scene& scene, const RotationAveragingOptions& options,
-    double outlier_reach);
+    double outlier_reach, double least_false_rad = 0);
 
 }  // namespace lowlap

@@ -60,6 +60,27 @@ std::vector<ViewTriplet> BelievedTriplets(const Scene& scene,
   return triplets;
 }
 
+// Relative poses that are a little off bend what many others hold already, but
+// may be all that holds a view: they are left out if that loses none.
+Result<PoseSummary> SolvePoses(Scene* scene, const SceneRotations& rotations,
+                               const PoseOptions& options,
+                               const RunContext& context) {
+  auto all = SolveScenePoses(scene, rotations, options, context);
+  if (!all || options.least_false_deg == 0) return all;
+  PoseOptions strict = options;
+  strict.least_false_deg = 0;
+  const auto fewer = AverageSceneRotations(*scene, strict, context);
+  if (!fewer) return all;
+  const std::map<PoseId, Pose> poses = scene->poses;
+  auto solved = SolveScenePoses(scene, *fewer, strict, context);
+  if (solved && solved->num_placed >= all->num_placed &&
+      solved->IsDoubtful() <= all->IsDoubtful()) {
+    return solved;
+  }
+  scene->poses = poses;
+  return all;
+}
+
 }  // namespace
 
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
@@ -85,7 +106,7 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
   }
   {
     const StageLog::Scope scope(stages, "poses");
-    auto poses = SolveScenePoses(scene, rotations, options.poses, context);
+    auto poses = SolvePoses(scene, rotations, options.poses, context);
     if (!poses) return tl::unexpected<Error>(poses.error());
     result.poses = std::move(*poses);
     result.poses_before_adjustment = scene->poses;

@@ -182,9 +182,7 @@ std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
   const std::optional<RigidTransform> motion = OtherPlanarMotion(
       candidate.pose, plane.normal, pairs.x1[plane.inliers.front()]);
   if (!motion) return std::nullopt;
-  PoseCandidate other = search.Finish(*motion);
-  if (SameMotion(candidate.pose, other.pose)) return std::nullopt;
-  return other;
+  return search.Finish(*motion);
 }
 
 std::vector<DirectionPair> CommonDirections(const TwoViewInput& input) {
@@ -273,9 +271,12 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
       std::swap(*best, *other);
       plane = DominantPlaneOf(*best, pairs, random);
     }
-    result.geometry = std::abs(advantage) < kDecisiveScore
-                          ? TwoViewGeometry::kAmbiguousPlane
-                          : TwoViewGeometry::kPlanar;
+    // Where both are one motion, the better optimum of it is kept.
+    if (!SameMotion(best->pose, other->pose)) {
+      result.geometry = std::abs(advantage) < kDecisiveScore
+                            ? TwoViewGeometry::kAmbiguousPlane
+                            : TwoViewGeometry::kPlanar;
+    }
   }
   if (plane) {
     result.num_plane_inliers = static_cast<int>(plane->inliers.size());
