@@ -93,11 +93,11 @@ TEST(EstimateRelativePoses, ThreadsDoNotChangeTheResult) {
   Scene one = synthetic.scene, two = synthetic.scene;
   RunContext context;
   context.num_threads = 1;
-  ASSERT_TRUE(
-      EstimateRelativePoses(&one, matches, nullptr, RelativePoseOptions(), context));
+  ASSERT_TRUE(EstimateRelativePoses(&one, matches, nullptr,
+                                    RelativePoseOptions(), context));
   context.num_threads = 2;
-  ASSERT_TRUE(
-      EstimateRelativePoses(&two, matches, nullptr, RelativePoseOptions(), context));
+  ASSERT_TRUE(EstimateRelativePoses(&two, matches, nullptr,
+                                    RelativePoseOptions(), context));
   EXPECT_TRUE(one == two);
 }
 

@@ -134,8 +134,8 @@ Result<PointFeatures> DetectPoints(const GrayImage& image,
           Vec2(point.pt.x - kDoublingOffsetPx, point.pt.y - kDoublingOffsetPx);
       keypoint.scale_px = 0.5 * point.size;
       keypoint.angle_rad = RadFromDeg(point.angle);
-      keypoint.covariance = LocalizationCovariance(
-          image, keypoint.position_px, keypoint.scale_px);
+      keypoint.covariance = LocalizationCovariance(image, keypoint.position_px,
+                                                   keypoint.scale_px);
       features.keypoints.push_back(keypoint);
       features.descriptors.push_back(
           RootSift(sift_descriptors.ptr<float>(point.class_id)));
