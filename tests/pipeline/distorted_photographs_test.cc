@@ -116,8 +116,9 @@ TEST(DistortedPhotographs, AreMeasuredAsWellAsStraightOnes) {
   EXPECT_GE(with.poses, without.poses);
   EXPECT_GT(with.points, 0.7 * without.points);
   EXPECT_GT(with.lines, 0.7 * without.lines);
-  EXPECT_LT(with.rotation_deg.median, 2 * without.rotation_deg.median);
+  EXPECT_LT(with.rotation_deg.median, 1.5 * without.rotation_deg.median);
   EXPECT_LT(with.direction_deg.median, 2 * without.direction_deg.median);
+  EXPECT_LT(with.direction_deg.median, 1.5);
   EXPECT_GT(unknown.rotation_deg.median, 5 * with.rotation_deg.median);
 }
 

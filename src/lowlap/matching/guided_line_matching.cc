@@ -8,6 +8,7 @@
 #include "lowlap/matching/internal/hamming.h"
 #include "lowlap/matching/internal/line_rivals.h"
 #include "lowlap/matching/internal/line_transfer.h"
+#include "lowlap/matching/internal/relaxation.h"
 
 namespace lowlap {
 namespace {
@@ -171,11 +172,6 @@ std::vector<std::vector<Neighbor>> FindNeighbors(
   return neighbors;
 }
 
-struct Support {
-  std::size_t candidate;
-  double weight;
-};
-
 void Relax(const NormalizedFeatures& first, double slack,
            std::vector<Candidate>* candidates) {
   std::vector<std::vector<std::size_t>> candidates_of(first.segments.size());
@@ -183,11 +179,12 @@ void Relax(const NormalizedFeatures& first, double slack,
     candidates_of[(*candidates)[c].match.first].push_back(c);
   }
   const auto neighbors = FindNeighbors(first, candidates_of);
-  std::vector<std::vector<std::vector<Support>>> supports(candidates->size());
+  std::vector<std::vector<std::vector<internal::Support>>> supports(
+      candidates->size());
   for (std::size_t c = 0; c < candidates->size(); ++c) {
     const Candidate& candidate = (*candidates)[c];
     for (const Neighbor& n : neighbors[candidate.match.first]) {
-      std::vector<Support> list;
+      std::vector<internal::Support> list;
       const double surface = kDepthNoise + kDepthSlope * n.distance;
       const double log_depth = candidate.LogDepth(n.here);
       for (const std::size_t o : candidates_of[n.segment]) {
@@ -206,23 +203,8 @@ void Relax(const NormalizedFeatures& first, double slack,
   for (std::size_t c = 0; c < scores.size(); ++c) {
     scores[c] = (*candidates)[c].similarity;
   }
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    std::vector<double> next(scores.size(), 0);
-    for (std::size_t c = 0; c < scores.size(); ++c) {
-      if (supports[c].empty()) continue;
-      double sum = 0;
-      for (const std::vector<Support>& list : supports[c]) {
-        double best = 0;
-        for (const Support& s : list) {
-          best = std::max(best, s.weight * scores[s.candidate]);
-        }
-        sum += best;
-      }
-      const double support = sum / static_cast<double>(supports[c].size());
-      next[c] = support / (support + kHalfSupport);
-    }
-    scores = std::move(next);
-  }
+  scores = internal::RelaxScores(std::move(scores), supports, kHalfSupport,
+                                 kIterations);
   for (std::size_t c = 0; c < scores.size(); ++c) {
     (*candidates)[c].score = scores[c] * (*candidates)[c].similarity;
   }

@@ -5,6 +5,7 @@
 
 #include "lowlap/matching/internal/hamming.h"
 #include "lowlap/matching/internal/line_rivals.h"
+#include "lowlap/matching/internal/relaxation.h"
 
 namespace lowlap {
 namespace {
@@ -147,15 +148,8 @@ std::vector<std::vector<std::size_t>> FindNeighbors(
   return neighbors;
 }
 
-struct Support {
-  std::size_t candidate;
-  double weight;
-};
-
-// Scores the candidates by relaxation. The support of a candidate is the mean
-// over its neighbours of
-//   max over their candidates c of  agreement(c) similarity(c) score(c),
-// and its new score support / (support + kHalfSupport), in [0, 1).
+// Scores the candidates by relaxation: a neighbour weighs by its similarity and
+// by how well it agrees.
 void Relax(const DescribedLines& first, const DescribedLines& second,
            std::vector<Candidate>* candidates) {
   std::vector<std::vector<std::size_t>> candidates_of(first.segments.size());
@@ -164,11 +158,12 @@ void Relax(const DescribedLines& first, const DescribedLines& second,
   }
   const auto neighbors = FindNeighbors(first.segments, candidates_of);
   // For every candidate, one list per neighbour.
-  std::vector<std::vector<std::vector<Support>>> supports(candidates->size());
+  std::vector<std::vector<std::vector<internal::Support>>> supports(
+      candidates->size());
   for (std::size_t c = 0; c < candidates->size(); ++c) {
     const FeatureMatch& m = (*candidates)[c].match;
     for (const std::size_t n : neighbors[m.first]) {
-      std::vector<Support> list;
+      std::vector<internal::Support> list;
       for (const std::size_t other : candidates_of[n]) {
         const FeatureMatch& o = (*candidates)[other].match;
         if (o.second == m.second) continue;
@@ -186,23 +181,8 @@ void Relax(const DescribedLines& first, const DescribedLines& second,
   for (std::size_t c = 0; c < scores.size(); ++c) {
     scores[c] = (*candidates)[c].similarity;
   }
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    std::vector<double> next(scores.size(), 0);
-    for (std::size_t c = 0; c < scores.size(); ++c) {
-      if (supports[c].empty()) continue;
-      double sum = 0;
-      for (const std::vector<Support>& list : supports[c]) {
-        double best = 0;
-        for (const Support& s : list) {
-          best = std::max(best, s.weight * scores[s.candidate]);
-        }
-        sum += best;
-      }
-      const double support = sum / static_cast<double>(supports[c].size());
-      next[c] = support / (support + kHalfSupport);
-    }
-    scores = std::move(next);
-  }
+  scores = internal::RelaxScores(std::move(scores), supports, kHalfSupport,
+                                 kIterations);
   for (std::size_t c = 0; c < scores.size(); ++c) {
     (*candidates)[c].score = scores[c];
   }
