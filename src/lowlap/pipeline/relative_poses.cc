@@ -59,6 +59,36 @@ ViewMeasurements MeasureView(const Scene& scene, ViewId id,
   return view;
 }
 
+// Of all views of the pairs.
+Result<std::map<ViewId, ViewMeasurements>> MeasureViews(
+    const Scene& scene, const std::vector<ViewPair>& pairs,
+    const std::map<ViewId, DetectedFeatures>* detected,
+    const VanishingOptions& options, const RunContext& context) {
+  std::map<ViewId, ViewMeasurements> measurements;
+  for (const ViewPair& pair : pairs) {
+    measurements[pair.first];
+    measurements[pair.second];
+  }
+  std::vector<ViewId> views;
+  for (const auto& entry : measurements) {
+    const ViewId view = entry.first;
+    if (scene.FindIntrinsic(view) == nullptr ||
+        scene.features.count(view) == 0) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "view " + std::to_string(view) +
+                           " is matched but has no intrinsic or no features");
+    }
+    views.push_back(view);
+  }
+  const Status done = ParallelFor(
+      context, "vanishing directions", views.size(), [&](std::size_t n) {
+        measurements.at(views[n]) =
+            MeasureView(scene, views[n], detected, options);
+      });
+  if (!done) return tl::unexpected<Error>(done.error());
+  return measurements;
+}
+
 // Adds the matches whose points have none yet.
 void AddMatches(const std::vector<FeatureMatch>& extra,
                 std::vector<FeatureMatch>* matches) {
@@ -163,42 +193,23 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
-  std::vector<std::pair<ViewPair, const PairMatches*>> pairs;
-  std::map<ViewId, ViewMeasurements> measurements;
-  for (const auto& [views, pair_matches] : matches) {
-    pairs.emplace_back(views, &pair_matches);
-    measurements[views.first];
-    measurements[views.second];
-  }
-  std::vector<ViewId> views;
-  for (const auto& entry : measurements) views.push_back(entry.first);
-  for (const ViewId view : views) {
-    if (scene->FindIntrinsic(view) == nullptr ||
-        scene->features.count(view) == 0) {
-      return MakeError(ErrorCode::kInvalidArgument,
-                       "view " + std::to_string(view) +
-                           " is matched but has no intrinsic or no features");
-    }
-  }
-  Status done = ParallelFor(
-      context, "vanishing directions", views.size(), [&](std::size_t n) {
-        measurements.at(views[n]) =
-            MeasureView(*scene, views[n], detected, options.vanishing);
-      });
-  if (!done) return tl::unexpected<Error>(done.error());
+  std::vector<ViewPair> pairs;
+  for (const auto& entry : matches) pairs.push_back(entry.first);
+  const auto measurements =
+      MeasureViews(*scene, pairs, detected, options.vanishing, context);
+  if (!measurements) return tl::unexpected<Error>(measurements.error());
 
   std::vector<PairOutcome> outcomes(pairs.size());
-  done =
+  const Status done =
       ParallelFor(context, "relative poses", pairs.size(), [&](std::size_t n) {
         // A stream of its own per pair, whatever else is in the run.
         const std::uint64_t pair_seed =
             context.seed * 0x9E3779B97F4A7C15ull +
-            (static_cast<std::uint64_t>(pairs[n].first.first) << 32) +
-            pairs[n].first.second;
-        outcomes[n] =
-            SolvePair(pairs[n].first, measurements.at(pairs[n].first.first),
-                      measurements.at(pairs[n].first.second), *pairs[n].second,
-                      options, pair_seed);
+            (static_cast<std::uint64_t>(pairs[n].first) << 32) +
+            pairs[n].second;
+        outcomes[n] = SolvePair(pairs[n], measurements->at(pairs[n].first),
+                                measurements->at(pairs[n].second),
+                                matches.at(pairs[n]), options, pair_seed);
       });
   if (!done) return tl::unexpected<Error>(done.error());
 
@@ -221,26 +232,20 @@ Status RefineRelativePoses(Scene* scene,
                            const RunContext& context) {
   if (const Status valid = options.Validate(); !valid) return valid;
   std::vector<RelativePose*> poses;
-  std::map<ViewId, ViewMeasurements> measurements;
+  std::vector<ViewPair> pairs;
   for (auto& [views, pose] : scene->relative_poses) {
     poses.push_back(&pose);
-    measurements[views.first];
-    measurements[views.second];
+    pairs.push_back(views);
   }
-  std::vector<ViewId> views;
-  for (const auto& entry : measurements) views.push_back(entry.first);
-  Status done = ParallelFor(
-      context, "vanishing directions", views.size(), [&](std::size_t n) {
-        measurements.at(views[n]) =
-            MeasureView(*scene, views[n], &detected, options.vanishing);
-      });
-  if (!done) return done;
-  done =
+  const auto measurements =
+      MeasureViews(*scene, pairs, &detected, options.vanishing, context);
+  if (!measurements) return tl::unexpected<Error>(measurements.error());
+  const Status done =
       ParallelFor(context, "relative poses", poses.size(), [&](std::size_t n) {
         RelativePose& pose = *poses[n];
         TwoViewInput input =
-            MakeInput(pose.views, measurements.at(pose.views.first),
-                      measurements.at(pose.views.second));
+            MakeInput(pose.views, measurements->at(pose.views.first),
+                      measurements->at(pose.views.second));
         if (options.use_points) input.point_matches = pose.point_inliers;
         if (options.use_lines) input.line_matches = pose.line_inliers;
         const std::vector<FeatureMatch> lines = pose.line_inliers;

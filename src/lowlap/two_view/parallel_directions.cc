@@ -14,8 +14,6 @@ namespace {
 constexpr int kMinVotes = 2;
 constexpr int kMinVotesForAll = 8;
 constexpr int kMaxDigits = 10;
-// Scale of the Cauchy loss, in standard deviations.
-constexpr double kLossScale = 3;
 
 // The direction of every segment that has one.
 std::map<FeatureIndex, std::size_t> DirectionOfSegment(
@@ -48,7 +46,8 @@ Mat3 RefineRotation(const std::vector<DirectionPair>& pairs, Mat3 rotation) {
     for (const DirectionPair& pair : pairs) {
       Eigen::Matrix<double, 2, 3> jacobian;
       const Vec2 m = DirectionResidual(pair, rotation, &jacobian);
-      const double x = m.squaredNorm() / (kLossScale * kLossScale);
+      const double x =
+          m.squaredNorm() / (kDirectionLossScale * kDirectionLossScale);
       const double weight = 1 / ((1 + x) * (1 + x));
       hessian += weight * jacobian.transpose() * jacobian;
       gradient += weight * jacobian.transpose() * m;

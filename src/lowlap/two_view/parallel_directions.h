@@ -9,6 +9,9 @@
 
 namespace lowlap {
 
+/// Residuals of directions lose their hold beyond this many deviations.
+inline constexpr double kDirectionLossScale = 3;
+
 /// A direction in space as both views of a pair show it: +-direction2 =
 /// cam2_from_cam1 direction1. It says nothing about the translation.
 struct DirectionPair {

@@ -20,9 +20,6 @@ double CauchyCost(double residual, double scale) {
   return 0.5 * scale * scale * std::log1p(ratio * ratio);
 }
 
-// Loss of a direction pair, in units of the points' loss.
-constexpr double kDirectionScale = 3;
-
 using DirectionJacobian = Eigen::Matrix<double, 2, 3>;
 
 NormalEquations Linearize(const RigidTransform& pose, const PointPairs& pairs,
@@ -42,12 +39,12 @@ NormalEquations Linearize(const RigidTransform& pose, const PointPairs& pairs,
   for (const DirectionPair& pair : options.directions) {
     DirectionJacobian turn;
     const Vec2 m = DirectionResidual(pair, pose.rotation, &turn);
-    const double ratio = m.norm() / kDirectionScale;
+    const double ratio = m.norm() / kDirectionLossScale;
     const double weight = options.point_variance_px2 / (1 + ratio * ratio);
     system.hessian.topLeftCorner<3, 3>() += weight * turn.transpose() * turn;
     system.gradient.head<3>() += weight * turn.transpose() * m;
     system.cost +=
-        options.point_variance_px2 * CauchyCost(m.norm(), kDirectionScale);
+        options.point_variance_px2 * CauchyCost(m.norm(), kDirectionLossScale);
   }
   return system;
 }
@@ -63,7 +60,7 @@ double Cost(const RigidTransform& pose, const PointPairs& pairs,
   for (const DirectionPair& pair : options.directions) {
     cost += options.point_variance_px2 *
             CauchyCost(DirectionResidual(pair, pose.rotation).norm(),
-                       kDirectionScale);
+                       kDirectionLossScale);
   }
   return cost;
 }
@@ -185,7 +182,7 @@ std::optional<Mat5> RelativePoseCovariance(
     DirectionJacobian turn;
     const double ratio =
         DirectionResidual(pair, cam2_from_cam1.rotation, &turn).norm() /
-        kDirectionScale;
+        kDirectionLossScale;
     information.topLeftCorner<3, 3>() +=
         turn.transpose() * turn / (1 + ratio * ratio);
   }
