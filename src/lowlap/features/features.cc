@@ -23,6 +23,9 @@ Status AddPoints(const GrayImage& image, const FeatureOptions& options,
   if (!points) return tl::unexpected<Error>(points.error());
   for (const Keypoint& keypoint : points->keypoints) {
     detected->features.points_px.push_back(keypoint.position_px);
+    const Mat2& shape = keypoint.covariance;
+    detected->features.point_covariances.emplace_back(shape(0, 0), shape(0, 1),
+                                                      shape(1, 1));
   }
   detected->keypoints = std::move(points->keypoints);
   detected->point_descriptors = std::move(points->descriptors);

@@ -3,7 +3,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <utility>
+
+#include "lowlap/features/internal/midpoint_grid.h"
 
 namespace lowlap::internal {
 namespace {
@@ -17,6 +19,8 @@ constexpr double kStraightness = 1.2;
 constexpr double kMaxGapShare = 0.15;
 // Share of a merged segment, or of a coarse one, that pieces must cover.
 constexpr double kMinCover = 0.5;
+// Added where segments are looked up by their midpoints.
+constexpr double kRoundingPx = 0.01;
 
 // Of a level, in pixels of the full resolution.
 double PixelSize(int level) { return 1 << level; }
@@ -151,29 +155,72 @@ std::vector<std::vector<RawSegment>> GroupCollinear(
   return groups;
 }
 
-// Lets one coarse segment guide the merging of `segments`.
-void ApplyGuide(const RawSegment& guide, std::vector<RawSegment>* segments) {
-  const Axis axis(guide.start_px, guide.end_px);
-  const double tolerance = kLateralTolerance * PixelSize(guide.level);
-  const auto is_piece = [&](const RawSegment& segment) {
-    return LiesOn(axis, segment, tolerance) &&
-           OverlapWithAxis(axis, Project(axis, segment)) >=
-               0.5 * segment.LengthPx();
-  };
-  std::vector<RawSegment> pieces;
-  std::size_t num_others = 0;
-  for (std::size_t n = 0; n < segments->size(); ++n) {
-    const RawSegment& segment = (*segments)[n];
-    if (is_piece(segment)) {
-      pieces.push_back(segment);
-    } else {
-      if (num_others < n) (*segments)[num_others] = segment;
-      ++num_others;
-    }
+Vec2 Midpoint(const RawSegment& segment) {
+  return 0.5 * (segment.start_px + segment.end_px);
+}
+
+MidpointGrid EmptyGrid(const std::vector<RawSegment>& segments) {
+  Vec2 low = Vec2::Zero(), high = Vec2::Zero();
+  for (const RawSegment& segment : segments) {
+    low = low.cwiseMin(Midpoint(segment));
+    high = high.cwiseMax(Midpoint(segment));
   }
-  segments->resize(num_others);
+  return {low, high};
+}
+
+// Segments in the order in which they came, found by their place.
+class SegmentSet {
+ public:
+  explicit SegmentSet(std::vector<RawSegment> segments)
+      : grid_(EmptyGrid(segments)) {
+    for (const RawSegment& segment : segments) Add(segment);
+  }
+
+  void Add(const RawSegment& segment) {
+    grid_.Insert(segments_.size(), Midpoint(segment));
+    segments_.push_back(segment);
+    alive_.push_back(true);
+  }
+
+  // Takes out the segments that a guide covers by at least half: these have
+  // their midpoints on it.
+  std::vector<RawSegment> TakePieces(const RawSegment& guide) {
+    const Axis axis(guide.start_px, guide.end_px);
+    const double tolerance = kLateralTolerance * PixelSize(guide.level);
+    std::vector<RawSegment> pieces;
+    for (const std::size_t id :
+         grid_.Near(guide.start_px, guide.end_px, tolerance + kRoundingPx)) {
+      const RawSegment& segment = segments_[id];
+      if (!alive_[id] || !LiesOn(axis, segment, tolerance) ||
+          OverlapWithAxis(axis, Project(axis, segment)) <
+              0.5 * segment.LengthPx()) {
+        continue;
+      }
+      pieces.push_back(segment);
+      alive_[id] = false;
+    }
+    return pieces;
+  }
+
+  std::vector<RawSegment> Remaining() const {
+    std::vector<RawSegment> remaining;
+    for (std::size_t id = 0; id < segments_.size(); ++id) {
+      if (alive_[id]) remaining.push_back(segments_[id]);
+    }
+    return remaining;
+  }
+
+ private:
+  MidpointGrid grid_;
+  std::vector<RawSegment> segments_;
+  std::vector<bool> alive_;
+};
+
+// Lets one coarse segment guide the merging of `segments`.
+void ApplyGuide(const RawSegment& guide, SegmentSet* segments) {
+  const std::vector<RawSegment> pieces = segments->TakePieces(guide);
   if (pieces.empty()) {
-    segments->push_back(guide);
+    segments->Add(guide);
     return;
   }
   std::vector<RawSegment> merged;
@@ -189,7 +236,7 @@ void ApplyGuide(const RawSegment& guide, std::vector<RawSegment>* segments) {
     // The pieces are crumbs of an edge that only the coarse level sees.
     merged = {guide};
   }
-  segments->insert(segments->end(), merged.begin(), merged.end());
+  for (const RawSegment& segment : merged) segments->Add(segment);
 }
 
 // Whether `shorter` lies on the axis of `longer`, close to it.
@@ -204,21 +251,36 @@ bool ContinuesAxis(const Axis& axis, const RawSegment& longer,
 // Joins collinear neighbours, longest first.
 std::vector<RawSegment> CloseGaps(std::vector<RawSegment> segments) {
   std::sort(segments.begin(), segments.end(), Longer);
+  MidpointGrid grid = EmptyGrid(segments);
+  int coarsest = 0;
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    grid.Insert(i, Midpoint(segments[i]));
+    coarsest = std::max(coarsest, segments[i].level);
+  }
+  const double reach = 2 * kStraightness * PixelSize(coarsest) + kRoundingPx;
   std::vector<bool> used(segments.size(), false);
   std::vector<RawSegment> joined;
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (used[i]) continue;
     RawSegment whole = segments[i];
+    // What comes later is no longer than the first piece: its midpoint is this
+    // far beyond an end of the whole at most.
+    const double ahead = (0.5 + kMaxGapShare) * whole.LengthPx();
     for (bool grown = true; grown;) {
       grown = false;
       const Axis axis(whole.start_px, whole.end_px);
-      for (std::size_t j = i + 1; j < segments.size() && !grown; ++j) {
-        if (used[j] || !ContinuesAxis(axis, whole, segments[j])) continue;
+      for (const std::size_t j :
+           grid.Near(whole.start_px - ahead * axis.direction,
+                     whole.end_px + ahead * axis.direction, reach)) {
+        if (j <= i || used[j] || !ContinuesAxis(axis, whole, segments[j])) {
+          continue;
+        }
         const std::vector<RawSegment> both = {whole, segments[j]};
         const RawSegment span = Span(both);
         if (!IsStraight(span, both)) continue;
         whole = span;
         used[j] = grown = true;
+        break;
       }
     }
     joined.push_back(whole);
@@ -230,18 +292,18 @@ std::vector<RawSegment> CloseGaps(std::vector<RawSegment> segments) {
 
 std::vector<RawSegment> MergeLevels(
     const std::vector<std::vector<RawSegment>>& levels) {
-  std::vector<RawSegment> segments;
-  for (std::vector<RawSegment> guides : levels) {
-    std::sort(guides.begin(), guides.end(), Longer);
-    if (segments.empty()) {
-      segments = std::move(guides);
-      continue;
-    }
-    for (const RawSegment& guide : guides) ApplyGuide(guide, &segments);
+  const auto sorted = [](std::vector<RawSegment> segments) {
+    std::sort(segments.begin(), segments.end(), Longer);
+    return segments;
+  };
+  auto level = std::find_if(levels.begin(), levels.end(),
+                            [](const auto& found) { return !found.empty(); });
+  if (level == levels.end()) return {};
+  SegmentSet set(sorted(*level));
+  for (++level; level != levels.end(); ++level) {
+    for (const RawSegment& guide : sorted(*level)) ApplyGuide(guide, &set);
   }
-  segments = CloseGaps(std::move(segments));
-  std::sort(segments.begin(), segments.end(), Longer);
-  return segments;
+  return sorted(CloseGaps(set.Remaining()));
 }
 
 std::vector<std::size_t> WithoutDuplicates(
