@@ -3,16 +3,15 @@
 #include <string>
 #include <utility>
 
+#include "lowlap/scale/broken_lines.h"
 #include "lowlap/scale/pose_uncertainty.h"
 
 namespace lowlap {
 namespace {
 
-// A match seen from the middle view.
-struct MiddleMatch {
-  FeatureIndex middle = 0;
-  FeatureIndex neighbor = 0;
-};
+// Pieces of one edge are this close to one line: as where line tracks are
+// joined.
+constexpr double kMaxPieceDistancePx = 2.0;
 
 std::vector<MiddleMatch> FromMiddle(const std::vector<FeatureMatch>& matches,
                                     bool middle_is_first) {
@@ -74,8 +73,14 @@ void Chain(const std::vector<MiddleMatch>& ij,
 }
 
 ObservedSegment Observe(const NormalizedFeatures& features,
-                        const ViewFeatures& raw, FeatureIndex segment) {
-  return {features.segments[segment], raw.segments[segment].stddev_px};
+                        const ViewFeatures& raw,
+                        const std::vector<FeatureIndex>& pieces) {
+  std::vector<ObservedSegment> observed;
+  for (const FeatureIndex piece : pieces) {
+    observed.push_back(
+        {features.segments[piece], raw.segments[piece].stddev_px});
+  }
+  return JoinPieces(observed, kMaxPieceDistancePx / features.focal_px);
 }
 
 }  // namespace
@@ -177,25 +182,33 @@ Result<TripletView> MakeTripletView(const Scene& scene,
       FromMiddle(i.edge->line_inliers, i.middle_is_first);
   const std::vector<MiddleMatch> lines_jk =
       FromMiddle(k.edge->line_inliers, k.middle_is_first);
-  if (options.use_lines) {
-    Chain(lines_ij, lines_jk, middle.segments.size(),
-          [&](const MiddleMatch& ij, const MiddleMatch& jk) {
-            triplet.lines.push_back(
-                {ij.middle, Observe(*i.features, *i.raw, ij.neighbor),
-                 Observe(middle, middle_raw, ij.middle),
-                 Observe(*k.features, *k.raw, jk.neighbor)});
-          });
+  const MatchedEdges matched = GroupMatches(lines_ij, lines_jk);
+  std::vector<bool> is_new(matched.edges.size(), true);
+  for (std::size_t n = 0; n < lines_ij.size(); ++n) {
+    const int index = matched.edge_of_ij[n];
+    if (!is_new[index]) continue;
+    is_new[index] = false;
+    const MatchedPieces& edge = matched.edges[index];
+    const ObservedSegment in_i = Observe(*i.features, *i.raw, edge.in_i);
+    const ObservedSegment in_j = Observe(middle, middle_raw, edge.in_j);
+    if (options.use_lines && !edge.in_k.empty()) {
+      triplet.lines.push_back({lines_ij[n].middle, in_i, in_j,
+                               Observe(*k.features, *k.raw, edge.in_k)});
+    }
+    if (options.use_coplanar) {
+      triplet.lines_ij.push_back({lines_ij[n].middle, in_j, in_i});
+    }
   }
   if (options.use_coplanar) {
-    for (const MiddleMatch& match : lines_ij) {
-      triplet.lines_ij.push_back(
-          {match.middle, Observe(middle, middle_raw, match.middle),
-           Observe(*i.features, *i.raw, match.neighbor)});
-    }
-    for (const MiddleMatch& match : lines_jk) {
-      triplet.lines_jk.push_back(
-          {match.middle, Observe(middle, middle_raw, match.middle),
-           Observe(*k.features, *k.raw, match.neighbor)});
+    is_new.assign(matched.edges.size(), true);
+    for (std::size_t n = 0; n < lines_jk.size(); ++n) {
+      const int index = matched.edge_of_jk[n];
+      if (!is_new[index]) continue;
+      is_new[index] = false;
+      const MatchedPieces& edge = matched.edges[index];
+      triplet.lines_jk.push_back({lines_jk[n].middle,
+                                  Observe(middle, middle_raw, edge.in_j),
+                                  Observe(*k.features, *k.raw, edge.in_k)});
     }
     triplet.coplanar =
         FindCoplanarCandidates(triplet.geometry, triplet.lines_ij,

@@ -37,9 +37,10 @@ using NormalizedFeaturesByView = std::map<ViewId, NormalizedFeatures>;
 NormalizedFeaturesByView NormalizeAllFeatures(const Scene& scene);
 
 /// Reads a triplet out of the scene: the inlier matches of its two relative
-/// poses, chained through the feature index in the middle view (every
-/// combination, where a feature is matched more than once), and the coplanar
-/// candidates. Only the kinds that `options` enables are filled.
+/// poses, chained through the feature index in the middle view (points: every
+/// combination, where one is matched more than once; lines: the pieces of a
+/// broken segment joined, see GroupMatches), and the coplanar candidates. Only
+/// the kinds that `options` enables are filled.
 ///
 /// Errors: kInvalidArgument if one of the two relative poses, or the middle
 /// view's intrinsic, is missing; kInvalidScene if a match refers to a feature

@@ -1,0 +1,127 @@
+#include "lowlap/scale/broken_lines.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <utility>
+
+namespace lowlap {
+namespace {
+
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t size) : parent_(size) {
+    std::iota(parent_.begin(), parent_.end(), 0);
+  }
+  std::size_t Find(std::size_t n) {
+    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
+    return n;
+  }
+  void Join(std::size_t a, std::size_t b) { parent_[Find(a)] = Find(b); }
+
+ private:
+  std::vector<std::size_t> parent_;
+};
+
+// Joins the matches that have a segment in common.
+template <class SegmentOf>
+void JoinMatches(const std::vector<MiddleMatch>& matches, std::size_t offset,
+                 const SegmentOf& segment_of,
+                 std::map<FeatureIndex, std::size_t>* match_of,
+                 DisjointSets* sets) {
+  for (std::size_t n = 0; n < matches.size(); ++n) {
+    const auto [other, is_new] =
+        match_of->emplace(segment_of(matches[n]), offset + n);
+    if (!is_new) sets->Join(offset + n, other->second);
+  }
+}
+
+void SortUnique(std::vector<FeatureIndex>* indices) {
+  std::sort(indices->begin(), indices->end());
+  indices->erase(std::unique(indices->begin(), indices->end()), indices->end());
+}
+
+Vec2 Run(const NormalizedSegment& segment) {
+  return (segment.end - segment.start).head<2>();
+}
+
+}  // namespace
+
+MatchedEdges GroupMatches(const std::vector<MiddleMatch>& ij,
+                          const std::vector<MiddleMatch>& jk) {
+  const auto middle = [](const MiddleMatch& match) { return match.middle; };
+  const auto neighbor = [](const MiddleMatch& match) { return match.neighbor; };
+  DisjointSets sets(ij.size() + jk.size());
+  std::map<FeatureIndex, std::size_t> of_i, of_j, of_k;
+  JoinMatches(ij, 0, neighbor, &of_i, &sets);
+  JoinMatches(ij, 0, middle, &of_j, &sets);
+  JoinMatches(jk, ij.size(), middle, &of_j, &sets);
+  JoinMatches(jk, ij.size(), neighbor, &of_k, &sets);
+
+  MatchedEdges matched;
+  std::map<std::size_t, int> edge_of_set;
+  const auto edge_of = [&](std::size_t match) {
+    const auto [edge, is_new] = edge_of_set.emplace(
+        sets.Find(match), static_cast<int>(matched.edges.size()));
+    if (is_new) matched.edges.emplace_back();
+    return edge->second;
+  };
+  for (std::size_t n = 0; n < ij.size(); ++n) {
+    matched.edge_of_ij.push_back(edge_of(n));
+    MatchedPieces& edge = matched.edges[matched.edge_of_ij.back()];
+    edge.in_i.push_back(ij[n].neighbor);
+    edge.in_j.push_back(ij[n].middle);
+  }
+  for (std::size_t n = 0; n < jk.size(); ++n) {
+    matched.edge_of_jk.push_back(edge_of(ij.size() + n));
+    MatchedPieces& edge = matched.edges[matched.edge_of_jk.back()];
+    edge.in_j.push_back(jk[n].middle);
+    edge.in_k.push_back(jk[n].neighbor);
+  }
+  for (MatchedPieces& edge : matched.edges) {
+    SortUnique(&edge.in_i);
+    SortUnique(&edge.in_j);
+    SortUnique(&edge.in_k);
+  }
+  return matched;
+}
+
+ObservedSegment JoinPieces(const std::vector<ObservedSegment>& pieces,
+                           double max_distance) {
+  const ObservedSegment& longest = *std::max_element(
+      pieces.begin(), pieces.end(),
+      [](const ObservedSegment& a, const ObservedSegment& b) {
+        return Run(a.segment).squaredNorm() < Run(b.segment).squaredNorm();
+      });
+  if (pieces.size() == 1) return longest;
+  const Vec2 along = Run(longest.segment);
+  ObservedSegment joined = longest;
+  for (const ObservedSegment& piece : pieces) {
+    if (!piece.segment.IsValid()) return longest;
+    for (const Vec3& end : {piece.segment.start, piece.segment.end}) {
+      if (along.dot((end - joined.segment.start).head<2>()) < 0) {
+        joined.segment.start = end;
+      }
+      if (along.dot((end - joined.segment.end).head<2>()) > 0) {
+        joined.segment.end = end;
+      }
+    }
+    joined.stddev_px = std::max(joined.stddev_px, piece.stddev_px);
+  }
+  const Vec3 normal = joined.segment.start.cross(joined.segment.end);
+  if (!(normal.squaredNorm() > 0)) return longest;
+  joined.segment.normal = normal.normalized();
+  // Distance from the line in the image plane z = 1.
+  const double in_plane = joined.segment.normal.head<2>().norm();
+  for (const ObservedSegment& piece : pieces) {
+    for (const Vec3& end : {piece.segment.start, piece.segment.end}) {
+      if (std::abs(joined.segment.normal.dot(end)) > max_distance * in_plane) {
+        return longest;
+      }
+    }
+  }
+  return joined;
+}
+
+}  // namespace lowlap
