@@ -3,8 +3,7 @@
 // memory, validation included. "times_faster" in the last line is the ratio.
 #include <benchmark/benchmark.h>
 
-#include <ctime>
-
+#include "benchmarks/processor_time.h"
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/io/scene_json.h"
 #include "scene/example_scenes.h"
@@ -61,23 +60,16 @@ void WriteBinary(benchmark::State& state) {
 }
 BENCHMARK(WriteBinary)->Unit(benchmark::kMillisecond);
 
-// Processor time, which a busy machine does not change.
-template <class Work>
-double Seconds(const Work& work) {
-  const std::clock_t start = std::clock();
-  work();
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-}
-
 // One after the other, so that both see the same machine.
 void ReadBinaryAgainstJson(benchmark::State& state) {
   Text();
   Bytes();
   double json = 0, binary = 0;
   for (auto _ : state) {
-    json += Seconds([] { benchmark::DoNotOptimize(ParseSceneJson(Text())); });
-    binary +=
-        Seconds([] { benchmark::DoNotOptimize(ParseSceneBinary(Bytes())); });
+    json += testing::ProcessorSeconds(
+        [] { benchmark::DoNotOptimize(ParseSceneJson(Text())); });
+    binary += testing::ProcessorSeconds(
+        [] { benchmark::DoNotOptimize(ParseSceneBinary(Bytes())); });
   }
   state.counters["times_faster"] = json / binary;
 }
