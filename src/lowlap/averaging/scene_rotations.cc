@@ -17,13 +17,6 @@ constexpr double kDefaultRotationRad = 5e-3;
 // The median of the norm of a 3-vector of normal errors, in deviations.
 constexpr double kMedianOfNorm = 1.54;
 
-double RotationStddev(const RelativePose& pose) {
-  if (!pose.covariance) return kDefaultRotationRad;
-  const double variance = pose.covariance->topLeftCorner<3, 3>().trace() / 3;
-  return std::sqrt(std::max(variance, 0.0) +
-                   kRotationFloorRad * kRotationFloorRad);
-}
-
 double Evidence(const RelativePose& pose) {
   return std::max(0.0, -pose.log10_nfa);
 }
@@ -274,6 +267,13 @@ class SceneRotationSolver {
 };
 
 }  // namespace
+
+double RotationStddev(const RelativePose& pose) {
+  if (!pose.covariance) return kDefaultRotationRad;
+  const double variance = pose.covariance->topLeftCorner<3, 3>().trace() / 3;
+  return std::sqrt(std::max(variance, 0.0) +
+                   kRotationFloorRad * kRotationFloorRad);
+}
 
 const char* OutlierReasonName(OutlierReason reason) {
   switch (reason) {

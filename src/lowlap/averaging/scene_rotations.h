@@ -61,6 +61,10 @@ struct SceneRotations {
   double median_residual_rad = 0;
 };
 
+/// Standard deviation of the rotation about each axis, in radians: as stated,
+/// with a floor that covers what covariances leave out; a default if unknown.
+double RotationStddev(const RelativePose& pose);
+
 /// Rotations from the relative poses of a scene (AverageRotations), and which
 /// of these to believe.
 ///

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lowlap/averaging/scene_poses.h"
+#include "lowlap/core/ids.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// What told the motions of a pair apart, whose matches allow several
+/// (RelativePose::alternatives).
+enum class MotionGrounds {
+  kNone,      // nothing did
+  kCycles,    // the rotations of the cycles through the pair
+  kTriplets,  // the scale ratios of the triplets through the pair
+};
+
+/// "none", "cycles", "triplets".
+const char* MotionGroundsName(MotionGrounds grounds);
+
+/// Which motion of a pair was taken, and why.
+struct MotionDecision {
+  ViewPair views;
+  MotionGrounds grounds = MotionGrounds::kNone;
+  /// Not the motion that the pair came with.
+  bool replaced = false;
+  /// By how much the best motion is ahead of the next: robust cost of the
+  /// rotations (see DecideMotionsByCycles), or log10 NFA of the ratios.
+  double margin = 0;
+};
+
+/// 1 + the number of alternatives.
+std::size_t NumMotions(const RelativePose& pose);
+
+/// The pose with its n-th motion and no alternatives; 0 is its own.
+RelativePose WithMotion(const RelativePose& pose, std::size_t n);
+
+/// Takes the motion of the least cost, and drops all others, if these cost more
+/// by `margin` at least. `costs` has NumMotions entries. Otherwise the pose
+/// stays as it is, and the grounds of the decision are kNone.
+MotionDecision ChooseMotion(const std::vector<double>& costs, double margin,
+                            MotionGrounds grounds, RelativePose* pose);
+
+/// Decides between the motions of pairs by the rotations of the scene's cycles.
+///
+/// Every choice of motions is averaged (AverageRotations) and costs
+///   sum_e log(1 + r_e^2 / (3 sigma_e^2)),
+/// over the residuals r_e of all relative rotations. sigma_e is the stated
+/// deviation per axis, but least_false_deg / outlier_reach at least. A motion
+/// is taken if every choice without it costs more by log(1 + outlier_reach^2)
+/// at least: as much as a relative pose costs that is just an outlier. Where no
+/// cycle passes, or the rotations are alike or equally far from closing any,
+/// costs are alike too, and nothing is decided.
+///
+/// Few undecided pairs are judged all together. Where they are many, each is
+/// judged on its own, while the others take part with all their motions, until
+/// that decides no more. The result does not depend on the number of threads.
+/// Returns what was decided.
+///
+/// Errors: those of AverageRotations; kCancelled.
+Result<std::vector<MotionDecision>> DecideMotionsByCycles(
+    Scene* scene, const PoseOptions& options, const RunContext& context);
+
+}  // namespace lowlap
