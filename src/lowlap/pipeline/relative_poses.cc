@@ -5,8 +5,10 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/motion_choice.h"
 #include "lowlap/core/parallel.h"
 #include "lowlap/scene/normalized_features.h"
+#include "lowlap/two_view/pose_search.h"
 
 namespace lowlap {
 namespace {
@@ -105,6 +107,31 @@ void AddMatches(const std::vector<FeatureMatch>& extra,
   std::sort(matches->begin(), matches->end());
 }
 
+AlternativeMotion MotionOf(const RelativePose& pose) {
+  return {pose.rotation, pose.direction, pose.log10_nfa, pose.covariance};
+}
+
+// The pose and its alternatives refined on the matches of `input`, less the
+// alternatives that they make the same motion.
+RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
+                     const TwoViewOptions& options) {
+  RelativePose improved = ImproveRelativePose(input, pose, options);
+  std::vector<RelativePose> motions = {improved};
+  improved.alternatives.clear();
+  for (std::size_t n = 1; n < NumMotions(pose); ++n) {
+    const RelativePose other =
+        ImproveRelativePose(input, WithMotion(pose, n), options);
+    const bool is_new = std::none_of(
+        motions.begin(), motions.end(), [&](const RelativePose& known) {
+          return SameMotion(known.Cam2FromCam1(), other.Cam2FromCam1());
+        });
+    if (!is_new) continue;
+    motions.push_back(other);
+    improved.alternatives.push_back(MotionOf(other));
+  }
+  return improved;
+}
+
 // Matches again under the pose, and refines it on what that finds.
 void UseGuidedMatches(const ViewMeasurements& first,
                       const ViewMeasurements& second,
@@ -128,7 +155,7 @@ void UseGuidedMatches(const ViewMeasurements& first,
                        first.features, second.features, pose->Cam2FromCam1(),
                        *line_matches, options.guided_lines);
   if (options.use_lines) input->line_matches = *line_matches;
-  *pose = ImproveRelativePose(*input, *pose, options.two_view);
+  *pose = Improve(*input, *pose, options.two_view);
 }
 
 PairOutcome SolvePair(const ViewPair& views, const ViewMeasurements& first,
@@ -150,6 +177,9 @@ PairOutcome SolvePair(const ViewPair& views, const ViewMeasurements& first,
     return outcome;
   }
   RelativePose& pose = result->pose;
+  for (const RelativePose& other : result->alternatives) {
+    pose.alternatives.push_back(MotionOf(other));
+  }
   report.geometry = TwoViewGeometryName(result->geometry);
   report.log10_nfa = pose.log10_nfa;
   if (!result->HasDirection()) {
@@ -249,7 +279,7 @@ Status RefineRelativePoses(Scene* scene,
         if (options.use_points) input.point_matches = pose.point_inliers;
         if (options.use_lines) input.line_matches = pose.line_inliers;
         const std::vector<FeatureMatch> lines = pose.line_inliers;
-        pose = ImproveRelativePose(input, pose, options.two_view);
+        pose = Improve(input, pose, options.two_view);
         pose.line_inliers =
             FilterLineMatches(lines, *input.features1, *input.features2,
                               pose.Cam2FromCam1(), options.line_filter);

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/pipeline/decide_motions.h"
 #include "lowlap/scale/scale_ratios.h"
 
 namespace lowlap {
@@ -92,6 +93,9 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
   SceneRotations rotations;
   {
     const StageLog::Scope scope(stages, "rotations");
+    auto motions = DecideMotions(scene, options.scale, options.poses, context);
+    if (!motions) return tl::unexpected<Error>(motions.error());
+    result.motions = std::move(*motions);
     auto averaged = AverageSceneRotations(*scene, options.poses, context);
     if (!averaged) return tl::unexpected<Error>(averaged.error());
     rotations = std::move(*averaged);

@@ -2,6 +2,7 @@
 
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/structure_builder.h"
+#include "lowlap/averaging/motion_choice.h"
 #include "lowlap/averaging/scene_poses.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
@@ -33,6 +34,8 @@ struct RatioSummary {
 RatioSummary SummarizeRatios(const std::vector<ScaleRatio>& ratios);
 
 struct SolveResult {
+  /// One for every relative pose that came with alternatives, by views.
+  std::vector<MotionDecision> motions;
   RatioSummary ratios;
   PoseSummary poses;
   StructureSummary structure;
@@ -41,10 +44,11 @@ struct SolveResult {
   std::map<PoseId, Pose> poses_before_adjustment;
 };
 
-/// From measurements to a calibrated scene: rotations and the choice of
-/// relative poses, ratios of the triplets of those believed, absolute poses,
-/// structure, bundle adjustment. Reads intrinsics, features, relative
-/// poses and tracks; replaces scale ratios, poses and structure. Errors leave
+/// From measurements to a calibrated scene: choice between alternative motions
+/// (DecideMotions), rotations and the choice of relative poses, ratios of the
+/// triplets of those believed, absolute poses, structure, bundle adjustment.
+/// Reads intrinsics, features, relative poses and tracks; settles alternatives
+/// and replaces scale ratios, poses and structure. Errors leave
 /// the scene in an intermediate state: keep a copy if you need it.
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
                                const RunContext& context, StageLog* stages);

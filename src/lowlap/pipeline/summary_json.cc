@@ -91,8 +91,40 @@ void AddDoubts(const PoseSummary& summary, Json* poses) {
   (*poses)["weak_ratios"] = std::move(weak);
 }
 
+// Pairs whose matches allow several motions.
+Json MotionsJson(const std::vector<MotionDecision>& motions) {
+  int num_by_cycles = 0, num_by_triplets = 0, num_undecided = 0;
+  Json decisions = Json::array();
+  for (const MotionDecision& decision : motions) {
+    switch (decision.grounds) {
+      case MotionGrounds::kCycles:
+        ++num_by_cycles;
+        break;
+      case MotionGrounds::kTriplets:
+        ++num_by_triplets;
+        break;
+      case MotionGrounds::kNone:
+        ++num_undecided;
+        break;
+    }
+    Json entry = {{"views", PairJson(decision.views)},
+                  {"decided_by", MotionGroundsName(decision.grounds)},
+                  {"replaced", decision.replaced}};
+    if (decision.grounds != MotionGrounds::kNone) {
+      entry["margin"] = decision.margin;
+    }
+    decisions.push_back(std::move(entry));
+  }
+  return {{"pairs", motions.size()},
+          {"decided_by_cycles", num_by_cycles},
+          {"decided_by_triplets", num_by_triplets},
+          {"undecided", num_undecided},
+          {"decisions", std::move(decisions)}};
+}
+
 Json SolveJson(const SolveResult& solve) {
   Json json;
+  json["ambiguous_motions"] = MotionsJson(solve.motions);
   json["ratios"] = {{"triplets", solve.ratios.num_triplets},
                     {"meaningful", solve.ratios.num_meaningful},
                     {"not_meaningful", solve.ratios.num_not_meaningful},
