@@ -52,13 +52,13 @@ TEST(JoinPieces, SpansThePiecesInTheirDirection) {
   const Vec3 a(0.3, -0.2, 1), b(-0.4, 0.5, 1);
   const auto at = [&](double share) -> Vec3 { return a + share * (b - a); };
   const ObservedSegment joined =
-      JoinPieces({Piece(at(0.5), at(0.6)), Piece(at(0.7), at(1), 0.4),
+      JoinPieces({Piece(at(0.5), at(0.6)), Piece(at(0.7), at(1), 0.24),
                   Piece(at(0), at(0.4), 0.1)},
                  1e-9);
   EXPECT_EQ(joined.segment.start, at(0));
   EXPECT_EQ(joined.segment.end, at(1));
   EXPECT_LT((joined.segment.normal - MakeSegment(a, b).normal).norm(), 1e-12);
-  EXPECT_EQ(joined.stddev_px, 0.4);
+  EXPECT_EQ(joined.stddev_px, 0.24);
 }
 
 TEST(JoinPieces, PiecesThatAreNotCollinearLeaveTheLongest) {
@@ -69,6 +69,16 @@ TEST(JoinPieces, PiecesThatAreNotCollinearLeaveTheLongest) {
   EXPECT_EQ(JoinPieces(bent, 0.1).segment.end, Vec3(0.8, 0.02, 1));
   EXPECT_EQ(JoinPieces({longest, {NormalizedSegment{}, 0.5}}, 1).segment.end,
             longest.segment.end);
+}
+
+TEST(JoinPieces, AShortUnsurePieceDoesNotTurnALongOne) {
+  const ObservedSegment longest = Piece({0, 0, 1}, {0.5, 0, 1}, 0.1);
+  const auto with = [&](double stddev_px) {
+    return JoinPieces(
+        {longest, Piece({0.6, 0.001, 1}, {0.61, 0.001, 1}, stddev_px)}, 0.01);
+  };
+  EXPECT_EQ(with(0.12).segment.end.x(), 0.61);
+  EXPECT_EQ(with(0.13).segment.end.x(), 0.5);
 }
 
 // Three views before two walls that carry lines; all lines are in every view.

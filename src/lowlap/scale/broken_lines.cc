@@ -109,9 +109,12 @@ ObservedSegment JoinPieces(const std::vector<ObservedSegment>& pieces,
     }
     joined.stddev_px = std::max(joined.stddev_px, piece.stddev_px);
   }
-  const Vec3 normal = joined.segment.start.cross(joined.segment.end);
-  if (!(normal.squaredNorm() > 0)) return longest;
-  joined.segment.normal = normal.normalized();
+  if (joined.stddev_px * along.norm() >
+      longest.stddev_px * Run(joined.segment).norm()) {
+    return longest;
+  }
+  joined.segment.normal =
+      joined.segment.start.cross(joined.segment.end).normalized();
   // Distance from the line in the image plane z = 1.
   const double in_plane = joined.segment.normal.head<2>().norm();
   for (const ObservedSegment& piece : pieces) {

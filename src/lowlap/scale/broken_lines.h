@@ -36,8 +36,9 @@ MatchedEdges GroupMatches(const std::vector<MiddleMatch>& ij,
 
 /// One segment for the pieces of one view, which must not be empty: from the
 /// first to the last end point along the longest piece, with the largest
-/// standard deviation. If an end point is farther than `max_distance`
-/// (normalised) from that line, a match was wrong: the longest piece itself.
+/// standard deviation; the longest piece itself if it has the surer direction
+/// (standard deviation over length), or if an end point is farther than
+/// `max_distance` (normalised) from the line, which means a wrong match.
 ObservedSegment JoinPieces(const std::vector<ObservedSegment>& pieces,
                            double max_distance);
 
