@@ -222,5 +222,22 @@ TEST(EstimateRelativePoses, KeepsBothMotionsOfAPlane) {
             RadFromDeg(0.5));
 }
 
+TEST(RefineRelativePoses, AnAlternativeIsNotTurnedIntoThePose) {
+  std::map<ViewPair, PairMatches> matches;
+  Scene scene = AmbiguousPair(&matches);
+  ASSERT_TRUE(EstimateRelativePoses(&scene, matches, nullptr,
+                                    RelativePoseOptions(), {}));
+  RelativePose& pose = scene.relative_poses.at({0, 1});
+  // One that refining would make the pose's own motion, and that motion.
+  AlternativeMotion near = pose.alternatives[0], same = near;
+  near.rotation =
+      RotationFromAngleAxis(Vec3(0, RadFromDeg(1), 0)) * pose.rotation;
+  near.direction = same.direction = pose.direction;
+  same.rotation = pose.rotation;
+  pose.alternatives = {near, same};
+  ASSERT_TRUE(RefineRelativePoses(&scene, {}, RelativePoseOptions(), {}));
+  EXPECT_EQ(pose.alternatives, std::vector<AlternativeMotion>{near});
+}
+
 }  // namespace
 }  // namespace lowlap

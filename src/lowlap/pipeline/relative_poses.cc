@@ -111,24 +111,26 @@ AlternativeMotion MotionOf(const RelativePose& pose) {
   return {pose.rotation, pose.direction, pose.log10_nfa, pose.covariance};
 }
 
-// The pose and its alternatives refined on the matches of `input`, less the
-// alternatives that they make the same motion.
+// The pose and its alternatives refined on the matches of `input`. These may
+// have been found with the pose, and draw an alternative over to it: that says
+// nothing, and the alternative stays as it was.
 RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
                      const TwoViewOptions& options) {
   RelativePose improved = ImproveRelativePose(input, pose, options);
-  std::vector<RelativePose> motions = {improved};
-  improved.alternatives.clear();
+  const auto differs = [&](const RelativePose& other) {
+    return !SameMotion(other.Cam2FromCam1(), improved.Cam2FromCam1());
+  };
+  std::vector<AlternativeMotion> alternatives;
   for (std::size_t n = 1; n < NumMotions(pose); ++n) {
-    const RelativePose other =
-        ImproveRelativePose(input, WithMotion(pose, n), options);
-    const bool is_new = std::none_of(
-        motions.begin(), motions.end(), [&](const RelativePose& known) {
-          return SameMotion(known.Cam2FromCam1(), other.Cam2FromCam1());
-        });
-    if (!is_new) continue;
-    motions.push_back(other);
-    improved.alternatives.push_back(MotionOf(other));
+    const RelativePose before = WithMotion(pose, n);
+    const RelativePose after = ImproveRelativePose(input, before, options);
+    if (differs(after)) {
+      alternatives.push_back(MotionOf(after));
+    } else if (differs(before)) {
+      alternatives.push_back(MotionOf(before));
+    }
   }
+  improved.alternatives = std::move(alternatives);
   return improved;
 }
 

@@ -50,7 +50,8 @@ struct PairReport {
 /// matches of the scene's features: a-contrario relative pose per pair from
 /// points and lines, then the line matches that are plausible under it, then
 /// tracks. Pairs that fail, or whose direction is undetermined (pure rotation),
-/// get no relative pose; the report says why.
+/// get no relative pose; the report says why. Where two motions explain what
+/// the pair sees, the pose keeps the other one as an alternative.
 ///
 /// With `detected`, what the detectors know of the same features (same order),
 /// the shapes of the points' errors count, lines and, for starved pairs, points
