@@ -30,11 +30,13 @@ def main(schema_path, writer):
     def own(section):
         return lambda s: s["lowlap"][section][0]
 
-    # Every member of a record of ours is required, but for "covariance".
+    # Every member of a record of ours is required, but for the optional ones.
     records = [(own(name), key)
                for name in ("features", "relative_poses", "point_tracks",
                             "line_tracks", "scale_ratios", "line_structure")
-               for key in own(name)(scene) if key != "covariance"]
+               for key in own(name)(scene)
+               if key not in ("covariance", "point_covariances",
+                              "alternatives")]
     records += [(data("views", 0), key) for key in data("views", 0)(scene)]
     records += [(data("intrinsics", 0), key)
                 for key in data("intrinsics", 0)(scene)]

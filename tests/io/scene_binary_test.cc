@@ -67,7 +67,7 @@ TEST(Crc32, AgreesWithThePublishedCheckValues) {
 TEST(SceneBinary, LayoutOfTheHeader) {
   const std::string bytes = FullSceneBytes();
   EXPECT_EQ(bytes.substr(0, 8), "\x89LOWLAP\n");
-  EXPECT_EQ(LittleEndian(bytes, 8, 4), 1u);
+  EXPECT_EQ(LittleEndian(bytes, 8, 4), 2u);
   EXPECT_EQ(LittleEndian(bytes, 12, 4), 13u);
   EXPECT_EQ(bytes.substr(16, 4), "ROOT");
   const std::string root = Payload(bytes, "ROOT");
@@ -149,10 +149,10 @@ TEST(SceneBinary, ForeignAndNewerFiles) {
               IsError(ErrorCode::kParse, "not a .lowlap file"));
   EXPECT_THAT(ParseSceneBinary(bytes + "x"),
               IsError(ErrorCode::kParse, "follows the last section"));
-  bytes[8] = 2;
+  bytes[8] = 3;
   EXPECT_THAT(ParseSceneBinary(bytes, "new.lowlap"),
               IsError(ErrorCode::kUnsupported,
-                      "new.lowlap: byte 8: version 2 is not 1"));
+                      "new.lowlap: byte 8: version 3 is not 2"));
 }
 
 TEST(SceneBinary, DamageIsLocated) {

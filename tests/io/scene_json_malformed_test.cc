@@ -169,8 +169,8 @@ INSTANTIATE_TEST_SUITE_P(
              "\"lowlap\": {}, \"root_path\"", ErrorCode::kParse, "$.lowlap",
              "\"version\" is missing"},
         Case{"OwnVersionUnknown", "\"root_path\"",
-             "\"lowlap\": {\"version\": 2}, \"root_path\"",
-             ErrorCode::kUnsupported, "$.lowlap.version", "version 2"}),
+             "\"lowlap\": {\"version\": 3}, \"root_path\"",
+             ErrorCode::kUnsupported, "$.lowlap.version", "version 3"}),
     kCaseName);
 
 // lowlap's part, damaged in the full scene.
@@ -201,6 +201,9 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"PointIsAString", "{\"view\": 1, \"points\": [",
              "{\"view\": 1, \"points\": [1, \"2\", ", ErrorCode::kParse,
              "$.lowlap.features[view=1].points[1]", "must be a number"},
+        Case{"ShapeTooShort", "\"point_covariances\": [",
+             "\"point_covariances\": [1.0, ", ErrorCode::kParse,
+             "$.lowlap.features[view=4].point_covariances", "a multiple of 3"},
         Case{"SegmentTooLong", "\"segments\": [", "\"segments\": [1.0, ",
              ErrorCode::kParse, "$.lowlap.features[view=1].segments",
              "a multiple of 5"},
@@ -220,6 +223,10 @@ INSTANTIATE_TEST_SUITE_P(
              "\"covariance\": [[0, 0, 0, 0], ", ErrorCode::kParse,
              "$.lowlap.relative_poses[views=1,4].covariance[0]",
              "must have 5 elements, not 4"},
+        Case{"AlternativeOfUnknownMember", "\"alternatives\": [{",
+             "\"alternatives\": [{\"score\": 1, ", ErrorCode::kParse,
+             "$.lowlap.relative_poses[views=1,4].alternatives[0].score",
+             "not known"},
         Case{"OddMatches", "\"point_inliers\": [", "\"point_inliers\": [0, ",
              ErrorCode::kParse,
              "$.lowlap.relative_poses[views=1,4].point_inliers",

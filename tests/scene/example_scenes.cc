@@ -74,6 +74,9 @@ Scene FullScene() {
           {{random.Uniform(0, 640), 5e-324}, {-0.1, 1e300}, 1.0 / 7});
     }
   }
+  for (int n = 0; n < 6; ++n) {
+    scene.features[4].point_covariances.emplace_back(1.0 + n, -1.0 / 3, 1);
+  }
   scene.features[10];  // looked at, and nothing found
 
   RelativePose edge;
@@ -86,9 +89,13 @@ Scene FullScene() {
   edge.point_threshold_px = 0.75;
   edge.covariance = 1e-5 * Eigen::Matrix<double, 5, 5>::Identity();
   (*edge.covariance)(0, 3) = (*edge.covariance)(3, 0) = 1e-7 / 3;
+  edge.alternatives.push_back(
+      {edge.rotation.transpose(), -edge.direction, -1.0 / 3, edge.covariance});
+  edge.alternatives.push_back({Mat3::Identity(), Vec3::UnitZ(), -2, {}});
   scene.relative_poses[edge.views] = edge;
   edge.views = {4, 7};
   edge.covariance.reset();
+  edge.alternatives.clear();
   edge.line_inliers.clear();
   scene.relative_poses[edge.views] = edge;
 

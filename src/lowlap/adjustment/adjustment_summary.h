@@ -45,6 +45,10 @@ struct AdjustmentSummary {
   KindAdjustment lines;
   KindAdjustment coplanar;
 
+  /// How far the errors of points follow their shapes (0: they are round). The
+  /// errors of points are whitened with it, here and in `points`.
+  double point_shape_exponent = 0;
+
   std::size_t poses_adjusted = 0;
   /// Left where they were: nothing that is in use observes them.
   std::vector<PoseId> poses_without_observations;

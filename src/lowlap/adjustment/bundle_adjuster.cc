@@ -196,7 +196,7 @@ class Adjuster {
   Status Run() {
     // Before the observations are settled, a rough optimum will do.
     const double rough = std::max(options_.function_tolerance, kRoughTolerance);
-    noise_ = EstimateAllNoise(*cameras_, *state_, options_);
+    EstimateNoise();
     if (options_.use_lines && options_.use_coplanar) {
       SelectPairs(options_, *cameras_, noise_.coplanar.threshold_px, true,
                   state_);
@@ -265,6 +265,14 @@ class Adjuster {
     return {};
   }
 
+  // The shapes first: they say in which units the errors of points are.
+  void EstimateNoise() {
+    summary_->point_shape_exponent =
+        EstimateShapeExponent(*cameras_, state_->points);
+    WhitenPoints(summary_->point_shape_exponent, &state_->points);
+    noise_ = EstimateAllNoise(*cameras_, *state_, options_);
+  }
+
   // The share of the observations whose use changed.
   Result<double> Update(bool take_new_pairs) {
     if (!options_.refine_intrinsics.empty()) RefreshRays();
@@ -273,7 +281,7 @@ class Adjuster {
         !status) {
       return tl::unexpected<Error>(status.error());
     }
-    noise_ = EstimateAllNoise(*cameras_, *state_, options_);
+    EstimateNoise();
     const Result<internal::ObservationChanges> changes = UpdateObservations(
         options_, noise_, take_new_pairs, context_, *cameras_, state_);
     if (!changes) return tl::unexpected<Error>(changes.error());
@@ -308,38 +316,6 @@ class Adjuster {
 };
 
 }  // namespace
-
-Status AdjustmentOptions::Validate() const {
-  const auto invalid = [](const std::string& message) {
-    return MakeError(ErrorCode::kInvalidArgument, message);
-  };
-  if (!use_points && !use_lines) {
-    return invalid("points or lines must be used in the adjustment");
-  }
-  if (max_iterations < 1) return invalid("max_iterations must be positive");
-  if (max_pairs_per_line < 1) {
-    return invalid("max_pairs_per_line must be positive");
-  }
-  if (max_outlier_rounds < 0) {
-    return invalid("max_outlier_rounds must not be negative");
-  }
-  for (const auto& [value, name] :
-       {std::pair(outlier_round_tolerance, "outlier_round_tolerance"),
-        std::pair(max_relative_depth_stddev, "max_relative_depth_stddev"),
-        std::pair(max_relative_line_depth_stddev,
-                  "max_relative_line_depth_stddev"),
-        std::pair(min_two_view_line_overlap, "min_two_view_line_overlap"),
-        std::pair(function_tolerance, "function_tolerance")}) {
-    if (!(value >= 0) || !std::isfinite(value)) {
-      return invalid(std::string(name) + " must be finite and not negative");
-    }
-  }
-  if (!(min_threshold_px > 0) || !std::isfinite(max_threshold_px) ||
-      !(max_threshold_px > min_threshold_px)) {
-    return invalid("need 0 < min_threshold_px < max_threshold_px");
-  }
-  return {};
-}
 
 Result<AdjustmentSummary> AdjustScene(Scene* scene,
                                       const AdjustmentOptions& options,

@@ -12,7 +12,8 @@ namespace lowlap {
 /// request, intrinsics; scene->coplanar_pairs hold lines together.
 ///
 /// Minimises  sum over kinds  1/s^2  sum rho(|r|^2),  with the residuals (px)
-///   point    projection of X - observed pixel                             (2)
+///   point    W (projection of X - observed pixel), W the whitening        (2)
+///            of the shape of its error (see EstimateShapeExponent)
 ///   line     distances of a segment's end points to the projected line    (2)
 ///   pair     see AdjustedCoplanarResidual; a pair counts as one residual, and
 ///            less the more pairs its lines are in: n lines of one plane do not

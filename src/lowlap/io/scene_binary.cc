@@ -20,7 +20,7 @@ using internal::ByteWriter;
 // Like PNG's, the first byte is not text and the last ones show a file that was
 // sent as text.
 constexpr std::string_view kMagic("\x89LOWLAP\n", 8);
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 // In the order of the file; all are always there.
 constexpr std::array<std::string_view, 13> kSections = {

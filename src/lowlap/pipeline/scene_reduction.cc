@@ -17,15 +17,21 @@ class Renumbering {
     if (old_index < new_index_.size()) new_index_[old_index] = 0;
   }
 
-  template <class T>
-  void Compact(std::vector<T>* features) {
+  /// Gives the kept features their new indices.
+  void Number() {
     FeatureIndex next = 0;
-    for (std::size_t n = 0; n < new_index_.size(); ++n) {
-      if (new_index_[n] == kInvalidId) continue;
-      (*features)[next] = (*features)[n];
-      new_index_[n] = next++;
+    for (FeatureIndex& index : new_index_) {
+      if (index != kInvalidId) index = next++;
     }
-    features->resize(next);
+  }
+
+  template <class T>
+  void Compact(std::vector<T>* features) const {
+    std::size_t kept = 0;
+    for (std::size_t n = 0; n < features->size(); ++n) {
+      if (new_index_[n] != kInvalidId) (*features)[kept++] = (*features)[n];
+    }
+    features->resize(kept);
   }
 
   void Apply(FeatureIndex* index) const {
@@ -90,7 +96,10 @@ void KeepMatchedFeatures(Scene* scene) {
     if (segments.count(view) > 0) segments.at(view).Keep(*index);
   });
   for (auto& [view, features] : scene->features) {
+    points.at(view).Number();
+    segments.at(view).Number();
     points.at(view).Compact(&features.points_px);
+    points.at(view).Compact(&features.point_covariances);
     segments.at(view).Compact(&features.segments);
   }
   VisitPointRefs(scene, [&](ViewId view, FeatureIndex* index) {

@@ -158,6 +158,7 @@ Json SolveJson(const SolveResult& solve) {
         {"final_cost", a.final_cost},
         {"iterations", a.iterations},
         {"outlier_rounds", a.outlier_rounds},
+        {"point_shape_exponent", a.point_shape_exponent},
         {"converged", a.converged},
         {"poses_adjusted", a.poses_adjusted},
         {"poses_without_observations", a.poses_without_observations},

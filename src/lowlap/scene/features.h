@@ -25,10 +25,15 @@ struct LineSegment {
 /// that come from OpenMVG, the point index is the line of the .feat file.
 struct ViewFeatures {
   std::vector<Vec2> points_px;  // raw (distorted) pixels
+  /// Shape of each point's error: its covariance (xx, xy, yy), in units of the
+  /// variance in its better direction. Empty: round.
+  std::vector<Vec3> point_covariances;
   std::vector<LineSegment> segments;
 
   friend bool operator==(const ViewFeatures& a, const ViewFeatures& b) {
-    return a.points_px == b.points_px && a.segments == b.segments;
+    return a.points_px == b.points_px &&
+           a.point_covariances == b.point_covariances &&
+           a.segments == b.segments;
   }
 };
 

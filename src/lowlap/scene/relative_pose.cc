@@ -7,7 +7,7 @@ bool operator==(const RelativePose& a, const RelativePose& b) {
          a.direction == b.direction && a.point_inliers == b.point_inliers &&
          a.line_inliers == b.line_inliers && a.log10_nfa == b.log10_nfa &&
          a.point_threshold_px == b.point_threshold_px &&
-         a.covariance == b.covariance;
+         a.covariance == b.covariance && a.alternatives == b.alternatives;
 }
 
 RigidTransform UnitTransform(const RelativePose& edge, ViewId from, ViewId to) {

@@ -9,6 +9,21 @@
 
 namespace lowlap {
 
+/// Another motion that the matches of a pair allow: the second motion of a
+/// plane, until triplets and lines decide.
+struct AlternativeMotion {
+  Mat3 rotation = Mat3::Identity();
+  Vec3 direction = Vec3::UnitX();
+  double log10_nfa = 0;
+  std::optional<Eigen::Matrix<double, 5, 5>> covariance;
+
+  friend bool operator==(const AlternativeMotion& a,
+                         const AlternativeMotion& b) {
+    return a.rotation == b.rotation && a.direction == b.direction &&
+           a.log10_nfa == b.log10_nfa && a.covariance == b.covariance;
+  }
+};
+
 /// Rotation and unit direction of a pair of views (first < second):
 ///   x_second = rotation x_first + lambda direction,  lambda > 0 unknown.
 struct RelativePose {
@@ -23,6 +38,8 @@ struct RelativePose {
   /// Covariance of (rotation error in radians, in camera 2; direction error in
   /// the two axes of TangentBasis(direction)). Absent if unknown.
   std::optional<Eigen::Matrix<double, 5, 5>> covariance;
+  /// In the frames, and with the inliers, of the motion above.
+  std::vector<AlternativeMotion> alternatives;
 
   /// At unit baseline.
   RigidTransform Cam2FromCam1() const { return {rotation, direction}; }

@@ -16,6 +16,20 @@ Status ValidateViewFeatures(const ViewFeatures& features,
                      place + ".points" + IndexPlace(2 * n));
     }
   }
+  const std::vector<Vec3>& shapes = features.point_covariances;
+  if (!shapes.empty() && shapes.size() != features.points_px.size()) {
+    return Invalid("there must be one per point, or none",
+                   place + ".point_covariances");
+  }
+  for (std::size_t n = 0; n < shapes.size(); ++n) {
+    const Vec3& shape = shapes[n];
+    if (!shape.allFinite() || !(shape(0) > 0) || !(shape(2) > 0) ||
+        !(shape(0) * shape(2) > shape(1) * shape(1))) {
+      return Invalid("the covariance of point " + std::to_string(n) +
+                         " must be finite and positive definite",
+                     place + ".point_covariances" + IndexPlace(3 * n));
+    }
+  }
   for (std::size_t n = 0; n < features.segments.size(); ++n) {
     const LineSegment& segment = features.segments[n];
     const std::string segment_place = ".segments" + IndexPlace(5 * n);
@@ -51,6 +65,30 @@ Status ValidateMatches(const std::vector<FeatureMatch>& matches,
   return {};
 }
 
+// Of a relative pose, or of an alternative to it.
+template <class Motion>
+Status ValidateMotion(const Motion& motion, const std::string& place) {
+  if (!(RotationDefect(motion.rotation) <= kTolerance)) {
+    return Invalid("is not a rotation matrix", place + ".rotation");
+  }
+  if (!IsUnit(motion.direction)) {
+    return Invalid("is not a unit vector", place + ".direction");
+  }
+  if (!std::isfinite(motion.log10_nfa)) {
+    return Invalid("must be finite", place + ".log10_nfa");
+  }
+  if (!motion.covariance) return {};
+  const auto& covariance = *motion.covariance;
+  const double asymmetry =
+      (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
+  if (!covariance.allFinite() || covariance.diagonal().minCoeff() < 0 ||
+      !(asymmetry <= kTolerance * covariance.cwiseAbs().maxCoeff())) {
+    return Invalid("must be finite and symmetric, without a negative variance",
+                   place + ".covariance");
+  }
+  return {};
+}
+
 Status ValidateRelativePose(const ViewTable& views, const RelativePose& edge,
                             const std::string& place) {
   const ViewTable::Entry* first = views.Find(edge.views.first);
@@ -62,30 +100,18 @@ Status ValidateRelativePose(const ViewTable& views, const RelativePose& edge,
   if (!(edge.views.first < edge.views.second)) {
     return Invalid("the first view must have the smaller id", place + ".views");
   }
-  if (!(RotationDefect(edge.rotation) <= kTolerance)) {
-    return Invalid("is not a rotation matrix", place + ".rotation");
-  }
-  if (!IsUnit(edge.direction)) {
-    return Invalid("is not a unit vector", place + ".direction");
-  }
-  if (!std::isfinite(edge.log10_nfa)) {
-    return Invalid("must be finite", place + ".log10_nfa");
+  if (Status status = ValidateMotion(edge, place); !status) return status;
+  for (std::size_t n = 0; n < edge.alternatives.size(); ++n) {
+    if (Status status = ValidateMotion(edge.alternatives[n],
+                                       place + ".alternatives" + IndexPlace(n));
+        !status) {
+      return status;
+    }
   }
   if (!(edge.point_threshold_px >= 0) ||
       !std::isfinite(edge.point_threshold_px)) {
     return Invalid("must be finite and not negative",
                    place + ".point_threshold_px");
-  }
-  if (edge.covariance) {
-    const auto& covariance = *edge.covariance;
-    const double asymmetry =
-        (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
-    if (!covariance.allFinite() || covariance.diagonal().minCoeff() < 0 ||
-        !(asymmetry <= kTolerance * covariance.cwiseAbs().maxCoeff())) {
-      return Invalid(
-          "must be finite and symmetric, without a negative variance",
-          place + ".covariance");
-    }
   }
   if (Status status = ValidateMatches(edge.point_inliers, first->points,
                                       second->points, place + ".point_inliers");

@@ -12,7 +12,8 @@ namespace lowlap::internal {
 /// that means nothing; the loss then treats the observation as an outlier.
 inline constexpr double kBehindCameraErrorPx = 1e4;
 
-/// r = project(M(q) (X - C)) - observed, in raw pixels (2).
+/// r = W (project(M(q) (X - C)) - observed), in raw pixels (2), with W the
+/// whitening of the observation.
 ///
 /// Parameter blocks: rotation q (4), centre C (3), point X (3) and, if the
 /// intrinsic is refined, its parameters (4 + number of coefficients). Analytic
@@ -22,8 +23,11 @@ class PointReprojectionCost final : public ceres::CostFunction {
   /// `intrinsic` must outlive the cost; its parameters are used where the
   /// intrinsic is not a block.
   PointReprojectionCost(const IntrinsicState* intrinsic, bool refine_intrinsic,
-                        const Vec2& observed_px)
-      : intrinsic_(intrinsic), observed_px_(observed_px) {
+                        const Vec2& observed_px,
+                        const Mat2& whitening = Mat2::Identity())
+      : intrinsic_(intrinsic),
+        observed_px_(observed_px),
+        whitening_(whitening) {
     set_num_residuals(2);
     *mutable_parameter_block_sizes() = {4, 3, 3};
     if (refine_intrinsic) {
@@ -58,7 +62,9 @@ class PointReprojectionCost final : public ceres::CostFunction {
       }
       Vec2 difference_px = pixel_px - observed_px_;
       WrapPanorama(intrinsic_->value, &difference_px);
-      residual = difference_px;
+      residual = whitening_ * difference_px;
+      by_x_cam = (whitening_ * by_x_cam).eval();
+      by_intrinsic = (whitening_ * by_intrinsic).eval();
     }
     if (jacobians == nullptr) return true;
     if (jacobians[0] != nullptr) {
@@ -96,6 +102,7 @@ class PointReprojectionCost final : public ceres::CostFunction {
 
   const IntrinsicState* intrinsic_;
   Vec2 observed_px_;
+  Mat2 whitening_;
 };
 
 }  // namespace lowlap::internal

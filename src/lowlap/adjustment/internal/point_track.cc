@@ -20,38 +20,53 @@ struct Observation {
   const IntrinsicState* intrinsic = nullptr;
   int pose = -1;
   Vec2 pixel_px = Vec2::Zero();
+  Mat2 whitening = Mat2::Identity();
   Vec3 bearing = Vec3::Zero();  // unit, in the camera; zero if undefined
 };
+
+Observation MakeObservation(const CameraSet& cameras,
+                            const PointCandidate& candidate) {
+  Observation observation;
+  observation.cam_from_world = cameras.PoseOf(candidate.view).CamFromWorld();
+  observation.intrinsic = &cameras.IntrinsicOf(candidate.view);
+  observation.pose = cameras.views[candidate.view].pose;
+  observation.pixel_px = candidate.pixel_px;
+  observation.whitening = candidate.whitening;
+  return observation;
+}
 
 std::vector<Observation> MakeObservations(const CameraSet& cameras,
                                           const PointTrackState& track) {
   std::vector<Observation> observations;
   observations.reserve(track.candidates.size());
   for (const PointCandidate& candidate : track.candidates) {
-    Observation observation;
-    observation.cam_from_world = cameras.PoseOf(candidate.view).CamFromWorld();
-    observation.intrinsic = &cameras.IntrinsicOf(candidate.view);
-    observation.pose = cameras.views[candidate.view].pose;
-    observation.pixel_px = candidate.pixel_px;
-    observation.bearing =
-        observation.intrinsic->value.Bearing(candidate.pixel_px)
+    observations.push_back(MakeObservation(cameras, candidate));
+    observations.back().bearing =
+        observations.back()
+            .intrinsic->value.Bearing(candidate.pixel_px)
             .value_or(Vec3::Zero());
-    observations.push_back(observation);
   }
   return observations;
 }
 
-double ErrorPx(const Observation& observation, const Vec3& position) {
+std::optional<Vec2> DifferencePx(const Observation& observation,
+                                 const Vec3& position) {
   const Vec3 x_cam = observation.cam_from_world * position;
   const Intrinsic& intrinsic = observation.intrinsic->value;
-  if (!IsProjectable(intrinsic.model, x_cam)) return kInfinity;
+  if (!IsProjectable(intrinsic.model, x_cam)) return std::nullopt;
   Vec2 difference_px = intrinsic.Project(x_cam) - observation.pixel_px;
   WrapPanorama(intrinsic, &difference_px);
-  const double error = difference_px.norm();
-  return std::isfinite(error) ? error : kInfinity;
+  if (!difference_px.allFinite()) return std::nullopt;
+  return difference_px;
 }
 
-// Normal equations of the pixel errors; false if a point is not visible.
+double ErrorPx(const Observation& observation, const Vec3& position) {
+  const std::optional<Vec2> difference_px = DifferencePx(observation, position);
+  return difference_px ? (observation.whitening * *difference_px).norm()
+                       : kInfinity;
+}
+
+// Normal equations of the whitened errors; false if a point is not visible.
 bool Linearise(const std::vector<Observation>& observations,
                const std::vector<char>& used, const Vec3& position,
                Mat3* hessian, Vec3* gradient) {
@@ -67,9 +82,10 @@ bool Linearise(const std::vector<Observation>& observations,
     if (!pixel_px) return false;
     Vec2 difference_px = *pixel_px - observation.pixel_px;
     WrapPanorama(observation.intrinsic->value, &difference_px);
-    const Mat23 jacobian = by_x_cam * observation.cam_from_world.rotation;
+    const Mat23 jacobian =
+        observation.whitening * by_x_cam * observation.cam_from_world.rotation;
     *hessian += jacobian.transpose() * jacobian;
-    *gradient += jacobian.transpose() * difference_px;
+    *gradient += jacobian.transpose() * (observation.whitening * difference_px);
   }
   return true;
 }
@@ -208,13 +224,15 @@ bool PointTrackState::HasTwoPoses(const CameraSet& cameras) const {
   return false;
 }
 
+std::optional<Vec2> PointDifferencePx(const CameraSet& cameras,
+                                      const PointCandidate& candidate,
+                                      const Vec3& position) {
+  return DifferencePx(MakeObservation(cameras, candidate), position);
+}
+
 double PointErrorPx(const CameraSet& cameras, const PointCandidate& candidate,
                     const Vec3& position) {
-  Observation observation;
-  observation.cam_from_world = cameras.PoseOf(candidate.view).CamFromWorld();
-  observation.intrinsic = &cameras.IntrinsicOf(candidate.view);
-  observation.pixel_px = candidate.pixel_px;
-  return ErrorPx(observation, position);
+  return ErrorPx(MakeObservation(cameras, candidate), position);
 }
 
 void TriangulatePointTrack(const CameraSet& cameras,

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "lowlap/adjustment/internal/camera_set.h"
 #include "lowlap/adjustment/internal/landmark_fate.h"
+#include "lowlap/adjustment/internal/point_shape.h"
 
 namespace lowlap::internal {
 
@@ -13,6 +15,10 @@ struct PointCandidate {
   int view = -1;  // index into CameraSet::views
   FeatureIndex feature = kInvalidId;
   Vec2 pixel_px = Vec2::Zero();
+  PointShape shape;
+  /// Divides an error by its deviation in each direction, that across the weak
+  /// one being 1 (WhitenPoints).
+  Mat2 whitening = Mat2::Identity();
   bool used = false;  // belongs to the landmark
 };
 
@@ -29,8 +35,14 @@ struct PointTrackState {
   bool HasTwoPoses(const CameraSet& cameras) const;
 };
 
-/// Distance of the projection from the observed pixel; infinity for a point
-/// that the view cannot see.
+/// The projection less the observed pixel; nullopt for a point that the view
+/// cannot see.
+std::optional<Vec2> PointDifferencePx(const CameraSet& cameras,
+                                      const PointCandidate& candidate,
+                                      const Vec3& position);
+
+/// Whitened distance of the projection from the observed pixel; infinity for a
+/// point that the view cannot see.
 double PointErrorPx(const CameraSet& cameras, const PointCandidate& candidate,
                     const Vec3& position);
 
@@ -43,8 +55,8 @@ struct PointTriangulationLimits {
 /// Triangulates the track from its candidates and the poses, and marks those
 /// in use. If all agree, from all; otherwise from the pair that most others
 /// agree with (at most 45 pairs are tried), refined by Gauss-Newton on the
-/// pixel errors of all that agree. A track with no solution ends with none in
-/// use and the reason in `fate`.
+/// whitened errors of all that agree. A track with no solution ends with none
+/// in use and the reason in `fate`.
 void TriangulatePointTrack(const CameraSet& cameras,
                            const PointTriangulationLimits& limits,
                            PointTrackState* track);

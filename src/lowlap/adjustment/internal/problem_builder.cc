@@ -147,7 +147,8 @@ void ProblemBuilder::AddPoints() {
                                      CenterBlock(view.pose), PointBlock(n)};
       if (refined) blocks.push_back(IntrinsicBlock(view.intrinsic));
       problem_->AddResidualBlock(
-          new PointReprojectionCost(&intrinsic, refined, candidate.pixel_px),
+          new PointReprojectionCost(&intrinsic, refined, candidate.pixel_px,
+                                    candidate.whitening),
           loss, blocks);
     }
   }

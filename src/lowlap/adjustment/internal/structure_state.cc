@@ -41,28 +41,43 @@ double ReferenceStddevPx(const Scene& scene) {
   return *middle;
 }
 
+PointShape ShapeOf(const Scene& scene, ViewId view, FeatureIndex point) {
+  const auto features = scene.features.find(view);
+  if (features == scene.features.end() ||
+      point >= features->second.point_covariances.size()) {
+    return {};
+  }
+  return PointShape::FromCovariance(features->second.point_covariances[point]);
+}
+
 PointTrackState LoadPoint(const Scene& scene, const CameraSet& cameras,
                           PointTrackId id) {
   PointTrackState state;
   state.id = id;
   std::map<ViewId, PointCandidate> by_view;
+  const auto add = [&](ViewId id_view, FeatureIndex feature,
+                       const Vec2& pixel_px, bool used) {
+    const int view = cameras.Find(id_view);
+    if (view < 0) return;
+    PointCandidate& candidate = by_view[id_view];
+    candidate.view = view;
+    candidate.feature = feature;
+    candidate.pixel_px = pixel_px;
+    candidate.used = used;
+    candidate.shape = ShapeOf(scene, id_view, feature);
+  };
   const auto track = scene.point_tracks.find(id);
   if (track != scene.point_tracks.end()) {
     for (const FeatureRef& ref : track->second) {
-      const int view = cameras.Find(ref.view);
-      if (view < 0) continue;
-      const Vec2& pixel_px = scene.features.at(ref.view).points_px[ref.feature];
-      by_view[ref.view] = {view, ref.feature, pixel_px, false};
+      add(ref.view, ref.feature,
+          scene.features.at(ref.view).points_px[ref.feature], false);
     }
   }
   const auto landmark = scene.structure.find(id);
   if (landmark != scene.structure.end()) {
     state.position = landmark->second.position;
     for (const PointObservation& observation : landmark->second.observations) {
-      const int view = cameras.Find(observation.view);
-      if (view < 0) continue;
-      by_view[observation.view] = {view, observation.feature,
-                                   observation.pixel_px, true};
+      add(observation.view, observation.feature, observation.pixel_px, true);
     }
   }
   for (const auto& [view, candidate] : by_view) {

@@ -5,7 +5,7 @@
 namespace lowlap::internal {
 namespace {
 
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 // Calls `add(a, b)` for the pairs of a flat array of ids.
 template <class Add>
@@ -55,13 +55,19 @@ Track ReadTrack(const JsonValue& flat) {
 }
 
 ViewFeatures ReadFeatures(const JsonValue& record) {
-  record.AllowOnly({"view", "points", "segments"});
+  record.AllowOnly({"view", "points", "point_covariances", "segments"});
   ViewFeatures features;
   const JsonValue points = record.At("points");
   features.points_px.reserve(points.FlatSize(2) / 2);
   ReadReals<2>(points, [&](const double* v) {
     features.points_px.emplace_back(v[0], v[1]);
   });
+  if (const auto shapes = record.Find("point_covariances")) {
+    features.point_covariances.reserve(shapes->FlatSize(3) / 3);
+    ReadReals<3>(*shapes, [&](const double* v) {
+      features.point_covariances.emplace_back(v[0], v[1], v[2]);
+    });
+  }
   const JsonValue segments = record.At("segments");
   features.segments.reserve(segments.FlatSize(5) / 5);
   ReadReals<5>(segments, [&](const double* v) {
@@ -79,21 +85,37 @@ ViewPair ReadViewPair(const JsonValue& value) {
   return views;
 }
 
+void ReadMotion(const JsonValue& record, Mat3* rotation, Vec3* direction,
+                double* log10_nfa,
+                std::optional<Eigen::Matrix<double, 5, 5>>* covariance) {
+  *rotation = record.At("rotation").Matrix<3, 3>();
+  *direction = record.At("direction").Vector<3>();
+  *log10_nfa = record.At("log10_nfa").Real();
+  if (const auto found = record.Find("covariance")) {
+    *covariance = found->Matrix<5, 5>();
+  }
+}
+
 RelativePose ReadRelativePose(const JsonValue& record) {
   record.AllowOnly({"views", "rotation", "direction", "point_inliers",
                     "line_inliers", "log10_nfa", "point_threshold_px",
-                    "covariance"});
+                    "covariance", "alternatives"});
   RelativePose edge;
   edge.views = ReadViewPair(record.At("views"));
-  edge.rotation = record.At("rotation").Matrix<3, 3>();
-  edge.direction = record.At("direction").Vector<3>();
-  edge.log10_nfa = record.At("log10_nfa").Real();
+  ReadMotion(record, &edge.rotation, &edge.direction, &edge.log10_nfa,
+             &edge.covariance);
   edge.point_threshold_px = record.At("point_threshold_px").Real();
-  if (const auto covariance = record.Find("covariance")) {
-    edge.covariance = covariance->Matrix<5, 5>();
-  }
   edge.point_inliers = ReadMatches(record.At("point_inliers"));
   edge.line_inliers = ReadMatches(record.At("line_inliers"));
+  if (const auto list = record.Find("alternatives")) {
+    for (const JsonValue alternative : list->Elements()) {
+      alternative.AllowOnly(
+          {"rotation", "direction", "log10_nfa", "covariance"});
+      AlternativeMotion& motion = edge.alternatives.emplace_back();
+      ReadMotion(alternative, &motion.rotation, &motion.direction,
+                 &motion.log10_nfa, &motion.covariance);
+    }
+  }
   return edge;
 }
 

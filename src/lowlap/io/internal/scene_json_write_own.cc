@@ -42,10 +42,10 @@ void AppendMatches(std::string_view name,
 
 void AppendFeatures(ViewId view, const ViewFeatures& features,
                     std::string& text) {
-  const auto append_pixel = [&](const Vec2& pixel) {
-    for (const double coordinate : {pixel.x(), pixel.y()}) {
+  const auto append_numbers = [&](const auto& vector) {
+    for (const double number : vector) {
       AppendComma(text);
-      AppendReal(coordinate, text);
+      AppendReal(number, text);
     }
   };
   text += "{";
@@ -53,17 +53,37 @@ void AppendFeatures(ViewId view, const ViewFeatures& features,
   AppendInteger(view, text);
   AppendKey("points", text);
   text += "[";
-  for (const Vec2& point : features.points_px) append_pixel(point);
+  for (const Vec2& point : features.points_px) append_numbers(point);
   text += "]";
+  if (!features.point_covariances.empty()) {
+    AppendKey("point_covariances", text);
+    text += "[";
+    for (const Vec3& shape : features.point_covariances) append_numbers(shape);
+    text += "]";
+  }
   AppendKey("segments", text);
   text += "[";
   for (const LineSegment& segment : features.segments) {
-    append_pixel(segment.start_px);
-    append_pixel(segment.end_px);
+    append_numbers(segment.start_px);
+    append_numbers(segment.end_px);
     AppendComma(text);
     AppendReal(segment.stddev_px, text);
   }
   text += "]}";
+}
+
+// Of a relative pose, or of an alternative to it.
+template <class Motion>
+void AppendMotion(const Motion& motion, std::string& text) {
+  AppendKey("rotation", text);
+  AppendMatrix(motion.rotation, text);
+  AppendKey("direction", text);
+  AppendVector(motion.direction, text);
+  AppendNamedReal("log10_nfa", motion.log10_nfa, text);
+  if (motion.covariance) {
+    AppendKey("covariance", text);
+    AppendMatrix(*motion.covariance, text);
+  }
 }
 
 void AppendRelativePose(const RelativePose& edge, std::string& text) {
@@ -72,18 +92,21 @@ void AppendRelativePose(const RelativePose& edge, std::string& text) {
   text += "[";
   AppendIds(text, edge.views.first, edge.views.second);
   text += "]";
-  AppendKey("rotation", text);
-  AppendMatrix(edge.rotation, text);
-  AppendKey("direction", text);
-  AppendVector(edge.direction, text);
-  AppendNamedReal("log10_nfa", edge.log10_nfa, text);
+  AppendMotion(edge, text);
   AppendNamedReal("point_threshold_px", edge.point_threshold_px, text);
-  if (edge.covariance) {
-    AppendKey("covariance", text);
-    AppendMatrix(*edge.covariance, text);
-  }
   AppendMatches("point_inliers", edge.point_inliers, text);
   AppendMatches("line_inliers", edge.line_inliers, text);
+  if (!edge.alternatives.empty()) {
+    AppendKey("alternatives", text);
+    text += "[";
+    for (const AlternativeMotion& motion : edge.alternatives) {
+      AppendComma(text);
+      text += "{";
+      AppendMotion(motion, text);
+      text += "}";
+    }
+    text += "]";
+  }
   text += "}";
 }
 
@@ -161,7 +184,7 @@ void AppendOwnSections(const Scene& scene, std::string& text) {
   const auto append_line = [](const auto& entry, std::string& out) {
     AppendLine(entry.first, entry.second, out);
   };
-  text += "\"version\": 1,\n";
+  text += "\"version\": 2,\n";
   AppendSection("features", scene.features, append_features, text);
   text += ",\n";
   AppendSection("relative_poses", scene.relative_poses, append_relative_pose,

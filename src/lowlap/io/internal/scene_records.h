@@ -51,6 +51,8 @@ inline constexpr auto kTransferLandmark = [](auto& archive, auto& landmark) {
 inline constexpr auto kTransferFeatures = [](auto& archive, auto& features) {
   TransferVector(archive, features.points_px, 16,
                  [](auto& a, auto& point) { a.Reals(point.data(), 2); });
+  TransferVector(archive, features.point_covariances, 24,
+                 [](auto& a, auto& shape) { a.Reals(shape.data(), 3); });
   TransferVector(archive, features.segments, 40, [](auto& a, auto& segment) {
     a.Reals(segment.start_px.data(), 2);
     a.Reals(segment.end_px.data(), 2);
@@ -63,7 +65,20 @@ inline constexpr auto kTransferMatch = [](auto& archive, auto& match) {
   archive.Integer(match.second);
 };
 
-inline constexpr std::size_t kRelativePoseMinBytes = 8 + 14 * 8 + 1 + 2 * 8;
+inline constexpr std::size_t kRelativePoseMinBytes = 8 + 14 * 8 + 1 + 3 * 8;
+inline constexpr std::size_t kAlternativeMinBytes = 13 * 8 + 1;
+
+inline constexpr auto kTransferCovariance = [](auto& archive,
+                                               auto& covariance) {
+  TransferMatrix(archive, covariance);
+};
+
+inline constexpr auto kTransferAlternative = [](auto& archive, auto& motion) {
+  TransferMatrix(archive, motion.rotation);
+  archive.Reals(motion.direction.data(), 3);
+  archive.Real(motion.log10_nfa);
+  TransferOptional(archive, motion.covariance, kTransferCovariance);
+};
 
 inline constexpr auto kTransferRelativePose = [](auto& archive, auto& edge) {
   archive.Integer(edge.views.first);
@@ -72,11 +87,11 @@ inline constexpr auto kTransferRelativePose = [](auto& archive, auto& edge) {
   archive.Reals(edge.direction.data(), 3);
   archive.Real(edge.log10_nfa);
   archive.Real(edge.point_threshold_px);
-  TransferOptional(archive, edge.covariance, [](auto& a, auto& covariance) {
-    TransferMatrix(a, covariance);
-  });
+  TransferOptional(archive, edge.covariance, kTransferCovariance);
   TransferVector(archive, edge.point_inliers, 8, kTransferMatch);
   TransferVector(archive, edge.line_inliers, 8, kTransferMatch);
+  TransferVector(archive, edge.alternatives, kAlternativeMinBytes,
+                 kTransferAlternative);
 };
 
 /// The number of relative poses, then each; their pairs of views ascend.

@@ -74,9 +74,11 @@ void TransferVector(Archive& archive, Vector& vector) {
 template <class Archive, class Features>
 void TransferFeatures(Archive& archive, Features& detected) {
   auto& [features, keypoints, point_descriptors, line_descriptors] = detected;
-  auto& [points_px, segments] = features;
+  auto& [points_px, point_covariances, segments] = features;
   TransferList(archive, points_px,
                [&](auto& point) { TransferVector(archive, point); });
+  TransferList(archive, point_covariances,
+               [&](auto& shape) { TransferVector(archive, shape); });
   TransferList(archive, segments, [&](auto& segment) {
     auto& [start_px, end_px, stddev_px] = segment;
     TransferVector(archive, start_px);
