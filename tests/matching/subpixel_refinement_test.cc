@@ -28,6 +28,7 @@ struct Shot {
   double gain = 0.8;
   double offset = 10;
   double noise = 0;
+  std::uint64_t seed = 1;  // of the noise
 
   GrayImage Render() const {
     const Mat2 back = image_from_texture.inverse();
@@ -36,7 +37,7 @@ struct Shot {
         [&](const Vec2& p) {
           return gain * kTexture(kPoint + back * (p - place)) + offset;
         },
-        noise);
+        noise, seed);
   }
 };
 
@@ -85,13 +86,20 @@ TEST(AlignPatchTest, FindsASlantedPatchFromItsSimilarity) {
 }
 
 TEST(AlignPatchTest, NoiseAveragesOut) {
+  constexpr int kSeeds = 20;
   Shot first, second;
   first.noise = second.noise = 4;
   second.place = Vec2(60.45, 59.6);
-  const auto place =
-      Align(first, second, 2.5, At(second.place + Vec2(0.5, 0.5), 2.5));
-  ASSERT_TRUE(place);
-  EXPECT_LT((*place - second.place).norm(), 0.1);
+  double sum = 0;
+  for (int n = 0; n < kSeeds; ++n) {
+    first.seed = 2 * n + 1;
+    second.seed = 2 * n + 2;
+    const auto place =
+        Align(first, second, 2.5, At(second.place + Vec2(0.5, 0.5), 2.5));
+    ASSERT_TRUE(place);
+    sum += (*place - second.place).squaredNorm();
+  }
+  EXPECT_LT(std::sqrt(sum / kSeeds), 0.2);
 }
 
 TEST(AlignPatchTest, LargeBlobsAreComparedAtTheirOwnResolution) {
@@ -105,12 +113,51 @@ TEST(AlignPatchTest, LargeBlobsAreComparedAtTheirOwnResolution) {
   EXPECT_LT((*place - second.place).norm(), 0.05);
 }
 
+TEST(AlignPatchTest, LargeBlobsMayMoveFarther) {
+  const Vec2 off(1.9, -1.6);
+  Shot first;
+  first.image_from_texture = 2 * Mat2::Identity();
+  const auto place = Align(first, first, 6, At(first.place + off, 6));
+  ASSERT_TRUE(place);
+  EXPECT_LT((*place - first.place).norm(), 0.1);
+  EXPECT_FALSE(Align(Shot(), Shot(), 2, At(Shot().place + off, 2)));
+}
+
+// The less a keypoint is trusted, the nearer the point comes to where its patch
+// was aligned; the worse the fit, the nearer it stays to the keypoint.
+TEST(AlignPatchTest, WeighsTheKeypointAgainstTheFit) {
+  const Vec2 off(0.3, -0.3);
+  const auto distance = [&](double noise, double keypoint_stddev) {
+    Shot first, second;
+    first.noise = second.noise = noise;
+    second.seed = 2;
+    PatchAlignmentOptions options;
+    options.keypoint_stddev = keypoint_stddev;
+    options.max_deviation = 100;
+    const Vec2 start = second.place + off;
+    const auto place = Align(first, second, 2.5, At(start, 2.5), options);
+    const auto free = [&] {
+      options.keypoint_stddev = 1e3;
+      return Align(first, second, 2.5, At(start, 2.5), options);
+    }();
+    EXPECT_TRUE(place && free);
+    return place && free ? (*place - start).norm() / (*free - start).norm()
+                         : -1;
+  };
+  EXPECT_GT(distance(0, 0.3), 0.98);
+  const double trusted = distance(4, 0.02), usual = distance(4, 0.3);
+  EXPECT_LT(trusted, 0.6);
+  EXPECT_GT(trusted, 0.01);
+  EXPECT_GT(usual, trusted + 0.2);
+  EXPECT_LT(usual, distance(0, 0.3));
+}
+
 TEST(AlignPatchTest, RefusesWhatItCannotAlign) {
   const Shot first, same;
   EXPECT_TRUE(Align(first, same, 2, At(same.place + Vec2(0.3, 0), 2)));
   // Too far away.
   PatchAlignmentOptions options;
-  options.max_shift_px = 0.2;
+  options.max_deviation = 0.4;
   EXPECT_FALSE(
       Align(first, same, 2, At(same.place + Vec2(0.3, 0), 2), options));
   // Another place, a negative, a flat image, the image's border.
@@ -141,9 +188,13 @@ TEST(PatchAlignmentOptionsTest, RejectsValuesOutOfRange) {
   EXPECT_THAT(options.Validate(),
               IsError(ErrorCode::kInvalidArgument, "min_correlation"));
   options = {};
-  options.max_shift_px = std::nan("");
+  options.keypoint_stddev = 0;
   EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_shift_px"));
+              IsError(ErrorCode::kInvalidArgument, "keypoint_stddev"));
+  options = {};
+  options.max_deviation = std::nan("");
+  EXPECT_THAT(options.Validate(),
+              IsError(ErrorCode::kInvalidArgument, "max_deviation"));
 }
 
 class RefinePointTracksTest : public ::testing::Test {

@@ -49,8 +49,11 @@ struct PatchAlignmentOptions {
   double min_step = 0.005;
   /// Least normalised cross-correlation of the aligned patches.
   double min_correlation = 0.9;
-  /// Farthest that a point may move.
-  double max_shift_px = 1.5;
+  /// Standard deviation of a keypoint about the true place, in units of its
+  /// scale.
+  double keypoint_stddev = 0.3;
+  /// Farthest that a point may move, in standard deviations.
+  double max_deviation = 3;
 
   Status Validate() const;
 };
@@ -61,9 +64,16 @@ struct PatchAlignmentOptions {
 /// offset b, by Gauss-Newton steps in the patch's frame (inverse compositional:
 /// Baker & Matthews, "Lucas-Kanade 20 Years On", IJCV 2004), under Gaussian
 /// weights. It starts at the similarity that takes the keypoint `from`, whose
-/// patch it is, to `to`. nullopt where it does not converge, leaves the image,
-/// deforms the patch by more than a factor 2 against the similarity, or misses
-/// the options' bounds.
+/// patch it is, to `to`.
+///
+/// The place returned is the mean of t, with the covariance S that the residual
+/// leaves it, and of the keypoint, with K = I (keypoint_stddev to.scale_px)^2,
+///   to.position_px + K (K + S)^-1 (t - to.position_px),
+/// so that a poor fit moves the point little, and least along an edge. nullopt
+/// where the alignment does not converge, leaves the image, deforms the patch
+/// by more than a factor 2 against the similarity, correlates too little, or
+/// contradicts the keypoint (Mahalanobis distance of t under K + S beyond
+/// max_deviation).
 std::optional<Vec2> AlignPatch(const PointPatch& patch, const Keypoint& from,
                                const Keypoint& to, const GrayPyramid& image,
                                const PatchAlignmentOptions& options);
