@@ -48,37 +48,13 @@ TEST(GroupMatches, PiecesOfAnyViewAreOneEdge) {
   EXPECT_THAT(matched.edges[1].in_j, ElementsAre(6));
 }
 
-TEST(JoinPieces, SpansThePiecesInTheirDirection) {
-  const Vec3 a(0.3, -0.2, 1), b(-0.4, 0.5, 1);
-  const auto at = [&](double share) -> Vec3 { return a + share * (b - a); };
-  const ObservedSegment joined =
-      JoinPieces({Piece(at(0.5), at(0.6)), Piece(at(0.7), at(1), 0.24),
-                  Piece(at(0), at(0.4), 0.1)},
-                 1e-9);
-  EXPECT_EQ(joined.segment.start, at(0));
-  EXPECT_EQ(joined.segment.end, at(1));
-  EXPECT_LT((joined.segment.normal - MakeSegment(a, b).normal).norm(), 1e-12);
-  EXPECT_EQ(joined.stddev_px, 0.24);
-}
-
-TEST(JoinPieces, PiecesThatAreNotCollinearLeaveTheLongest) {
-  const ObservedSegment longest = Piece({0, 0, 1}, {0.5, 0, 1});
-  const std::vector<ObservedSegment> bent = {
-      Piece({0.6, 0.01, 1}, {0.8, 0.02, 1}), longest};
-  EXPECT_EQ(JoinPieces(bent, 0.001).segment.end, longest.segment.end);
-  EXPECT_EQ(JoinPieces(bent, 0.1).segment.end, Vec3(0.8, 0.02, 1));
-  EXPECT_EQ(JoinPieces({longest, {NormalizedSegment{}, 0.5}}, 1).segment.end,
-            longest.segment.end);
-}
-
-TEST(JoinPieces, AShortUnsurePieceDoesNotTurnALongOne) {
-  const ObservedSegment longest = Piece({0, 0, 1}, {0.5, 0, 1}, 0.1);
-  const auto with = [&](double stddev_px) {
-    return JoinPieces(
-        {longest, Piece({0.6, 0.001, 1}, {0.61, 0.001, 1}, stddev_px)}, 0.01);
-  };
-  EXPECT_EQ(with(0.12).segment.end.x(), 0.61);
-  EXPECT_EQ(with(0.13).segment.end.x(), 0.5);
+TEST(LongestPiece, IsOneOfThem) {
+  const ObservedSegment longest = Piece({0, 0, 1}, {0.5, 0, 1}, 0.3);
+  EXPECT_EQ(LongestPiece({Piece({0.6, 0.01, 1}, {0.8, 0.02, 1}),
+                          longest,
+                          {NormalizedSegment{}, 0.5}})
+                .stddev_px,
+            0.3);
 }
 
 // Three views before two walls that carry lines; all lines are in every view.
@@ -173,7 +149,7 @@ TEST_P(BrokenSegments, AreOneLineEach) {
   EXPECT_EQ(triplet->lines_jk.size(), kLines);
 }
 
-TEST_P(BrokenSegments, SayWhatTheWholeOnesSayAndNoMore) {
+TEST_P(BrokenSegments, SayNoMoreThanTheWholeOnes) {
   for (const bool coplanar : {false, true}) {
     ScaleOptions options;
     options.use_points = false;
@@ -183,11 +159,11 @@ TEST_P(BrokenSegments, SayWhatTheWholeOnesSayAndNoMore) {
     const ScaleRatio broken = Ratio(Broken(GetParam()), options);
     EXPECT_EQ(whole.verdict, RatioVerdict::kMeaningful);
     EXPECT_EQ(broken.verdict, RatioVerdict::kMeaningful);
-    EXPECT_NEAR(broken.log_ratio, whole.log_ratio, 1e-9);
-    EXPECT_NEAR(broken.log_ratio_stddev, whole.log_ratio_stddev, 1e-9);
-    EXPECT_NEAR(broken.log10_nfa, whole.log10_nfa, 1e-6);
-    EXPECT_EQ(broken.lines.inliers, whole.lines.inliers);
-    EXPECT_EQ(broken.coplanar.inliers, whole.coplanar.inliers);
+    EXPECT_NEAR(broken.log_ratio, whole.log_ratio, 3 * broken.log_ratio_stddev);
+    // Counted twice they would say almost twice as much.
+    EXPECT_GE(broken.log10_nfa, 1.2 * whole.log10_nfa);
+    EXPECT_LE(broken.lines.candidates, whole.lines.candidates);
+    EXPECT_LE(broken.lines.inliers, kLines);
   }
 }
 

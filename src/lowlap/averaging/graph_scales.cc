@@ -8,6 +8,7 @@
 
 #include "lowlap/averaging/center_solver.h"
 #include "lowlap/averaging/edge_scales.h"
+#include "lowlap/averaging/internal/body_closure.h"
 #include "lowlap/averaging/internal/edge_groups.h"
 #include "lowlap/averaging/refine_centers.h"
 
@@ -68,6 +69,11 @@ class Growth {
         grown = grown || *joined;
       }
       if (!grown) grown = IntersectOneView();
+      if (!grown) {
+        const auto closed = CloseGroups();
+        if (!closed) return tl::unexpected<Error>(closed.error());
+        grown = *closed;
+      }
     }
     return {};
   }
@@ -112,6 +118,52 @@ class Growth {
       }
     }
     return true;
+  }
+
+  // Groups that fix one another's scale around a ring.
+  Result<bool> CloseGroups() {
+    // The closure is dense; the largest groups come first.
+    constexpr std::size_t kMaxGroups = 150;
+    Body frame;
+    frame.stddev_rad = 0;
+    for (std::size_t view = 0; view < placed_.size(); ++view) {
+      if (!placed_[view]) continue;
+      frame.views.push_back(view);
+      frame.centers.push_back(centers_[view]);
+    }
+    std::vector<Body> bodies = {frame};
+    std::vector<std::size_t> group_of = {0};
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (used_[g] || bodies.size() > kMaxGroups) continue;
+      const auto local = SolveGroup(problem_, scales_, groups_[g]);
+      if (!local) return tl::unexpected<Error>(local.error());
+      Body body;
+      body.stddev_rad = 0;
+      for (const std::size_t e : groups_[g].edges) {
+        body.stddev_rad =
+            std::max(body.stddev_rad, problem_.edges[e].stddev_rad);
+      }
+      body.views = groups_[g].views;
+      for (const std::size_t view : body.views) {
+        body.centers.push_back((*local)[view]);
+      }
+      bodies.push_back(std::move(body));
+      group_of.push_back(g);
+    }
+    const auto placements = CloseBodies(bodies);
+    bool grown = false;
+    for (std::size_t b = 1; b < bodies.size(); ++b) {
+      if (!placements[b]) continue;
+      used_[group_of[b]] = true;
+      for (std::size_t n = 0; n < bodies[b].views.size(); ++n) {
+        const std::size_t view = bodies[b].views[n];
+        if (placed_[view]) continue;
+        Place(view, placements[b]->scale * bodies[b].centers[n] +
+                        placements[b]->translation);
+        grown = true;
+      }
+    }
+    return grown;
   }
 
   // The best-conditioned view that two or more directions from placed views

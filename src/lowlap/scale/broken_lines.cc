@@ -1,7 +1,6 @@
 #include "lowlap/scale/broken_lines.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <numeric>
 #include <utility>
@@ -42,8 +41,8 @@ void SortUnique(std::vector<FeatureIndex>* indices) {
   indices->erase(std::unique(indices->begin(), indices->end()), indices->end());
 }
 
-Vec2 Run(const NormalizedSegment& segment) {
-  return (segment.end - segment.start).head<2>();
+double SquaredLength(const NormalizedSegment& segment) {
+  return (segment.end - segment.start).squaredNorm();
 }
 
 }  // namespace
@@ -87,44 +86,13 @@ MatchedEdges GroupMatches(const std::vector<MiddleMatch>& ij,
   return matched;
 }
 
-ObservedSegment JoinPieces(const std::vector<ObservedSegment>& pieces,
-                           double max_distance) {
-  const ObservedSegment& longest = *std::max_element(
+const ObservedSegment& LongestPiece(
+    const std::vector<ObservedSegment>& pieces) {
+  return *std::max_element(
       pieces.begin(), pieces.end(),
       [](const ObservedSegment& a, const ObservedSegment& b) {
-        return Run(a.segment).squaredNorm() < Run(b.segment).squaredNorm();
+        return SquaredLength(a.segment) < SquaredLength(b.segment);
       });
-  if (pieces.size() == 1) return longest;
-  const Vec2 along = Run(longest.segment);
-  ObservedSegment joined = longest;
-  for (const ObservedSegment& piece : pieces) {
-    if (!piece.segment.IsValid()) return longest;
-    for (const Vec3& end : {piece.segment.start, piece.segment.end}) {
-      if (along.dot((end - joined.segment.start).head<2>()) < 0) {
-        joined.segment.start = end;
-      }
-      if (along.dot((end - joined.segment.end).head<2>()) > 0) {
-        joined.segment.end = end;
-      }
-    }
-    joined.stddev_px = std::max(joined.stddev_px, piece.stddev_px);
-  }
-  if (joined.stddev_px * along.norm() >
-      longest.stddev_px * Run(joined.segment).norm()) {
-    return longest;
-  }
-  joined.segment.normal =
-      joined.segment.start.cross(joined.segment.end).normalized();
-  // Distance from the line in the image plane z = 1.
-  const double in_plane = joined.segment.normal.head<2>().norm();
-  for (const ObservedSegment& piece : pieces) {
-    for (const Vec3& end : {piece.segment.start, piece.segment.end}) {
-      if (std::abs(joined.segment.normal.dot(end)) > max_distance * in_plane) {
-        return longest;
-      }
-    }
-  }
-  return joined;
 }
 
 }  // namespace lowlap

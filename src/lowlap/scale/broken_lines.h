@@ -34,12 +34,9 @@ struct MatchedEdges {
 MatchedEdges GroupMatches(const std::vector<MiddleMatch>& ij,
                           const std::vector<MiddleMatch>& jk);
 
-/// One segment for the pieces of one view, which must not be empty: from the
-/// first to the last end point along the longest piece, with the largest
-/// standard deviation; the longest piece itself if it has the surer direction
-/// (standard deviation over length), or if an end point is farther than
-/// `max_distance` (normalised) from the line, which means a wrong match.
-ObservedSegment JoinPieces(const std::vector<ObservedSegment>& pieces,
-                           double max_distance);
+/// The longest of the pieces of one view, which must not be empty; it stands
+/// for the edge. (A segment through all pieces is longer, but no better: pieces
+/// are matched to an edge by mistake often enough. Measured on coplanar pairs.)
+const ObservedSegment& LongestPiece(const std::vector<ObservedSegment>& pieces);
 
 }  // namespace lowlap

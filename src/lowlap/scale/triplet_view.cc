@@ -9,10 +9,6 @@
 namespace lowlap {
 namespace {
 
-// Pieces of one edge are this close to one line: as where line tracks are
-// joined.
-constexpr double kMaxPieceDistancePx = 2.0;
-
 std::vector<MiddleMatch> FromMiddle(const std::vector<FeatureMatch>& matches,
                                     bool middle_is_first) {
   std::vector<MiddleMatch> result;
@@ -80,7 +76,7 @@ ObservedSegment Observe(const NormalizedFeatures& features,
     observed.push_back(
         {features.segments[piece], raw.segments[piece].stddev_px});
   }
-  return JoinPieces(observed, kMaxPieceDistancePx / features.focal_px);
+  return LongestPiece(observed);
 }
 
 }  // namespace
