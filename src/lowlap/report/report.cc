@@ -3,6 +3,7 @@
 #include <ostream>
 
 #include "lowlap/core/atomic_file.h"
+#include "lowlap/report/internal/markup.h"
 #include "lowlap/report/internal/report_page.h"
 #include "lowlap/report/internal/scene_drawing.h"
 
@@ -11,38 +12,18 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 30000;
 
-std::string Escape(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
-
 void WriteTable(const ReportTable& table, std::ostream& out) {
-  out << "<h2>" << Escape(table.title) << "</h2>\n";
-  if (!table.note.empty()) out << "<p>" << Escape(table.note) << "</p>\n";
+  out << "<h2>" << EscapeMarkup(table.title) << "</h2>\n";
+  if (!table.note.empty()) out << "<p>" << EscapeMarkup(table.note) << "</p>\n";
   out << "<div class=\"table\"><table><thead><tr>";
   for (const std::string& column : table.columns) {
-    out << "<th>" << Escape(column) << "</th>";
+    out << "<th>" << EscapeMarkup(column) << "</th>";
   }
   out << "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
     out << "<tr>";
     for (const std::string& cell : row)
-      out << "<td>" << Escape(cell) << "</td>";
+      out << "<td>" << EscapeMarkup(cell) << "</td>";
     out << "</tr>\n";
   }
   out << "</tbody></table></div>\n";
@@ -55,18 +36,18 @@ Status WriteReport(const Scene& scene, const ReportContent& content,
   return WriteFileAtomically(path, [&](std::ostream& out) -> Status {
     out << "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n"
            "<meta charset=\"utf-8\">\n<title>"
-        << Escape(content.title) << "</title>\n<style>" << kReportStyle
-        << "</style>\n</head>\n<body>\n<h1>" << Escape(content.title)
+        << EscapeMarkup(content.title) << "</title>\n<style>" << kReportStyle
+        << "</style>\n</head>\n<body>\n<h1>" << EscapeMarkup(content.title)
         << "</h1>\n<dl>\n";
     for (const auto& [name, value] : content.figures) {
-      out << "<div><dt>" << Escape(name) << "</dt><dd>" << Escape(value)
-          << "</dd></div>\n";
+      out << "<div><dt>" << EscapeMarkup(name) << "</dt><dd>"
+          << EscapeMarkup(value) << "</dd></div>\n";
     }
     out << "</dl>\n";
     if (!content.warnings.empty()) {
       out << "<ul class=\"warnings\">\n";
       for (const std::string& warning : content.warnings) {
-        out << "<li>" << Escape(warning) << "</li>\n";
+        out << "<li>" << EscapeMarkup(warning) << "</li>\n";
       }
       out << "</ul>\n";
     }
