@@ -149,6 +149,8 @@ TEST(LinePlotTest, PointsAreJoinedWhereTheAxesSay) {
   EXPECT_NEAR(y[1], (y[0] + y[2]) / 2, 0.02);
   EXPECT_LT(y[2], y[0]);  // y points down in the file
   EXPECT_EQ(Count(*svg, "<circle"), 3u);
+  EXPECT_THAT(*svg, HasSubstr(">0<"));
+  EXPECT_THAT(*svg, Not(HasSubstr(">-0<")));
   EXPECT_THAT(*svg, HasSubstr("outliers (%)"));
   EXPECT_THAT(*svg, HasSubstr("median error (m)"));
 }

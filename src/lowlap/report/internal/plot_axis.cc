@@ -79,7 +79,8 @@ std::vector<double> AxisRange::Ticks() const {
   std::vector<double> ticks;
   if (scale_ == AxisScale::kLinear) {
     const double step = LinearStep(max_ - min_);
-    const double first = std::ceil(min_ / step - 1e-9);
+    // Adding 0 turns -0 into 0.
+    const double first = std::ceil(min_ / step - 1e-9) + 0.0;
     const double last = std::floor(max_ / step + 1e-9);
     for (double n = first; n <= last; ++n) ticks.push_back(n * step);
     return ticks;
