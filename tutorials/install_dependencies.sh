@@ -8,7 +8,7 @@ set -euo pipefail
 
 packages=(
   g++ cmake ninja-build
-  libeigen3-dev libceres-dev libsuitesparse-dev
+  libeigen3-dev libceres-dev libsuitesparse-dev coinor-libclp-dev
   libopencv-dev libopencv-contrib-dev libexif-dev
   nlohmann-json3-dev libcereal-dev libcli11-dev libexpected-dev
   libgtest-dev libgmock-dev

@@ -9,5 +9,10 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(cereal REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tl-expected REQUIRED)
-# libexif has no CMake package; it is linked by its name, as -lexif.
+# libexif and Clp have no CMake package; they are linked by their names, as
+# -lexif and -lClp.
 find_library(LIBEXIF_LIBRARY exif REQUIRED)
+find_library(CLP_LIBRARY Clp REQUIRED)
+# Neither has SuiteSparse: -lcholmod.
+find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
+find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)

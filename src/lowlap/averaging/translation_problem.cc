@@ -4,6 +4,8 @@
 #include <cmath>
 #include <set>
 
+#include "lowlap/averaging/track_rays.h"
+
 namespace lowlap {
 namespace {
 
@@ -27,7 +29,7 @@ double DirectionStddev(const RelativePose& pose) {
 TranslationProblem MakeTranslationProblem(
     const Scene& scene, const std::map<ViewId, Mat3>& cam_from_world,
     const std::vector<ViewPair>& excluded_edges,
-    const std::set<ViewTriplet>& weak) {
+    const std::set<ViewTriplet>& weak, bool with_tracks) {
   TranslationProblem problem;
   std::map<ViewId, std::size_t> index_of_view;
   for (const auto& [view, rotation] : cam_from_world) {
@@ -75,6 +77,10 @@ TranslationProblem MakeTranslationProblem(
     measurement.log10_nfa = ratio.log10_nfa;
     problem.ratios.push_back(measurement);
   }
+  if (with_tracks) {
+    problem.tracks =
+        MakeTrackRays(scene, problem.views, problem.cam_from_world);
+  }
   return problem;
 }
 
@@ -104,6 +110,14 @@ Status ValidateProblem(const TranslationProblem& problem) {
     }
     if (!std::isfinite(ratio.log_ratio) || !(ratio.stddev > 0)) {
       return invalid("a ratio needs a finite value and a deviation");
+    }
+  }
+  for (const TrackRays& track : problem.tracks) {
+    for (const RayObservation& seen : track.observations) {
+      if (seen.view >= problem.views.size() ||
+          !(std::abs(seen.ray_in_world.norm() - 1) < 1e-6)) {
+        return invalid("a track needs unit rays of its views");
+      }
     }
   }
   return {};

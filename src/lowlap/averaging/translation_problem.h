@@ -33,12 +33,25 @@ struct RatioMeasurement {
   double log10_nfa = 0;
 };
 
+/// One observation of a point: X - C_view = depth ray_in_world, depth > 0.
+struct RayObservation {
+  std::size_t view = 0;  // index into TranslationProblem::views
+  Vec3 ray_in_world = Vec3::UnitZ();
+};
+
+/// The rays of one point track, at most one per view.
+struct TrackRays {
+  std::vector<RayObservation> observations;
+};
+
 /// What every averaging strategy gets; what it does not need it ignores.
 struct TranslationProblem {
   std::vector<ViewId> views;
   std::vector<Mat3> cam_from_world;  // rotations, one per view
   std::vector<DirectionEdge> edges;
   std::vector<RatioMeasurement> ratios;
+  /// Filled only for strategies that ask for it (NeedsTracks).
+  std::vector<TrackRays> tracks;
 };
 
 /// Centres up to one similarity (scale and translation) per component.
@@ -56,6 +69,8 @@ class TranslationAverager {
  public:
   virtual ~TranslationAverager() = default;
   virtual std::string Name() const = 0;
+  /// Whether Solve looks at TranslationProblem::tracks.
+  virtual bool NeedsTracks() const { return false; }
   virtual Result<TranslationSolution> Solve(
       const TranslationProblem& problem, const RunContext& context) const = 0;
 };
@@ -65,10 +80,11 @@ class TranslationAverager {
 /// ratio between such edges a ratio. Scale ratios and edges named in
 /// `excluded_edges` are left out. Ratios of the triplets in `weak` take part
 /// though they are not meaningful, with a deviation of at least 0.2.
+/// `with_tracks`: the rays of the point tracks too (MakeTrackRays).
 TranslationProblem MakeTranslationProblem(
     const Scene& scene, const std::map<ViewId, Mat3>& cam_from_world,
     const std::vector<ViewPair>& excluded_edges,
-    const std::set<ViewTriplet>& weak = {});
+    const std::set<ViewTriplet>& weak = {}, bool with_tracks = false);
 
 /// Indices in range, numbers finite, deviations positive.
 Status ValidateProblem(const TranslationProblem& problem);
