@@ -93,42 +93,6 @@ std::set<ViewTriplet> WeakRatios(const Scene& scene,
   return weak;
 }
 
-// First placed view: identity at the origin; mean placed edge: length 1.
-void FixGauge(const TranslationProblem& problem,
-              const TranslationSolution& solution, Scene* scene) {
-  double total = 0;
-  int count = 0;
-  for (const DirectionEdge& edge : problem.edges) {
-    if (solution.component[edge.first] != 0 ||
-        solution.component[edge.second] != 0) {
-      continue;
-    }
-    total += (solution.center_in_world[edge.second] -
-              solution.center_in_world[edge.first])
-                 .norm();
-    ++count;
-  }
-  const double scale = total > 0 ? count / total : 1.0;
-  scene->poses.clear();
-  bool first = true;
-  Mat3 old_world_from_world = Mat3::Identity();
-  Vec3 origin = Vec3::Zero();
-  for (std::size_t n = 0; n < problem.views.size(); ++n) {
-    if (solution.component[n] != 0) continue;
-    if (first) {
-      old_world_from_world = problem.cam_from_world[n].transpose();
-      origin = solution.center_in_world[n];
-      first = false;
-    }
-    Pose pose;
-    pose.rotation =
-        NearestRotation(problem.cam_from_world[n] * old_world_from_world);
-    pose.center = scale * (old_world_from_world.transpose() *
-                           (solution.center_in_world[n] - origin));
-    scene->poses[scene->views.at(problem.views[n]).pose_id] = pose;
-  }
-}
-
 }  // namespace
 
 Status PoseOptions::Validate() const {
@@ -171,16 +135,17 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   }
   const auto averager = MakeTranslationAverager(options.strategy);
   if (!averager) return tl::unexpected<Error>(averager.error());
+  const bool with_tracks = (*averager)->NeedsTracks();
   std::vector<OutlierEdge> outliers = rotations.outliers;
   TranslationProblem problem = MakeTranslationProblem(
-      *scene, rotations.cam_from_world, PairsOf(outliers));
+      *scene, rotations.cam_from_world, PairsOf(outliers), {}, with_tracks);
   auto solution = (*averager)->Solve(problem, context);
   if (!solution) return tl::unexpected<Error>(solution.error());
 
   std::set<ViewTriplet> weak = WeakRatios(*scene, problem, *solution);
   if (!weak.empty()) {
     TranslationProblem wider = MakeTranslationProblem(
-        *scene, rotations.cam_from_world, PairsOf(outliers), weak);
+        *scene, rotations.cam_from_world, PairsOf(outliers), weak, with_tracks);
     auto again = (*averager)->Solve(wider, context);
     if (!again) return tl::unexpected<Error>(again.error());
     if (CountPlaced(*again) > CountPlaced(*solution)) {
@@ -199,7 +164,7 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
     std::vector<OutlierEdge> more = outliers;
     more.insert(more.end(), wrong.begin(), wrong.end());
     TranslationProblem smaller = MakeTranslationProblem(
-        *scene, rotations.cam_from_world, PairsOf(more), weak);
+        *scene, rotations.cam_from_world, PairsOf(more), weak, with_tracks);
     auto again = (*averager)->Solve(smaller, context);
     if (!again) return tl::unexpected<Error>(again.error());
     if (CountPlaced(*again) < CountPlaced(*solution)) break;
@@ -212,7 +177,7 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
               return a.views < b.views;
             });
 
-  FixGauge(problem, *solution, scene);
+  SetPoses(problem, *solution, scene);
   PoseSummary summary;
   summary.num_views = static_cast<int>(scene->views.size());
   summary.components.resize(static_cast<std::size_t>(solution->num_components));
@@ -253,6 +218,41 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   summary.median_rotation_residual_deg =
       DegFromRad(rotations.median_residual_rad);
   return summary;
+}
+
+void SetPoses(const TranslationProblem& problem,
+              const TranslationSolution& solution, Scene* scene) {
+  double total = 0;
+  int count = 0;
+  for (const DirectionEdge& edge : problem.edges) {
+    if (solution.component[edge.first] != 0 ||
+        solution.component[edge.second] != 0) {
+      continue;
+    }
+    total += (solution.center_in_world[edge.second] -
+              solution.center_in_world[edge.first])
+                 .norm();
+    ++count;
+  }
+  const double scale = total > 0 ? count / total : 1.0;
+  scene->poses.clear();
+  bool first = true;
+  Mat3 old_world_from_world = Mat3::Identity();
+  Vec3 origin = Vec3::Zero();
+  for (std::size_t n = 0; n < problem.views.size(); ++n) {
+    if (solution.component[n] != 0) continue;
+    if (first) {
+      old_world_from_world = problem.cam_from_world[n].transpose();
+      origin = solution.center_in_world[n];
+      first = false;
+    }
+    Pose pose;
+    pose.rotation =
+        NearestRotation(problem.cam_from_world[n] * old_world_from_world);
+    pose.center = scale * (old_world_from_world.transpose() *
+                           (solution.center_in_world[n] - origin));
+    scene->poses[scene->views.at(problem.views[n]).pose_id] = pose;
+  }
 }
 
 }  // namespace lowlap

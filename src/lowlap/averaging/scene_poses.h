@@ -55,6 +55,12 @@ struct PoseSummary {
   }
 };
 
+/// Replaces scene->poses by those of component 0 of a solution. Gauge: the
+/// first placed view has rotation identity and centre 0, and the mean length of
+/// the placed edges is 1.
+void SetPoses(const TranslationProblem& problem,
+              const TranslationSolution& solution, Scene* scene);
+
 /// scene.poses from scene.relative_poses and scene.scale_ratios, with the
 /// rotations and the choice of relative poses of AverageSceneRotations, and the
 /// chosen translation strategy. Relative poses whose direction contradicts the
@@ -63,8 +69,7 @@ struct PoseSummary {
 /// ratios that are not, if at least two points or lines, or three coplanar
 /// pairs, agree on them; these are listed (`weak_ratios`). The poses of the
 /// largest component replace scene.poses; the others have no common scale with
-/// it and are listed. Gauge: the first placed view has rotation identity and
-/// centre 0, and the mean length of the placed edges is 1.
+/// it and are listed. Gauge: that of SetPoses.
 Result<PoseSummary> SolveScenePoses(Scene* scene,
                                     const SceneRotations& rotations,
                                     const PoseOptions& options,

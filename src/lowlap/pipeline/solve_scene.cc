@@ -1,6 +1,7 @@
 #include "lowlap/pipeline/solve_scene.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 #include <vector>
@@ -61,11 +62,80 @@ std::vector<ViewTriplet> BelievedTriplets(const Scene& scene,
   return triplets;
 }
 
+// The ratios of the triplets, in their order; those in `known` are not
+// estimated again, unless one of their relative poses is among the replaced
+// motions.
+Result<std::vector<ScaleRatio>> CompleteRatios(
+    const Scene& scene, const std::vector<ViewTriplet>& triplets,
+    std::vector<ScaleRatio> known, const std::vector<MotionDecision>& motions,
+    const ScaleOptions& options, const RunContext& context) {
+  std::set<ViewPair> replaced;
+  for (const MotionDecision& motion : motions) {
+    if (motion.replaced) replaced.insert(motion.views);
+  }
+  const auto is_replaced = [&](ViewId a, ViewId b) {
+    return replaced.count({std::min(a, b), std::max(a, b)}) > 0;
+  };
+  std::map<ViewTriplet, ScaleRatio> ratios;
+  for (ScaleRatio& ratio : known) {
+    const ViewTriplet views = ratio.views;
+    if (!is_replaced(views.first, views.middle) &&
+        !is_replaced(views.middle, views.last)) {
+      ratios[views] = std::move(ratio);
+    }
+  }
+  std::vector<ViewTriplet> missing;
+  for (const ViewTriplet& views : triplets) {
+    if (ratios.count(views) == 0) missing.push_back(views);
+  }
+  auto estimated = EstimateScaleRatios(scene, missing, options, context);
+  if (!estimated) return estimated;
+  for (ScaleRatio& ratio : *estimated) ratios[ratio.views] = std::move(ratio);
+  std::vector<ScaleRatio> complete;
+  complete.reserve(triplets.size());
+  for (const ViewTriplet& views : triplets) {
+    complete.push_back(std::move(ratios.at(views)));
+  }
+  return complete;
+}
+
+}  // namespace
+
+Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
+                                 const RunContext& context, StageLog* stages) {
+  const StageLog::Scope scope(stages, "rotations");
+  SolveStart start;
+  auto motions = DecideMotions(scene, options.scale, options.poses, context);
+  if (!motions) return tl::unexpected<Error>(motions.error());
+  start.motions = std::move(*motions);
+  auto averaged = AverageSceneRotations(*scene, options.poses, context);
+  if (!averaged) return tl::unexpected<Error>(averaged.error());
+  start.rotations = std::move(*averaged);
+  return start;
+}
+
+Result<RatioSummary> EstimateBelievedRatios(Scene* scene,
+                                            const SolveStart& start,
+                                            const SolveOptions& options,
+                                            const RunContext& context,
+                                            StageLog* stages) {
+  const StageLog::Scope scope(stages, "scale ratios");
+  std::vector<ScaleRatio> known;
+  if (options.reuse_ratios) known = std::move(scene->scale_ratios);
+  auto ratios =
+      CompleteRatios(*scene, BelievedTriplets(*scene, start.rotations),
+                     std::move(known), start.motions, options.scale, context);
+  if (!ratios) return tl::unexpected<Error>(ratios.error());
+  scene->scale_ratios = std::move(*ratios);
+  return SummarizeRatios(scene->scale_ratios);
+}
+
 // Relative poses that are a little off bend what many others hold already, but
 // may be all that holds a view: they are left out if that loses none.
-Result<PoseSummary> SolvePoses(Scene* scene, const SceneRotations& rotations,
-                               const PoseOptions& options,
-                               const RunContext& context) {
+Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
+                                 const PoseOptions& options,
+                                 const RunContext& context, StageLog* stages) {
+  const StageLog::Scope scope(stages, "poses");
   auto all = SolveScenePoses(scene, rotations, options, context);
   if (!all || options.least_false_deg == 0) return all;
   PoseOptions strict = options;
@@ -82,7 +152,23 @@ Result<PoseSummary> SolvePoses(Scene* scene, const SceneRotations& rotations,
   return all;
 }
 
-}  // namespace
+Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
+                                  const RunContext& context, StageLog* stages) {
+  Refinement refinement;
+  {
+    const StageLog::Scope scope(stages, "structure");
+    auto structure = BuildStructure(scene, options.structure, context);
+    if (!structure) return tl::unexpected<Error>(structure.error());
+    refinement.structure = std::move(*structure);
+  }
+  if (options.adjust) {
+    const StageLog::Scope scope(stages, "adjustment");
+    auto adjustment = AdjustScene(scene, options.adjustment, context);
+    if (!adjustment) return tl::unexpected<Error>(adjustment.error());
+    refinement.adjustment = std::move(*adjustment);
+  }
+  return refinement;
+}
 
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
                                const RunContext& context, StageLog* stages) {
@@ -90,43 +176,21 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
     return tl::unexpected<Error>(valid.error());
   }
   SolveResult result;
-  SceneRotations rotations;
-  {
-    const StageLog::Scope scope(stages, "rotations");
-    auto motions = DecideMotions(scene, options.scale, options.poses, context);
-    if (!motions) return tl::unexpected<Error>(motions.error());
-    result.motions = std::move(*motions);
-    auto averaged = AverageSceneRotations(*scene, options.poses, context);
-    if (!averaged) return tl::unexpected<Error>(averaged.error());
-    rotations = std::move(*averaged);
-  }
-  {
-    const StageLog::Scope scope(stages, "scale ratios");
-    auto ratios = EstimateScaleRatios(
-        *scene, BelievedTriplets(*scene, rotations), options.scale, context);
-    if (!ratios) return tl::unexpected<Error>(ratios.error());
-    scene->scale_ratios = std::move(*ratios);
-    result.ratios = SummarizeRatios(scene->scale_ratios);
-  }
-  {
-    const StageLog::Scope scope(stages, "poses");
-    auto poses = SolvePoses(scene, rotations, options.poses, context);
-    if (!poses) return tl::unexpected<Error>(poses.error());
-    result.poses = std::move(*poses);
-    result.poses_before_adjustment = scene->poses;
-  }
-  {
-    const StageLog::Scope scope(stages, "structure");
-    auto structure = BuildStructure(scene, options.structure, context);
-    if (!structure) return tl::unexpected<Error>(structure.error());
-    result.structure = std::move(*structure);
-  }
-  if (options.adjust) {
-    const StageLog::Scope scope(stages, "adjustment");
-    auto adjustment = AdjustScene(scene, options.adjustment, context);
-    if (!adjustment) return tl::unexpected<Error>(adjustment.error());
-    result.adjustment = std::move(*adjustment);
-  }
+  auto start = StartSolution(scene, options, context, stages);
+  if (!start) return tl::unexpected<Error>(start.error());
+  auto ratios = EstimateBelievedRatios(scene, *start, options, context, stages);
+  if (!ratios) return tl::unexpected<Error>(ratios.error());
+  result.ratios = *ratios;
+  result.motions = std::move(start->motions);
+  auto poses =
+      ComposePoses(scene, start->rotations, options.poses, context, stages);
+  if (!poses) return tl::unexpected<Error>(poses.error());
+  result.poses = std::move(*poses);
+  result.poses_before_adjustment = scene->poses;
+  auto refinement = RefineSolution(scene, options, context, stages);
+  if (!refinement) return tl::unexpected<Error>(refinement.error());
+  result.structure = std::move(refinement->structure);
+  result.adjustment = std::move(refinement->adjustment);
   return result;
 }
 

@@ -1,9 +1,14 @@
 #pragma once
 
+#include <map>
+#include <optional>
+#include <vector>
+
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/structure_builder.h"
 #include "lowlap/averaging/motion_choice.h"
 #include "lowlap/averaging/scene_poses.h"
+#include "lowlap/averaging/scene_rotations.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/pipeline/stage_log.h"
@@ -18,6 +23,10 @@ struct SolveOptions {
   StructureOptions structure;
   AdjustmentOptions adjustment;
   bool adjust = true;
+  /// Ratios that the scene holds already are taken as they are, unless the
+  /// choice of a motion changes one of their relative poses. For solving parts
+  /// of one scene, with the same scale options.
+  bool reuse_ratios = false;
 
   Status Validate() const;
 };
@@ -43,6 +52,42 @@ struct SolveResult {
   /// Poses before the adjustment, for comparison.
   std::map<PoseId, Pose> poses_before_adjustment;
 };
+
+/// What every strategy of composing poses starts from.
+struct SolveStart {
+  std::vector<MotionDecision> motions;
+  SceneRotations rotations;
+};
+
+/// The first stage of SolveScene: settles the alternatives of relative poses
+/// (DecideMotions), averages the rotations and chooses the relative poses to
+/// believe.
+Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
+                                 const RunContext& context, StageLog* stages);
+
+/// The second stage: replaces scene->scale_ratios by those of the triplets of
+/// the relative poses that are believed.
+Result<RatioSummary> EstimateBelievedRatios(Scene* scene,
+                                            const SolveStart& start,
+                                            const SolveOptions& options,
+                                            const RunContext& context,
+                                            StageLog* stages);
+
+/// The third stage: scene->poses by options.strategy (SolveScenePoses), without
+/// the relative poses that are a little off if that loses no view.
+Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
+                                 const PoseOptions& options,
+                                 const RunContext& context, StageLog* stages);
+
+struct Refinement {
+  StructureSummary structure;
+  std::optional<AdjustmentSummary> adjustment;
+};
+
+/// The last stages: structure from scene->poses and, if options.adjust, bundle
+/// adjustment.
+Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
+                                  const RunContext& context, StageLog* stages);
 
 /// From measurements to a calibrated scene: choice between alternative motions
 /// (DecideMotions), rotations and the choice of relative poses, ratios of the
