@@ -1,0 +1,30 @@
+#pragma once
+
+#include "lowlap/averaging/translation_problem.h"
+
+namespace lowlap {
+
+/// Bilinear angle-based translation averaging (Zhuang, Cheong, Lee, "Baseline
+/// desensitizing in translation averaging", CVPR 2018):
+///
+///   min over C, q  sum rho(|q_ij (C_j - C_i) - d_ij|),   q_ij >= 0,
+///
+/// where q is an inverse length, so that a residual at its best q is the sine
+/// of the angle between C_j - C_i and d_ij (1 beyond a right angle), whatever
+/// the baseline. rho is Huber's with the turn at 0.1. As published: the start
+/// is revised LUD; in ten rounds the weights are set, and in each, ten times, q
+/// in closed form and C by linear least squares (block coordinate descent).
+/// The paper's further weights from rotations are left out: rotations are
+/// averaged, and their outliers removed, before.
+///
+/// Not convex: a start that is wrong may stay wrong. Ratios and deviations are
+/// ignored; only parallel-rigid parts of three or more views are placed
+/// (SolveDirectionParts), each in a component of its own.
+class BataAverager : public TranslationAverager {
+ public:
+  std::string Name() const override { return "bata"; }
+  Result<TranslationSolution> Solve(const TranslationProblem& problem,
+                                    const RunContext& context) const override;
+};
+
+}  // namespace lowlap
