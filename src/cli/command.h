@@ -45,6 +45,7 @@ void AddAdjust(CLI::App* program, Action* action);
 void AddEvaluate(CLI::App* program, Action* action);
 void AddFeatures(CLI::App* program, Action* action);
 void AddInspect(CLI::App* program, Action* action);
+void AddSubsets(CLI::App* program, Action* action);
 void AddConvert(CLI::App* program, Action* action);
 void AddValidate(CLI::App* program, Action* action);
 void AddSimulate(CLI::App* program, Action* action);

@@ -23,6 +23,7 @@ int main(int argc, char** argv) {
   lowlap::cli::AddEvaluate(&program, &action);
   lowlap::cli::AddFeatures(&program, &action);
   lowlap::cli::AddInspect(&program, &action);
+  lowlap::cli::AddSubsets(&program, &action);
   lowlap::cli::AddConvert(&program, &action);
   lowlap::cli::AddValidate(&program, &action);
   lowlap::cli::AddSimulate(&program, &action);

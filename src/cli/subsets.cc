@@ -1,0 +1,301 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <ostream>
+#include <utility>
+
+#include "cli/command.h"
+#include "cli/scene_input.h"
+#include "cli/solve_flags.h"
+#include "lowlap/core/atomic_file.h"
+#include "lowlap/core/hash.h"
+#include "lowlap/io/scene_binary.h"
+#include "lowlap/pipeline/output_folder.h"
+#include "lowlap/pipeline/scene_reduction.h"
+#include "lowlap/pipeline/subset_runs.h"
+#include "lowlap/pipeline/subset_table.h"
+
+namespace lowlap::cli {
+namespace {
+
+struct Flags {
+  CommonFlags common;
+  SceneInputFlags input;
+  SolveFlags solve;
+  std::string output;
+  int drop = 3;
+  std::size_t sample = 0;
+  int jobs = 0;
+  int max_point_matches = 150;
+  SubsetBounds bounds;
+};
+
+Status WriteText(const std::string& path, const std::string& text) {
+  return WriteFileAtomically(path, [&](std::ostream& out) -> Status {
+    out << text;
+    return {};
+  });
+}
+
+// What results.csv depends on, apart from the choice of the subsets.
+Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
+                                 const GroundTruth& truth) {
+  const auto bytes = FormatSceneBinary(scene);
+  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  Hash128 hash;
+  hash.Add(*bytes);
+  for (const auto& [view, pose] : truth) {
+    hash.Add(view);
+    for (int n = 0; n < 3; ++n) hash.Add(pose.center(n));
+  }
+  std::string text =
+      "version " LOWLAP_VERSION "\nscene " + ToHex(hash.value()) + "\nseed " +
+      std::to_string(flags.common.seed) + "\nstrategy " + flags.solve.strategy +
+      "\nscale " + flags.solve.scale.criterion + " " + flags.solve.scale.nfa +
+      " " + std::to_string(flags.solve.scale.threshold_px);
+  for (const std::string& kind : flags.solve.scale.features) {
+    text += " " + kind;
+  }
+  text += flags.solve.no_adjust ? "\nno adjustment" : "\nadjustment";
+  for (const std::string& kind : flags.solve.adjust_features) {
+    text += " " + kind;
+  }
+  return text + "\nrefine " + flags.solve.refine_intrinsics + "\n";
+}
+
+/// The table on disk: every line is appended by one write and flushed to the
+/// disk, so that a run that is killed loses what it had not finished.
+class ResultFile {
+ public:
+  explicit ResultFile(std::string path) : path_(std::move(path)) {}
+  ~ResultFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+  ResultFile(const ResultFile&) = delete;
+  ResultFile& operator=(const ResultFile&) = delete;
+
+  Status Open() {
+    file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+    return file_ >= 0 ? Status() : Failure("cannot be opened");
+  }
+  Status Append(const std::string& line) const {
+    const ssize_t written = ::write(file_, line.data(), line.size());
+    const bool whole = written == static_cast<ssize_t>(line.size());
+    return whole && ::fdatasync(file_) == 0 ? Status()
+                                            : Failure("cannot be written to");
+  }
+
+ private:
+  Status Failure(const std::string& what) const {
+    return MakeError(ErrorCode::kIo, what, path_);
+  }
+
+  std::string path_;
+  int file_ = -1;
+};
+
+std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
+                  const Scene& scene) {
+  std::string text = SubsetCsvHeader();
+  for (const SubsetOutcome& outcome : outcomes) {
+    text += ToCsvLine(outcome, scene);
+  }
+  return text;
+}
+
+// The outcomes of earlier runs with the same settings.
+Result<std::vector<SubsetOutcome>> Resume(const std::string& folder,
+                                          const std::string& settings,
+                                          const Scene& scene) {
+  namespace fs = std::filesystem;
+  const std::string settings_path =
+      (fs::path(folder) / "settings.txt").string();
+  const std::string table_path = (fs::path(folder) / "results.csv").string();
+  if (const Status made = PrepareOutputFolder(folder); !made) {
+    return tl::unexpected<Error>(made.error());
+  }
+  std::vector<SubsetOutcome> outcomes;
+  if (fs::exists(table_path)) {
+    const auto before = ReadWholeFile(settings_path);
+    if (!before || *before != settings) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "holds results of another scene or of other options; "
+                       "take another folder, or remove them",
+                       folder);
+    }
+    const auto text = ReadWholeFile(table_path);
+    if (!text) return tl::unexpected<Error>(text.error());
+    auto parsed = ParseSubsetCsv(*text, scene);
+    if (!parsed) {
+      parsed.error().file = table_path;
+      return parsed;
+    }
+    outcomes = std::move(*parsed);
+  }
+  Status written = WriteText(settings_path, settings);
+  if (written) written = WriteText(table_path, ToCsv(outcomes, scene));
+  if (!written) return tl::unexpected<Error>(written.error());
+  return outcomes;
+}
+
+void PrintSilentFailures(const std::vector<SubsetOutcome>& outcomes,
+                         const Scene& scene, const SubsetBounds& bounds) {
+  for (const SubsetOutcome& outcome : outcomes) {
+    if (!IsSilentFailure(outcome, bounds)) continue;
+    std::string dropped;
+    for (const ViewId view : outcome.dropped) {
+      dropped += " " + scene.views.at(view).filename;
+    }
+    std::printf(
+        "silent failure without%s: %s is off by %.3f\n", dropped.c_str(),
+        scene.views.at(outcome.worst_view).filename.c_str(), outcome.max_error);
+  }
+}
+
+int Finish(std::vector<SubsetOutcome> outcomes, const Scene& scene,
+           const Flags& flags) {
+  const auto path = [&](const char* name) {
+    return (std::filesystem::path(flags.output) / name).string();
+  };
+  const SubsetSummary summary = SummarizeSubsets(outcomes, flags.bounds);
+  const auto plot = DrawSubsets(outcomes);
+  if (!plot) return Fail(plot.error());
+  Status written =
+      WriteText(path("summary.json"), ToJson(summary, flags.bounds));
+  if (written) written = WriteText(path("results.svg"), *plot);
+  if (!written) return Fail(written.error());
+  PrintSilentFailures(outcomes, scene, flags.bounds);
+  std::printf("%s", ToText(summary, flags.bounds).c_str());
+  std::printf("written to %s: results.csv summary.json results.svg\n",
+              flags.output.c_str());
+  return 0;
+}
+
+int Subsets(const Flags& flags) {
+  RunContext context = MakeContext(flags.common);
+  if (flags.jobs > 0) context.num_threads = flags.jobs;
+  auto options = MakeSolveOptions(flags.solve);
+  if (!options) return Fail(options.error());
+  if (const Status valid = flags.bounds.Validate(); !valid) {
+    return Fail(valid.error());
+  }
+  StageLog stages;
+  auto loaded = LoadMeasuredScene(flags.input, context, &stages);
+  if (!loaded) return Fail(loaded.error());
+  Scene scene = std::move(loaded->scene);
+  DropSolution(&scene);
+  if (flags.max_point_matches > 0) {
+    if (const Status status =
+            LimitPointMatches(flags.max_point_matches, &scene);
+        !status) {
+      return Fail(status.error());
+    }
+  }
+  const auto truth = LoadGroundTruth(flags.solve.ground_truth, scene);
+  if (!truth) return Fail(truth.error());
+  if (const Status set = SetRefinement(flags.solve.refine_intrinsics, &scene,
+                                       &options->adjustment);
+      !set) {
+    return Fail(set.error());
+  }
+  const auto chosen =
+      ChooseSubsets(scene, flags.drop, flags.sample, flags.common.seed);
+  if (!chosen) return Fail(chosen.error());
+  const auto settings = SettingsText(flags, scene, **truth);
+  if (!settings) return Fail(settings.error());
+  auto known = Resume(flags.output, *settings, scene);
+  if (!known) return Fail(known.error());
+
+  std::map<std::vector<ViewId>, SubsetOutcome> outcomes;
+  for (SubsetOutcome& outcome : *known) {
+    outcomes[outcome.dropped] = std::move(outcome);
+  }
+  std::vector<std::vector<ViewId>> missing;
+  for (const std::vector<ViewId>& dropped : *chosen) {
+    if (outcomes.count(dropped) == 0) missing.push_back(dropped);
+  }
+  if (missing.size() < chosen->size()) {
+    context.Log(LogLevel::kInfo,
+                std::to_string(chosen->size() - missing.size()) +
+                    " subsets are in results.csv already");
+  }
+  const std::string table =
+      (std::filesystem::path(flags.output) / "results.csv").string();
+  {
+    ResultFile file(table);
+    Status status = file.Open();
+    if (status) {
+      status = RunSubsets(scene, **truth, missing, *options, context,
+                          [&](const SubsetOutcome& outcome) -> Status {
+                            outcomes[outcome.dropped] = outcome;
+                            return file.Append(ToCsvLine(outcome, scene));
+                          });
+    }
+    if (!status) return Fail(status.error());
+  }
+  std::vector<SubsetOutcome> all, asked_for;
+  for (const auto& entry : outcomes) all.push_back(entry.second);
+  for (const std::vector<ViewId>& dropped : *chosen) {
+    asked_for.push_back(outcomes.at(dropped));
+  }
+  // In the order of the subsets, whatever order they were finished in.
+  if (const Status written = WriteText(table, ToCsv(all, scene)); !written) {
+    return Fail(written.error());
+  }
+  return Finish(std::move(asked_for), scene, flags);
+}
+
+}  // namespace
+
+void AddSubsets(CLI::App* program, Action* action) {
+  auto flags = std::make_shared<Flags>();
+  // Coplanar pairs take most of the adjustment's time, and matter little where
+  // points are many.
+  flags->solve.adjust_features = {"points", "lines"};
+  CLI::App* command = program->add_subcommand(
+      "subsets",
+      "Solve a measured scene once for every way to drop some of its views, "
+      "and compare with the truth: how many are solved, how well, and whether "
+      "failures are flagged");
+  AddSceneInputFlags(command, &flags->input);
+  command
+      ->add_option("-o,--output,--outdir", flags->output,
+                   "Folder for results.csv, summary.json and results.svg. A "
+                   "run that was stopped goes on from the results there")
+      ->required();
+  command->add_option("--drop", flags->drop, "Number of views to leave out")
+      ->capture_default_str();
+  command->add_option("--sample,--limit", flags->sample,
+                      "Only so many of the ways, drawn with --seed");
+  command
+      ->add_option("--jobs", flags->jobs,
+                   "Subsets to solve at a time, each on one thread; default "
+                   "--threads")
+      ->check(CLI::Range(0, 1024));
+  command
+      ->add_option("--max-point-matches", flags->max_point_matches,
+                   "Point matches to use of each pair, those on the longest "
+                   "tracks first; 0: all")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--good", flags->bounds.accurate,
+                   "Largest position error of a good solution, in the unit of "
+                   "the true cameras")
+      ->capture_default_str();
+  command
+      ->add_option("--wrong", flags->bounds.failed,
+                   "A camera is wrong beyond this")
+      ->capture_default_str();
+  AddSolveFlags(command, &flags->solve);
+  command->get_option("--gt")->required();
+  AddCommonFlags(command, &flags->common);
+  command->callback(
+      [flags, action] { *action = [flags] { return Subsets(*flags); }; });
+}
+
+}  // namespace lowlap::cli
