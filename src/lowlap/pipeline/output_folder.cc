@@ -50,4 +50,21 @@ Status WriteOutputs(Scene scene, const RunSummary& summary,
                              });
 }
 
+Status WriteTextFiles(
+    const std::vector<std::pair<std::string, std::string>>& files,
+    const std::string& folder) {
+  if (Status made = PrepareOutputFolder(folder); !made) return made;
+  for (const auto& file : files) {
+    const std::string& content = file.second;
+    const Status written =
+        WriteFileAtomically((fs::path(folder) / file.first).string(),
+                            [&](std::ostream& stream) -> Status {
+                              stream << content;
+                              return {};
+                            });
+    if (!written) return written;
+  }
+  return {};
+}
+
 }  // namespace lowlap

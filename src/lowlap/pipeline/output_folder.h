@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "lowlap/core/result.h"
 #include "lowlap/pipeline/summary_json.h"
@@ -19,5 +21,11 @@ Status PrepareOutputFolder(const std::string& folder);
 /// from what it was relative to.
 Status WriteOutputs(Scene scene, const RunSummary& summary,
                     const std::string& folder);
+
+/// Makes the folder and writes files (name, content) into it, each whole or not
+/// at all.
+Status WriteTextFiles(
+    const std::vector<std::pair<std::string, std::string>>& files,
+    const std::string& folder);
 
 }  // namespace lowlap
