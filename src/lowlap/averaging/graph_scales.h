@@ -13,6 +13,10 @@ namespace lowlap {
 class GraphScalesAverager : public TranslationAverager {
  public:
   std::string Name() const override { return "graph"; }
+  std::string Needs() const override {
+    return "a scale ratio, or directions that fix a scale, across every camera "
+           "on the way to the others";
+  }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
 };

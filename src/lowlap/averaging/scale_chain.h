@@ -11,6 +11,9 @@ namespace lowlap {
 class ScaleChainAverager : public TranslationAverager {
  public:
   std::string Name() const override { return "chain"; }
+  std::string Needs() const override {
+    return "a scale ratio across every camera on the way to the others";
+  }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
 };

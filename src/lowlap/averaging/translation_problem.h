@@ -71,6 +71,12 @@ class TranslationAverager {
   virtual std::string Name() const = 0;
   /// Whether Solve looks at TranslationProblem::tracks.
   virtual bool NeedsTracks() const { return false; }
+  /// What a view needs to be placed with the others, for people: completes the
+  /// sentence "a view needs ...".
+  virtual std::string Needs() const {
+    return "directions that fix its place among the others without any length "
+           "(cycles that share no single camera); scale ratios are not used";
+  }
   virtual Result<TranslationSolution> Solve(
       const TranslationProblem& problem, const RunContext& context) const = 0;
 };
