@@ -46,6 +46,10 @@ class GlobalPositioningAverager : public TranslationAverager {
                                             : "global_positioning_2view";
   }
   bool NeedsTracks() const override { return true; }
+  std::string Needs() const override {
+    return "points that two of the other cameras see as well; scale ratios are "
+           "not used";
+  }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
 

@@ -48,6 +48,7 @@ class OneDSfmAverager : public TranslationAverager {
       : inner_(std::move(inner)), options_(options) {}
   std::string Name() const override { return "1dsfm+" + inner_->Name(); }
   bool NeedsTracks() const override { return inner_->NeedsTracks(); }
+  std::string Needs() const override { return inner_->Needs(); }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
 

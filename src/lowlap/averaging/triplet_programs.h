@@ -43,6 +43,10 @@ class TripletProgramAverager : public TranslationAverager {
   std::string Name() const override {
     return norm_ == Norm::kMaximum ? "linf" : "l1_lp";
   }
+  std::string Needs() const override {
+    return "a triangle of relative poses that shares an edge with those of the "
+           "others";
+  }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
 
