@@ -40,6 +40,7 @@ using Action = std::function<int()>;
 // Each adds one command to the program; `action` is set if it is chosen.
 void AddRun(CLI::App* program, Action* action);
 void AddSolve(CLI::App* program, Action* action);
+void AddCompare(CLI::App* program, Action* action);
 void AddScales(CLI::App* program, Action* action);
 void AddAdjust(CLI::App* program, Action* action);
 void AddEvaluate(CLI::App* program, Action* action);

@@ -18,6 +18,7 @@ int main(int argc, char** argv) {
   lowlap::cli::Action action;
   lowlap::cli::AddRun(&program, &action);
   lowlap::cli::AddSolve(&program, &action);
+  lowlap::cli::AddCompare(&program, &action);
   lowlap::cli::AddScales(&program, &action);
   lowlap::cli::AddAdjust(&program, &action);
   lowlap::cli::AddEvaluate(&program, &action);

@@ -127,17 +127,26 @@ void AddSolveFlags(CLI::App* command, SolveFlags* flags) {
                    "How poses are composed: graph (average over all ratios) or "
                    "chain (the paper's composition)")
       ->check(CLI::IsMember(TranslationAveragerNames()));
+  AddAdjustFlags(command, flags);
+  AddRefinementFlag(command, &flags->refine_intrinsics);
+  AddTruthFlag(command, &flags->ground_truth);
+}
+
+void AddAdjustFlags(CLI::App* command, SolveFlags* flags) {
   command
       ->add_option("--adjust-features", flags->adjust_features,
                    "Kinds in the bundle adjustment, separated by commas")
       ->delimiter(',');
   command->add_flag("--no-adjust", flags->no_adjust,
                     "Stop before the bundle adjustment");
-  AddRefinementFlag(command, &flags->refine_intrinsics);
-  command->add_option("--gt", flags->ground_truth,
-                      "True cameras to evaluate against, never used for "
-                      "solving: a folder of Strecha's .camera files, or a "
-                      "scene file");
+}
+
+CLI::Option* AddTruthFlag(CLI::App* command, std::string* path) {
+  return command->add_option(
+      "--gt", *path,
+      "True cameras to evaluate against, never used for "
+      "solving: a folder of Strecha's .camera files, or a "
+      "scene file");
 }
 
 Status SetAdjustedFeatures(const std::vector<std::string>& features,

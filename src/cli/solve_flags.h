@@ -37,6 +37,11 @@ struct SolveFlags {
 void AddSolveFlags(CLI::App* command, SolveFlags* flags);
 Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
 
+/// --adjust-features and --no-adjust.
+void AddAdjustFlags(CLI::App* command, SolveFlags* flags);
+/// --gt
+CLI::Option* AddTruthFlag(CLI::App* command, std::string* path);
+
 /// Sets the enabled kinds of `options` (points, lines, coplanar pairs);
 /// coplanar pairs need lines.
 Status SetAdjustedFeatures(const std::vector<std::string>& features,

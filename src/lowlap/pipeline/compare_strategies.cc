@@ -197,6 +197,13 @@ StrategyResult* FindReference(const std::string& name,
 
 }  // namespace
 
+Status CompareOptions::Validate() const {
+  if (const Status valid = solve.Validate(); !valid) return valid;
+  const auto averagers = MakeAveragers(strategies);
+  if (!averagers) return tl::unexpected<Error>(averagers.error());
+  return {};
+}
+
 Result<Comparison> CompareStrategies(const Scene& scene,
                                      const CompareOptions& options,
                                      const RunContext& context) {

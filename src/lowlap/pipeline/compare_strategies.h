@@ -27,6 +27,9 @@ struct CompareOptions {
   std::string reference = "graph";
   /// True cameras to judge by; never used for solving.
   std::optional<GroundTruth> truth;
+
+  /// The known strategies are listed for an unknown one.
+  Status Validate() const;
 };
 
 /// A solution at one point of the way: as averaged, or as adjusted.

@@ -1,0 +1,87 @@
+#include <cstdio>
+#include <memory>
+#include <utility>
+
+#include "cli/command.h"
+#include "cli/scene_input.h"
+#include "cli/solve_flags.h"
+#include "lowlap/pipeline/comparison_output.h"
+#include "lowlap/pipeline/output_folder.h"
+
+namespace lowlap::cli {
+namespace {
+
+struct Flags {
+  CommonFlags common;
+  SceneInputFlags input;
+  SolveFlags solve;
+  std::vector<std::string> strategies = {"all"};
+  std::string reference = "graph";
+  std::string output;
+};
+
+int Compare(const Flags& flags) {
+  const RunContext context = MakeContext(flags.common);
+  CompareOptions options;
+  options.strategies = flags.strategies;
+  options.reference = flags.reference;
+  const auto solve = MakeSolveOptions(flags.solve);
+  if (!solve) return Fail(solve.error());
+  options.solve = *solve;
+  if (const Status valid = options.Validate(); !valid) {
+    return Fail(valid.error());
+  }
+  // A folder that cannot be written is found before the work.
+  if (const Status made = PrepareOutputFolder(flags.output); !made) {
+    return Fail(made.error());
+  }
+  StageLog stages;
+  const auto loaded = LoadMeasuredScene(flags.input, context, &stages);
+  if (!loaded) return Fail(loaded.error());
+  auto truth = LoadGroundTruth(flags.solve.ground_truth, loaded->scene);
+  if (!truth) return Fail(truth.error());
+  options.truth = std::move(*truth);
+
+  const auto comparison = CompareStrategies(loaded->scene, options, context);
+  if (!comparison) return Fail(comparison.error());
+  if (IsInterrupted()) return Fail({ErrorCode::kCancelled, {}, {}, {}});
+  if (const Status written =
+          WriteComparison(*comparison, loaded->scene, flags.output);
+      !written) {
+    return Fail(written.error());
+  }
+  std::printf("%s\nwritten to %s: compare.csv compare.json and plots (.svg)\n",
+              ToText(*comparison).c_str(), flags.output.c_str());
+  return 0;
+}
+
+}  // namespace
+
+void AddCompare(CLI::App* program, Action* action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = program->add_subcommand(
+      "compare",
+      "Run every strategy of composing poses on the same relative poses and "
+      "scale ratios");
+  AddSceneInputFlags(command, &flags->input);
+  command
+      ->add_option("-o,--output,--outdir", flags->output,
+                   "Folder for the tables and plots")
+      ->required();
+  command
+      ->add_option("--strategies", flags->strategies,
+                   "Strategies, separated by commas; all: every one there is. "
+                   "1dsfm+NAME runs NAME behind the filter of 1DSfM")
+      ->delimiter(',');
+  command->add_option("--reference", flags->reference,
+                      "The strategy whose cameras the others are compared with "
+                      "where there are no true ones");
+  AddScaleFlags(command, &flags->solve.scale);
+  AddAdjustFlags(command, &flags->solve);
+  AddTruthFlag(command, &flags->solve.ground_truth);
+  AddCommonFlags(command, &flags->common);
+  command->callback(
+      [flags, action] { *action = [flags] { return Compare(*flags); }; });
+}
+
+}  // namespace lowlap::cli
