@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
-#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "lowlap/robust/log_combinatorics.h"
@@ -16,27 +15,55 @@ namespace {
 constexpr int kNumNeighbors = 8;
 constexpr std::array<double, 3> kThresholdsPx = {0.5, 1, 2};
 constexpr int kPlaneSize = 3;  // samples that determine a plane
-// A pair has some hundred matches; of many more a part is enough.
-constexpr std::size_t kMaxSamples = 500;
 
 double ResidualPx(const DepthSample& sample, const Vec3& parameters) {
   return sample.speed_px *
          std::abs(sample.inverse_depth - parameters.dot(sample.ray));
 }
 
-// The `count` nearest samples of a place, the nearest first; ties by index.
+bool IsLeft(const DepthSample& a, const DepthSample& b) {
+  return std::tie(a.ray.x(), a.ray.y(), a.is_line, a.feature) <
+         std::tie(b.ray.x(), b.ray.y(), b.is_line, b.feature);
+}
+
+// The `count` nearest samples of a place, without one of them, the nearest
+// first; ties by index. The samples are sorted by x, so that the search ends
+// on either side where that difference alone is too large.
 std::vector<int> Nearest(const std::vector<DepthSample>& samples,
                          const Vec3& ray, int count, int skipped) {
   std::vector<std::pair<double, int>> nearest;  // sorted
-  for (int n = 0; n < static_cast<int>(samples.size()); ++n) {
-    if (n == skipped) continue;
+  nearest.reserve(count + 1);
+  const auto is_too_far = [&](int n) {
+    const double dx = samples[n].ray.x() - ray.x();
+    return static_cast<int>(nearest.size()) == count &&
+           dx * dx > nearest.back().first;
+  };
+  const auto consider = [&](int n) {
+    if (n == skipped) return;
     const std::pair<double, int> candidate{(samples[n].ray - ray).squaredNorm(),
                                            n};
     const bool is_full = static_cast<int>(nearest.size()) == count;
-    if (is_full && nearest.back() <= candidate) continue;
+    if (is_full && nearest.back() <= candidate) return;
     if (is_full) nearest.pop_back();
     nearest.insert(std::upper_bound(nearest.begin(), nearest.end(), candidate),
                    candidate);
+  };
+  const int num_samples = static_cast<int>(samples.size());
+  int right =
+      static_cast<int>(std::partition_point(samples.begin(), samples.end(),
+                                            [&](const DepthSample& s) {
+                                              return s.ray.x() < ray.x();
+                                            }) -
+                       samples.begin());
+  int left = right - 1;
+  while (left >= 0 || right < num_samples) {
+    if (left >= 0) {
+      is_too_far(left) ? static_cast<void>(left = -1) : consider(left--);
+    }
+    if (right < num_samples) {
+      is_too_far(right) ? static_cast<void>(right = num_samples)
+                        : consider(right++);
+    }
   }
   std::vector<int> indices;
   for (const auto& [distance, index] : nearest) indices.push_back(index);
@@ -170,6 +197,7 @@ class PlaneSearch {
       }
       const auto middle = residuals_px.begin() + residuals_px.size() * 3 / 4;
       std::nth_element(residuals_px.begin(), middle, residuals_px.end());
+      if (!(*middle <= kThresholdsPx.back())) continue;
       order.emplace_back(*middle, n);
     }
     std::sort(order.begin(), order.end());
@@ -242,10 +270,10 @@ class PlaneSearch {
 };
 
 std::vector<DepthSample> Thinned(std::vector<DepthSample> samples) {
-  if (samples.size() <= kMaxSamples) return samples;
+  if (samples.size() <= kMaxPlaneSamples) return samples;
   std::vector<DepthSample> thinned;
-  for (std::size_t n = 0; n < kMaxSamples; ++n) {
-    thinned.push_back(samples[n * samples.size() / kMaxSamples]);
+  for (std::size_t n = 0; n < kMaxPlaneSamples; ++n) {
+    thinned.push_back(samples[n * samples.size() / kMaxPlaneSamples]);
   }
   return thinned;
 }
@@ -256,14 +284,26 @@ double PairPlane::Stddev(const Vec3& ray) const {
   return std::sqrt(std::max(0.0, ray.dot(covariance * ray)));
 }
 
+bool PairPlanes::Matches(const DepthSample& sample) const {
+  return std::binary_search(matched.begin(), matched.end(),
+                            std::make_pair(sample.is_line, sample.feature));
+}
+
 int PairPlanes::PlaneAt(const Vec3& ray) const {
   constexpr int kNearest = 4, kNeeded = 3;
-  std::vector<int> votes(planes.size(), 0);
-  for (const int n : Nearest(samples, ray, kNearest, -1)) {
+  const bool is_inside_any =
+      std::any_of(planes.begin(), planes.end(), [&](const PairPlane& plane) {
+        return IsInside(plane.hull, ray.head<2>());
+      });
+  if (!is_inside_any) return kNoPlane;
+  const std::vector<int> nearest = Nearest(samples, ray, kNearest, -1);
+  for (const int n : nearest) {
     const int plane = plane_of_sample[n];
-    if (plane != kNoPlane && ++votes[plane] == kNeeded &&
-        IsInside(planes[plane].hull, ray.head<2>())) {
-      return plane;
+    const auto num_on_plane =
+        std::count_if(nearest.begin(), nearest.end(),
+                      [&](int m) { return plane_of_sample[m] == plane; });
+    if (plane != kNoPlane && num_on_plane >= kNeeded) {
+      return IsInside(planes[plane].hull, ray.head<2>()) ? plane : kNoPlane;
     }
   }
   return kNoPlane;
@@ -271,7 +311,12 @@ int PairPlanes::PlaneAt(const Vec3& ray) const {
 
 PairPlanes FindPlanes(std::vector<DepthSample> samples) {
   PairPlanes result;
+  for (const DepthSample& sample : samples) {
+    result.matched.emplace_back(sample.is_line, sample.feature);
+  }
+  std::sort(result.matched.begin(), result.matched.end());
   result.samples = Thinned(std::move(samples));
+  std::sort(result.samples.begin(), result.samples.end(), IsLeft);
   if (static_cast<int>(result.samples.size()) > kPlaneSize) {
     PlaneSearch(&result).Run();
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "lowlap/scale/plane_samples.h"
@@ -21,12 +22,23 @@ struct PairPlane {
   double Stddev(const Vec3& ray) const;
 };
 
+/// The planes of a pair are found on at most so many samples.
+inline constexpr std::size_t kMaxPlaneSamples = 500;
+
 struct PairPlanes {
+  /// At most kMaxPlaneSamples of those given (evenly spaced), from left to
+  /// right in the middle view.
   std::vector<DepthSample> samples;
   std::vector<PairPlane> planes;
   std::vector<int> plane_of_sample;  // kNoPlane: on none
 
+  /// The features of all samples, sorted: (is_line, feature).
+  std::vector<std::pair<bool, FeatureIndex>> matched;
+
   static constexpr int kNoPlane = -1;
+
+  /// Whether the pair matches the feature of a sample of another pair.
+  bool Matches(const DepthSample& sample) const;
 
   /// The plane in whose extent a ray of the middle view lies: inside the convex
   /// hull of its inliers, and three of the four nearest samples are on it, so
