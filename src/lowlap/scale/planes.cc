@@ -173,7 +173,8 @@ class PlaneSearch {
         weights += robust;
       }
       const Eigen::LDLT<Mat3> solver(information);
-      if (solver.info() != Eigen::Success || !(solver.rcond() > 1e-9)) {
+      if (solver.info() != Eigen::Success ||
+          !(solver.vectorD().minCoeff() > 1e-9 * solver.vectorD().maxCoeff())) {
         return false;
       }
       plane->parameters = solver.solve(right);
