@@ -47,6 +47,11 @@ class GlobalPositioningAverager : public TranslationAverager {
   }
   bool NeedsTracks() const override { return true; }
   std::string Needs() const override {
+    return std::to_string(options_.min_shared_points) +
+           " points that two placed views see, on tracks of at least " +
+           std::to_string(options_.min_views_per_track) + " views";
+  }
+  std::string Needs() const override {
     return "points that two of the other cameras see as well; scale ratios are "
            "not used";
   }

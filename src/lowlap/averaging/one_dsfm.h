@@ -49,6 +49,9 @@ class OneDSfmAverager : public TranslationAverager {
   std::string Name() const override { return "1dsfm+" + inner_->Name(); }
   bool NeedsTracks() const override { return inner_->NeedsTracks(); }
   std::string Needs() const override { return inner_->Needs(); }
+  std::string Needs() const override {
+    return inner_->Needs() + ", of relative poses that 1DSfM keeps";
+  }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
 

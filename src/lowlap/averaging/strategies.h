@@ -12,7 +12,8 @@ namespace lowlap {
 /// The names of the built-in strategies; the first is the default.
 std::vector<std::string> TranslationAveragerNames();
 
-/// A strategy by name; kInvalidArgument lists the known ones otherwise.
+/// A strategy by name, or behind the edge filter of OneDSfmAverager:
+/// `1dsfm+NAME`. kInvalidArgument lists the known ones otherwise.
 Result<std::unique_ptr<TranslationAverager>> MakeTranslationAverager(
     const std::string& name);
 

@@ -47,6 +47,10 @@ class TripletProgramAverager : public TranslationAverager {
     return "a triangle of relative poses that shares an edge with those of the "
            "others";
   }
+  std::string Needs() const override {
+    return "a triangle of relative poses that shares an edge with the "
+           "others' triangles";
+  }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
 

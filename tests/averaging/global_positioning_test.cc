@@ -1,0 +1,183 @@
+#include "lowlap/averaging/global_positioning.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "averaging/ray_problem.h"
+#include "lowlap/averaging/internal/positioning_solver.h"
+#include "lowlap/averaging/internal/track_groups.h"
+
+namespace lowlap {
+namespace {
+
+TranslationSolution Solve(const TranslationProblem& problem,
+                          const GlobalPositioningOptions& options = {},
+                          std::uint64_t seed = 0) {
+  RunContext context;
+  context.seed = seed;
+  const auto solution =
+      GlobalPositioningAverager(options).Solve(problem, context);
+  EXPECT_TRUE(solution);
+  return *solution;
+}
+
+double Error(const RandomProblem& made, const TranslationSolution& solution) {
+  std::vector<bool> placed;
+  for (const int component : solution.component) {
+    placed.push_back(component == 0);
+  }
+  return GaugeFreeError(made.centers, solution.center_in_world, placed);
+}
+
+TEST(GlobalPositioning, ExactFromRandomStarts) {
+  const RandomProblem made = MakeRayRing(20, 400, 5, true, 1);
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    const TranslationSolution solution = Solve(made.problem, {}, seed);
+    EXPECT_EQ(solution.component, std::vector<int>(20, 0));
+    EXPECT_LT(Error(made, solution), 1e-6) << seed;
+  }
+}
+
+TEST(GlobalPositioning, ExactFromAStart) {
+  const RandomProblem made = MakeRayRing(20, 400, 5, true, 2);
+  GlobalPositioningOptions options;
+  Random random(3);
+  for (const Vec3& center : made.centers) {
+    options.start.push_back(center + RandomVector(&random, 0.5));
+  }
+  const TranslationSolution from_start = Solve(made.problem, options);
+  EXPECT_LT(Error(made, from_start), 1e-6);
+  EXPECT_LT(from_start.num_iterations, Solve(made.problem).num_iterations);
+}
+
+TEST(GlobalPositioning, NoiseAndWrongRays) {
+  RandomProblem made = MakeRayRing(20, 1200, 6, true, 4);
+  Random random(5);
+  for (TrackRays& track : made.problem.tracks) {
+    for (RayObservation& seen : track.observations) {
+      const double size = random.Uniform() < 0.05 ? 1.0 : 0.001;
+      seen.ray_in_world =
+          (seen.ray_in_world + RandomVector(&random, size)).normalized();
+    }
+  }
+  EXPECT_LT(Error(made, Solve(made.problem)), 0.01);
+}
+
+TEST(GlobalPositioning, TracksOfTwoViewsFixNoScale) {
+  const RandomProblem made = MakeRayRing(12, 240, 2, false, 6);
+  EXPECT_EQ(Solve(made.problem).component, std::vector<int>(12, -1));
+  GlobalPositioningOptions options;
+  options.min_views_per_track = 2;
+  const TranslationSolution pairs = Solve(made.problem, options);
+  // Pairs that hold together only as such: each is a component.
+  EXPECT_EQ(pairs.num_components, 11);
+  EXPECT_EQ(std::count(pairs.component.begin(), pairs.component.end(), 0), 2);
+}
+
+TEST(GlobalPositioning, ShortTracksHelpWhereLongOnesFixTheScale) {
+  RandomProblem made = MakeRayRing(12, 120, 3, false, 7);
+  const RandomProblem more = MakeRayRing(12, 240, 2, false, 7);
+  made.problem.tracks.insert(made.problem.tracks.end(),
+                             more.problem.tracks.begin(),
+                             more.problem.tracks.end());
+  // Both were drawn with one seed: the same centres.
+  ASSERT_EQ(made.centers, more.centers);
+  GlobalPositioningOptions options;
+  options.min_views_per_track = 2;
+  const TranslationSolution solution = Solve(made.problem, options);
+  EXPECT_EQ(solution.component, std::vector<int>(12, 0));
+}
+
+TEST(GlobalPositioning, PartsWithoutCommonPointsAreComponents) {
+  RandomProblem made = MakeRayRing(16, 480, 4, false, 8);
+  auto& tracks = made.problem.tracks;
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(),
+                              [](const TrackRays& track) {
+                                return track.observations.front().view <= 9 &&
+                                       track.observations.back().view > 9;
+                              }),
+               tracks.end());
+  const TranslationSolution solution = Solve(made.problem);
+  std::vector<int> expected(16, 1);
+  std::fill(expected.begin(), expected.begin() + 10, 0);
+  EXPECT_EQ(solution.component, expected);
+  EXPECT_LT(Error(made, solution), 1e-6);
+}
+
+TEST(GlobalPositioning, SameSeedSameResult) {
+  const RandomProblem made = MakeRayRing(10, 100, 4, true, 9);
+  EXPECT_EQ(Solve(made.problem, {}, 3).center_in_world,
+            Solve(made.problem, {}, 3).center_in_world);
+}
+
+TEST(GlobalPositioning, NoTracksNoViews) {
+  RandomProblem made = MakeRayRing(5, 50, 3, true, 10);
+  made.problem.tracks.clear();
+  EXPECT_EQ(Solve(made.problem).component, std::vector<int>(5, -1));
+}
+
+TEST(GlobalPositioning, RefusesWrongInput) {
+  RandomProblem made = MakeRayRing(5, 50, 3, true, 11);
+  const auto fails = [&](const GlobalPositioningOptions& options) {
+    const auto solution =
+        GlobalPositioningAverager(options).Solve(made.problem, RunContext());
+    return !solution && solution.error().code == ErrorCode::kInvalidArgument;
+  };
+  GlobalPositioningOptions options;
+  options.min_views_per_track = 1;
+  EXPECT_TRUE(fails(options));
+  options = {};
+  options.start = {Vec3::Zero()};
+  EXPECT_TRUE(fails(options));
+  made.problem.tracks[0].observations[0].ray_in_world *= 2;
+  EXPECT_TRUE(fails({}));
+  made.problem.tracks[0].observations[0] = {77, Vec3::UnitZ()};
+  EXPECT_TRUE(fails({}));
+}
+
+TEST(PositioningSolver, StopsAtAMinimum) {
+  RandomProblem made = MakeRayRing(6, 60, 3, true, 12);
+  Random random(13);
+  for (TrackRays& track : made.problem.tracks) {
+    for (RayObservation& seen : track.observations) {
+      seen.ray_in_world =
+          (seen.ray_in_world + RandomVector(&random, 0.05)).normalized();
+    }
+  }
+  const auto& tracks = made.problem.tracks;
+  PositioningState state;
+  state.centers = made.centers;
+  for (const TrackRays& track : tracks) {
+    state.points.push_back(made.centers[track.observations[0].view] +
+                           5 * track.observations[0].ray_in_world);
+    state.scales.push_back(std::vector<double>(track.observations.size(), 0.2));
+  }
+  PositioningOptions options;
+  options.max_iterations = 2000;
+  ASSERT_TRUE(SolvePositions(tracks, options, RunContext(), &state));
+  const double best = PositioningCost(tracks, state, options.huber_reach);
+  EXPECT_GT(best, 1e-3);
+  for (int trial = 0; trial < 2000; ++trial) {
+    PositioningState other = state;
+    const double size = std::pow(10.0, random.Uniform(-4, -1));
+    for (Vec3& center : other.centers) center += RandomVector(&random, size);
+    for (Vec3& point : other.points) point += RandomVector(&random, size);
+    EXPECT_GE(PositioningCost(tracks, other, options.huber_reach),
+              best * (1 - 1e-6));
+  }
+}
+
+TEST(GroupViewsByTracks, AViewJoinsByPointsThatTwoViewsSee) {
+  const RandomProblem made = MakeRayRing(9, 63, 3, false, 14);  // 9 per start
+  const auto& tracks = made.problem.tracks;
+  using Groups = std::vector<std::vector<std::size_t>>;
+  EXPECT_EQ(GroupViewsByTracks(9, tracks, 3, 5),
+            (Groups{{0, 1, 2, 3, 4, 5, 6, 7, 8}}));
+  // A triple of views shares nine points, and no view more with the others.
+  EXPECT_EQ(GroupViewsByTracks(9, tracks, 3, 10).size(), 7u);
+  EXPECT_TRUE(GroupViewsByTracks(9, tracks, 4, 5).empty());
+}
+
+}  // namespace
+}  // namespace lowlap
