@@ -3,6 +3,7 @@
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED)
 find_package(Ceres 2.1 REQUIRED)
+find_package(OpenMP REQUIRED)
 find_package(OpenCV 4.6 REQUIRED
              COMPONENTS core imgproc imgcodecs features2d line_descriptor)
 find_package(nlohmann_json 3.11 REQUIRED)

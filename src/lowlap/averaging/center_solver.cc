@@ -1,9 +1,9 @@
 #include "lowlap/averaging/center_solver.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/averaging/union_find.h"
 #include "lowlap/core/median.h"
 
@@ -57,6 +57,7 @@ Result<std::vector<Vec3>> SolveCenters(std::size_t num_views,
                           along / (along_size * along_size));
   }
 
+  SparseSolver solver;
   std::vector<double> robust(edges.size(), 1.0);
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     Triplets entries;
@@ -81,21 +82,17 @@ Result<std::vector<Vec3>> SolveCenters(std::size_t num_views,
     }
     Eigen::SparseMatrix<double> matrix(num_rows, num_rows);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-    const Eigen::VectorXd solution = solver.solve(rhs);
-    if (solver.info() != Eigen::Success || !solution.allFinite()) {
-      return MakeError(ErrorCode::kNumerical,
-                       "the system of the camera centres could not be solved");
-    }
+    const auto solution = solver.Solve(matrix, rhs);
+    if (!solution) return tl::unexpected<Error>(solution.error());
     double change = 0, extent = 0;
     for (std::size_t n = 0; n < num_views; ++n) {
       if (row[n] < 0) continue;
-      const Vec3 center = solution.segment<3>(row[n]);
+      const Vec3 center = solution->block<3, 1>(row[n], 0);
       change = std::max(change, (center - centers[n]).norm());
       extent = std::max(extent, center.norm());
       centers[n] = center;
     }
-    if (change <= 1e-10 * extent) break;
+    if (change <= 1e-5 * extent) break;
 
     std::vector<double> errors(edges.size());
     for (std::size_t e = 0; e < edges.size(); ++e) {

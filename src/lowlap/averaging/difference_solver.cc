@@ -1,17 +1,18 @@
 #include "lowlap/averaging/difference_solver.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <numeric>
 #include <queue>
 
+#include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/averaging/union_find.h"
 
 namespace lowlap {
 
 Result<Eigen::MatrixXd> SolveDifferences(
     std::size_t num_nodes, const std::vector<DifferenceEdge>& edges,
-    const Eigen::VectorXd& weights, const Eigen::MatrixXd& measurements) {
+    const Eigen::VectorXd& weights, const Eigen::MatrixXd& measurements,
+    SparseSolver* solver) {
   UnionFind components(num_nodes);
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (weights(e) > 0) components.Union(edges[e].first, edges[e].second);
@@ -55,18 +56,12 @@ Result<Eigen::MatrixXd> SolveDifferences(
   }
   Eigen::SparseMatrix<double> laplacian(num_rows, num_rows);
   laplacian.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(laplacian);
-  if (solver.info() != Eigen::Success) {
-    return MakeError(ErrorCode::kNumerical,
-                     "the averaging system could not be factored");
-  }
-  const Eigen::MatrixXd reduced = solver.solve(rhs);
-  if (solver.info() != Eigen::Success || !reduced.allFinite()) {
-    return MakeError(ErrorCode::kNumerical,
-                     "the averaging system could not be solved");
-  }
+  SparseSolver own;
+  const auto reduced =
+      (solver != nullptr ? solver : &own)->Solve(laplacian, rhs);
+  if (!reduced) return tl::unexpected<Error>(reduced.error());
   for (std::size_t n = 0; n < num_nodes; ++n) {
-    if (row[n] >= 0) solution.row(n) = reduced.row(row[n]);
+    if (row[n] >= 0) solution.row(n) = reduced->row(row[n]);
   }
   return solution;
 }

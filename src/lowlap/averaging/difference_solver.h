@@ -8,6 +8,8 @@
 
 namespace lowlap {
 
+class SparseSolver;
+
 /// One measured difference x_second - x_first on a graph.
 struct DifferenceEdge {
   std::size_t first = 0;
@@ -19,10 +21,12 @@ struct DifferenceEdge {
 /// The weighted graph Laplacian that rotation averaging (tangent vectors) and
 /// scale averaging (log lengths) share. `measurements` is E x D, the result
 /// N x D. Gauge: the first node of every connected component is 0. Edges of
-/// weight 0 do not connect. Sparse LDL^T; kNumerical if it fails.
+/// weight 0 do not connect. kNumerical if the factorisation fails. A `solver`
+/// that is given keeps what it found out about the graph for the next call.
 Result<Eigen::MatrixXd> SolveDifferences(
     std::size_t num_nodes, const std::vector<DifferenceEdge>& edges,
-    const Eigen::VectorXd& weights, const Eigen::MatrixXd& measurements);
+    const Eigen::VectorXd& weights, const Eigen::MatrixXd& measurements,
+    SparseSolver* solver = nullptr);
 
 /// The spanning forest that prefers edges of low cost (Kruskal; ties by index):
 /// indices of its edges in the order in which a walk from the first node of

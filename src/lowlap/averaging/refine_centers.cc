@@ -1,9 +1,10 @@
 #include "lowlap/averaging/refine_centers.h"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "lowlap/averaging/internal/sparse_solver.h"
 
 namespace lowlap {
 namespace {
@@ -156,6 +157,7 @@ Status RefineCenters(const TranslationProblem& problem,
                      std::vector<Vec3>* centers, int max_iterations) {
   const Refiner refiner(problem, placed);
   if (refiner.num_rows() == 0) return {};
+  SparseSolver solver;
   double damping = 1e-4;
   double cost = refiner.Cost(*centers);
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
@@ -170,12 +172,11 @@ Status RefineCenters(const TranslationProblem& problem,
       for (int r = 0; r < refiner.num_rows(); ++r) {
         damped.coeffRef(r, r) += damping * hessian.coeff(r, r);
       }
-      const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(damped);
-      const Eigen::VectorXd step = solver.solve(-gradient);
-      if (solver.info() != Eigen::Success || !step.allFinite()) continue;
+      const auto step = solver.Solve(damped, -gradient);
+      if (!step) continue;
       std::vector<Vec3> trial = *centers;
       for (std::size_t n = 0; n < trial.size(); ++n) {
-        if (placed[n]) trial[n] += step.segment<3>(refiner.row()[n]);
+        if (placed[n]) trial[n] += step->block<3, 1>(refiner.row()[n], 0);
       }
       const double trial_cost = refiner.Cost(trial);
       if (trial_cost < cost) {
@@ -186,7 +187,7 @@ Status RefineCenters(const TranslationProblem& problem,
         damping = std::max(damping / 100, 1e-8);
       }
     }
-    if (!improved || relative_decrease < 1e-9) break;
+    if (!improved || relative_decrease < 1e-6) break;
   }
   return {};
 }

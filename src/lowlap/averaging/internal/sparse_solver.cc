@@ -1,0 +1,122 @@
+#include "lowlap/averaging/internal/sparse_solver.h"
+
+#include <omp.h>
+
+#include <Eigen/CholmodSupport>
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <vector>
+
+namespace lowlap {
+namespace {
+
+using Matrix = Eigen::SparseMatrix<double>;
+
+// Below this CHOLMOD's administration costs more than it saves.
+constexpr Eigen::Index kLargeSystem = 2000;
+constexpr double kMaxFactorEntries = 2e7;
+constexpr double kGradientTolerance = 1e-9;
+constexpr int kMaxGradientSteps = 2000;
+
+using Gradients = Eigen::ConjugateGradient<Matrix, Eigen::Lower>;
+
+class Cholmod : public Eigen::CholmodDecomposition<Matrix, Eigen::Lower> {
+ public:
+  Cholmod() {
+    cholmod().print = 0;  // the library writes to no stream
+    cholmod().nmethods = 1;
+    cholmod().method[0].ordering = CHOLMOD_AMD;
+    cholmod().postorder = 1;
+  }
+  /// After analyzePattern.
+  double FactorEntries() { return cholmod().lnz; }
+};
+
+// CHOLMOD's parallel regions run on the calling thread while this lives: they
+// are many and short, and the caller's threads have work of their own.
+class OneThread {
+ public:
+  OneThread() : levels_(omp_get_max_active_levels()) {
+    omp_set_max_active_levels(0);
+  }
+  ~OneThread() { omp_set_max_active_levels(levels_); }
+  OneThread(const OneThread&) = delete;
+  OneThread& operator=(const OneThread&) = delete;
+
+ private:
+  int levels_;
+};
+
+// Remembers the pattern of the last matrix.
+class Pattern {
+ public:
+  bool Changed(const Matrix& matrix) {
+    const auto* outer = matrix.outerIndexPtr();
+    const auto* inner = matrix.innerIndexPtr();
+    const bool same =
+        outer_.size() == static_cast<std::size_t>(matrix.cols() + 1) &&
+        std::equal(outer_.begin(), outer_.end(), outer) &&
+        inner_.size() == static_cast<std::size_t>(matrix.nonZeros()) &&
+        std::equal(inner_.begin(), inner_.end(), inner);
+    if (same) return false;
+    outer_.assign(outer, outer + matrix.cols() + 1);
+    inner_.assign(inner, inner + matrix.nonZeros());
+    return true;
+  }
+
+ private:
+  std::vector<Matrix::StorageIndex> outer_, inner_;
+};
+
+template <class Solver>
+Result<Eigen::MatrixXd> SolveWith(const Matrix& lower,
+                                  const Eigen::MatrixXd& rhs, Solver* solver) {
+  solver->factorize(lower);
+  if (solver->info() == Eigen::Success) {
+    Eigen::MatrixXd solution = solver->solve(rhs);
+    if (solver->info() == Eigen::Success && solution.allFinite()) {
+      return solution;
+    }
+  }
+  return MakeError(ErrorCode::kNumerical, "a sparse system of " +
+                                              std::to_string(lower.rows()) +
+                                              " unknowns could not be solved");
+}
+
+}  // namespace
+
+struct SparseSolver::Factorisation {
+  Pattern pattern;
+  Eigen::SimplicialLDLT<Matrix> small;
+  std::unique_ptr<Cholmod> large;
+};
+
+SparseSolver::SparseSolver()
+    : factorisation_(std::make_unique<Factorisation>()) {}
+SparseSolver::~SparseSolver() = default;
+
+Result<Eigen::MatrixXd> SparseSolver::Solve(const Matrix& lower,
+                                            const Eigen::MatrixXd& rhs) {
+  Factorisation& f = *factorisation_;
+  const bool new_pattern = f.pattern.Changed(lower);
+  if (lower.rows() < kLargeSystem) {
+    if (new_pattern) f.small.analyzePattern(lower);
+    return SolveWith(lower, rhs, &f.small);
+  }
+  const OneThread one_thread;
+  if (new_pattern) {
+    f.large = std::make_unique<Cholmod>();
+    f.large->analyzePattern(lower);
+  }
+  if (f.large->FactorEntries() <= kMaxFactorEntries) {
+    return SolveWith(lower, rhs, f.large.get());
+  }
+  Gradients gradients;
+  gradients.setTolerance(kGradientTolerance);
+  gradients.setMaxIterations(kMaxGradientSteps);
+  gradients.analyzePattern(lower);
+  return SolveWith(lower, rhs, &gradients);
+}
+
+}  // namespace lowlap

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCore>
+#include <memory>
+
+#include "lowlap/core/result.h"
+
+namespace lowlap {
+
+/// A x = b for symmetric positive definite, sparse A, again and again with the
+/// same pattern: the ordering and the symbolic factorisation are kept while the
+/// pattern stays.
+///
+/// Small systems: Eigen's simplicial LDL^T. Large ones: CHOLMOD (Chen et al.,
+/// ACM TOMS 35(3), 2008), which goes over to dense supernodes where the factor
+/// fills up. Ordered by AMD in both cases, and so the same on every run. Where
+/// the factor would fill up beyond 2e7 entries (graphs that join any view with
+/// any other): conjugate gradients, which need few steps on just these.
+class SparseSolver {
+ public:
+  SparseSolver();
+  ~SparseSolver();
+  SparseSolver(const SparseSolver&) = delete;
+  SparseSolver& operator=(const SparseSolver&) = delete;
+
+  /// `lower` holds the lower triangle of A; what is above it is ignored.
+  /// kNumerical if A is not positive definite or the result is not finite.
+  Result<Eigen::MatrixXd> Solve(const Eigen::SparseMatrix<double>& lower,
+                                const Eigen::MatrixXd& rhs);
+
+ private:
+  struct Factorisation;
+  std::unique_ptr<Factorisation> factorisation_;
+};
+
+}  // namespace lowlap
