@@ -13,6 +13,7 @@ namespace {
 // World: x and z horizontal, y down, as in a camera. Several random draws in
 // one call are in braces, which fix their order.
 constexpr std::uint64_t kLayoutStream = 1;
+constexpr std::uint64_t kOffLineStream = 2;
 
 Pose LookAt(const Vec3& center, const Vec3& target, double roll_rad) {
   const Vec3 forward = (target - center).normalized();
@@ -99,6 +100,15 @@ void AddRoomCameras(const SyntheticOptions& options, Random* random,
   }
 }
 
+// A step aside instead of one along the loop.
+void MoveTwins(double baseline_m, World* world) {
+  for (std::size_t i = 1; i < world->poses.size(); i += 2) {
+    const Vec3& before = world->poses[i - 1].center;
+    const Vec3 step = world->poses[i].center - before;
+    world->poses[i].center = before + baseline_m * step.normalized();
+  }
+}
+
 // One straight path along the room, all cameras looking at one long wall.
 void AddCollinearCameras(const SyntheticOptions& options, Random* random,
                          World* world) {
@@ -106,7 +116,10 @@ void AddCollinearCameras(const SyntheticOptions& options, Random* random,
   const double step = 4.0 / std::max(1, n - 1);
   for (int i = 0; i < n; ++i) {
     const double x = -2.0 + step * (i + random->Uniform(-0.25, 0.25));
-    const Vec3 center = Vec3(0, 0.1, -1.4) + x * Vec3(1, 0.05, 0.1);
+    Random off_line(options.seed + i, kOffLineStream);
+    const Vec3 across{0, off_line.Gaussian(options.off_line_m),
+                      off_line.Gaussian(options.off_line_m)};
+    const Vec3 center = Vec3(0, 0.1, -1.4) + x * Vec3(1, 0.05, 0.1) + across;
     const Vec3 aim(0.6 * x, random->Uniform(-0.1, 0.1), 2.25);
     world->poses.push_back(LookAt(center, aim, Roll(random)));
   }
@@ -258,6 +271,11 @@ World BuildLayout(const SyntheticOptions& options) {
       AddRoom(&random, &world);
       AddRoomCameras(options, &random, &world);
       world.poses[1].center = world.poses[0].center;
+      break;
+    case SyntheticKind::kTwins:
+      AddRoom(&random, &world);
+      AddRoomCameras(options, &random, &world);
+      MoveTwins(options.twin_baseline_m, &world);
       break;
     case SyntheticKind::kCollinear:
       AddRoom(&random, &world);

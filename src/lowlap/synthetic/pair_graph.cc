@@ -22,18 +22,19 @@ Result<PairRule> PairRule::Parse(const std::string& text) {
     rule.all = true;
     return rule;
   }
-  constexpr char kPrefix[] = "window:";
-  constexpr std::size_t kPrefixLength = sizeof(kPrefix) - 1;
-  if (text.compare(0, kPrefixLength, kPrefix) == 0) {
-    const char* begin = text.data() + kPrefixLength;
+  for (const std::string prefix : {"window:", "loop:"}) {
+    if (text.compare(0, prefix.size(), prefix) != 0) continue;
+    const char* begin = text.data() + prefix.size();
     const char* end = text.data() + text.size();
     const auto [stop, error] = std::from_chars(begin, end, rule.window);
-    if (error == std::errc() && stop == end && rule.window >= 1) return rule;
+    if (error != std::errc() || stop != end || rule.window < 1) break;
+    rule.loop = prefix == "loop:";
+    return rule;
   }
   return MakeError(
       ErrorCode::kInvalidArgument,
-      "pairs must be chain, cycle, window:N (N >= 1) or all, not '" + text +
-          "'");
+      "pairs must be chain, cycle, window:N, loop:N (N >= 1) or all, not '" +
+          text + "'");
 }
 
 PairGraph::PairGraph(const PairRule& rule, int num_views,
@@ -45,9 +46,11 @@ PairGraph::PairGraph(const PairRule& rule, int num_views,
     }
   } else {
     for (int i = 0; i < num_views; ++i) {
-      for (int step = 1; step <= rule.window && i + step < num_views; ++step) {
-        pairs_.push_back(
-            {static_cast<ViewId>(i), static_cast<ViewId>(i + step)});
+      for (int step = 1; step <= rule.window; ++step) {
+        const int other = rule.loop ? (i + step) % num_views : i + step;
+        if (other >= num_views || other == i) continue;
+        pairs_.push_back({static_cast<ViewId>(std::min(i, other)),
+                          static_cast<ViewId>(std::max(i, other))});
       }
     }
     if (rule.cycle && num_views > 2) {
@@ -55,6 +58,7 @@ PairGraph::PairGraph(const PairRule& rule, int num_views,
     }
   }
   std::sort(pairs_.begin(), pairs_.end());
+  pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   for (const ViewPair& pair : pairs_) {
     neighbors_[pair.first].push_back(pair.second);
     neighbors_[pair.second].push_back(pair.first);

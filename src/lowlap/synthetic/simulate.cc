@@ -9,6 +9,7 @@
 #include "lowlap/synthetic/coplanar_truth.h"
 #include "lowlap/synthetic/internal/observe.h"
 #include "lowlap/synthetic/internal/pair_graph.h"
+#include "lowlap/synthetic/internal/pose_noise.h"
 #include "lowlap/synthetic/internal/visibility.h"
 #include "lowlap/synthetic/internal/world.h"
 #include "lowlap/synthetic/synthetic_scene.h"
@@ -148,6 +149,12 @@ SyntheticScene Build(const SyntheticOptions& options, double off_wall) {
   const bool only_poses =
       options.points_per_wall == 0 && options.lines_per_wall == 0;
   if (!only_poses) DropUnmatchedPairs(&synthetic);
+  if (options.pose_noise_factor > 0) {
+    internal::AddPoseNoiseOfPoints(options, &synthetic);
+  }
+  if (options.wrong_direction_share > 0) {
+    internal::DrawWrongDirections(options, &synthetic.scene);
+  }
   return synthetic;
 }
 

@@ -8,13 +8,14 @@
 namespace lowlap {
 namespace {
 
-constexpr std::array<std::pair<SyntheticKind, const char*>, 6> kNames = {{
+constexpr std::array<std::pair<SyntheticKind, const char*>, 7> kNames = {{
     {SyntheticKind::kRoom, "room"},
     {SyntheticKind::kCorridor, "corridor"},
     {SyntheticKind::kRing, "ring"},
     {SyntheticKind::kPlanar, "planar"},
     {SyntheticKind::kCollinear, "collinear"},
     {SyntheticKind::kPureRotation, "pure_rotation"},
+    {SyntheticKind::kTwins, "twins"},
 }};
 
 // Beyond this the pairs of a room, where everybody sees everything, explode.
@@ -67,6 +68,7 @@ Status SyntheticOptions::Validate() const {
       {"broken_line_share", broken_line_share},
       {"wrong_point_share", wrong_point_share},
       {"wrong_line_share", wrong_line_share},
+      {"wrong_direction_share", wrong_direction_share},
       {"wrong_candidate_share", wrong_candidate_share}};
   for (const auto& [name, value] : shares) {
     if (!(value >= 0 && value <= 1)) {
@@ -76,7 +78,10 @@ Status SyntheticOptions::Validate() const {
   const std::pair<const char*, double> noises[] = {
       {"noise_px", noise_px},
       {"rotation_noise_deg", rotation_noise_deg},
-      {"direction_noise_deg", direction_noise_deg}};
+      {"direction_noise_deg", direction_noise_deg},
+      {"pose_noise_factor", pose_noise_factor},
+      {"off_line_m", off_line_m},
+      {"twin_baseline_m", twin_baseline_m}};
   for (const auto& [name, value] : noises) {
     if (!(value >= 0) || !std::isfinite(value)) {
       return Invalid(std::string(name) + " must be finite and not negative");

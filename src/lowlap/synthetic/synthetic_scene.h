@@ -21,9 +21,11 @@ enum class SyntheticKind {
   kPlanar,        // one wall and nothing else
   kCollinear,     // the room, with all centres on one straight line
   kPureRotation,  // the room, with views 0 and 1 at one centre
+  kTwins,         // the room, every odd view next to the one before it
 };
 
-/// "room", "corridor", "ring", "planar", "collinear", "pure_rotation".
+/// "room", "corridor", "ring", "planar", "collinear", "pure_rotation",
+/// "twins".
 const char* SyntheticKindName(SyntheticKind kind);
 std::optional<SyntheticKind> SyntheticKindFromName(const std::string& name);
 
@@ -33,7 +35,8 @@ struct SyntheticOptions {
   /// apart: with less than 12 the loop stays open.
   int num_views = 12;
   /// Pairs of views with a relative pose: "chain", "cycle", "window:N" (at most
-  /// N views apart), or "all" (whatever shares at least 16 features). A pair
+  /// N views apart), "loop:N" (the same, and the last views are next to the
+  /// first), or "all" (whatever shares at least 16 features). A pair
   /// without a single match is left out, unless points_per_wall and
   /// lines_per_wall are both 0: then only the graph of poses is of interest.
   std::string pairs = "cycle";
@@ -41,6 +44,11 @@ struct SyntheticOptions {
   /// one, looking across. Neighbours then share less, and turn more than they
   /// move.
   bool look_outwards = false;
+  /// kCollinear: how far the centres are off their line, as the standard
+  /// deviation of the two coordinates across it, in metres.
+  double off_line_m = 0.0;
+  /// kTwins: distance of an odd view from the one before it, in metres.
+  double twin_baseline_m = 0.0;
 
   int points_per_wall = 100;
   int lines_per_wall = 160;
@@ -73,6 +81,12 @@ struct SyntheticOptions {
   /// 2 across the direction.
   double rotation_noise_deg = 0.0;
   double direction_noise_deg = 0.0;
+  /// Besides, errors as of a relative pose estimated from the right point
+  /// matches with noise_px: normal, with this many times the deviations of that
+  /// estimate to first order (RelativePose::covariance), and at most 0.3 rad.
+  double pose_noise_factor = 0.0;
+  /// Share of the relative poses whose direction is any direction.
+  double wrong_direction_share = 0.0;
 
   int width_px = 1200;
   int height_px = 900;

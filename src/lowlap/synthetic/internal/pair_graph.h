@@ -12,6 +12,7 @@ namespace lowlap::internal {
 /// SyntheticOptions::pairs, parsed.
 struct PairRule {
   bool cycle = false;
+  bool loop = false;  // the window goes on from the last view to the first
   bool all = false;
   int window = 1;  // views at most so far apart, unless `all`
 
