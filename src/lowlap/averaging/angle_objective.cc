@@ -62,7 +62,7 @@ Result<std::vector<Vec3>> SolveRevisedLud(const DirectionPart& part,
       cost += edge.direction_in_world.cross(offset).norm();
     }
     if (delta == kLeastDelta &&
-        std::abs(last_cost - cost) <= kDecrease * cost) {
+        std::abs(last_cost - cost) <= kDecrease * (cost + num_edges)) {
       break;
     }
     last_cost = cost;
