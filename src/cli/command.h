@@ -40,12 +40,14 @@ using Action = std::function<int()>;
 // Each adds one command to the program; `action` is set if it is chosen.
 void AddRun(CLI::App* program, Action* action);
 void AddSolve(CLI::App* program, Action* action);
+void AddAblate(CLI::App* program, Action* action);
 void AddCompare(CLI::App* program, Action* action);
 void AddScales(CLI::App* program, Action* action);
 void AddAdjust(CLI::App* program, Action* action);
 void AddEvaluate(CLI::App* program, Action* action);
 void AddFeatures(CLI::App* program, Action* action);
 void AddInspect(CLI::App* program, Action* action);
+void AddDiagnose(CLI::App* program, Action* action);
 void AddSubsets(CLI::App* program, Action* action);
 void AddConvert(CLI::App* program, Action* action);
 void AddValidate(CLI::App* program, Action* action);

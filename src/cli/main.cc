@@ -19,11 +19,13 @@ int main(int argc, char** argv) {
   lowlap::cli::AddRun(&program, &action);
   lowlap::cli::AddSolve(&program, &action);
   lowlap::cli::AddCompare(&program, &action);
+  lowlap::cli::AddAblate(&program, &action);
   lowlap::cli::AddScales(&program, &action);
   lowlap::cli::AddAdjust(&program, &action);
   lowlap::cli::AddEvaluate(&program, &action);
   lowlap::cli::AddFeatures(&program, &action);
   lowlap::cli::AddInspect(&program, &action);
+  lowlap::cli::AddDiagnose(&program, &action);
   lowlap::cli::AddSubsets(&program, &action);
   lowlap::cli::AddConvert(&program, &action);
   lowlap::cli::AddValidate(&program, &action);

@@ -1,0 +1,88 @@
+#include <cstdio>
+#include <memory>
+
+#include "cli/command.h"
+#include "cli/scene_input.h"
+#include "cli/solve_flags.h"
+#include "lowlap/averaging/strategies.h"
+#include "lowlap/pipeline/ablation.h"
+#include "lowlap/pipeline/output_folder.h"
+
+namespace lowlap::cli {
+namespace {
+
+struct Flags {
+  CommonFlags common;
+  SceneInputFlags input;
+  std::string strategy = "graph";
+  std::vector<double> thresholds_px = AblationOptions().thresholds_px;
+  std::string ground_truth;
+  std::string output;
+};
+
+int RunAblation(const Flags& flags) {
+  const RunContext context = MakeContext(flags.common);
+  AblationOptions options;
+  options.solve.poses.strategy = flags.strategy;
+  options.thresholds_px = flags.thresholds_px;
+  if (const auto known = MakeTranslationAverager(flags.strategy); !known) {
+    return Fail(known.error());
+  }
+  if (const Status valid = options.Validate(); !valid) {
+    return Fail(valid.error());
+  }
+  if (!flags.output.empty()) {
+    // A folder that cannot be written is found before the work.
+    if (const Status made = PrepareOutputFolder(flags.output); !made) {
+      return Fail(made.error());
+    }
+  }
+  StageLog stages;
+  const auto loaded = LoadMeasuredScene(flags.input, context, &stages);
+  if (!loaded) return Fail(loaded.error());
+  const auto truth = LoadGroundTruth(flags.ground_truth, loaded->scene);
+  if (!truth) return Fail(truth.error());
+  if (!*truth) {
+    return Fail({ErrorCode::kInvalidArgument, "--gt names no cameras", {}, {}});
+  }
+  const auto ablation = Ablate(loaded->scene, **truth, options, context);
+  if (!ablation) return Fail(ablation.error());
+  if (IsInterrupted()) return Fail({ErrorCode::kCancelled, {}, {}, {}});
+  if (!flags.output.empty()) {
+    if (const Status written = WriteAblation(*ablation, flags.output);
+        !written) {
+      return Fail(written.error());
+    }
+  }
+  std::printf("%s", ToText(*ablation).c_str());
+  if (!flags.output.empty()) {
+    std::printf("\nwritten to %s: ablate.csv ablate.json and plots (.svg)\n",
+                flags.output.c_str());
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddAblate(CLI::App* program, Action* action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = program->add_subcommand(
+      "ablate",
+      "Position errors with fixed inlier thresholds and without, and by kind "
+      "of feature: the paper's experiments on any scene with true cameras");
+  AddSceneInputFlags(command, &flags->input);
+  AddTruthFlag(command, &flags->ground_truth)->required();
+  command->add_option("-o,--output,--outdir", flags->output,
+                      "Folder for the tables and plots; none if not given");
+  command->add_option("--strategy", flags->strategy,
+                      "How poses are composed, as in solve");
+  command
+      ->add_option("--thresholds", flags->thresholds_px,
+                   "Fixed inlier thresholds in pixels, separated by commas")
+      ->delimiter(',');
+  AddCommonFlags(command, &flags->common);
+  command->callback(
+      [flags, action] { *action = [flags] { return RunAblation(*flags); }; });
+}
+
+}  // namespace lowlap::cli
