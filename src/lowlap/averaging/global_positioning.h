@@ -51,10 +51,6 @@ class GlobalPositioningAverager : public TranslationAverager {
            " points that two placed views see, on tracks of at least " +
            std::to_string(options_.min_views_per_track) + " views";
   }
-  std::string Needs() const override {
-    return "points that two of the other cameras see as well; scale ratios are "
-           "not used";
-  }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
 

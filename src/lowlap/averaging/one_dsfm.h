@@ -48,7 +48,6 @@ class OneDSfmAverager : public TranslationAverager {
       : inner_(std::move(inner)), options_(options) {}
   std::string Name() const override { return "1dsfm+" + inner_->Name(); }
   bool NeedsTracks() const override { return inner_->NeedsTracks(); }
-  std::string Needs() const override { return inner_->Needs(); }
   std::string Needs() const override {
     return inner_->Needs() + ", of relative poses that 1DSfM keeps";
   }

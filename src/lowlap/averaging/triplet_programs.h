@@ -44,10 +44,6 @@ class TripletProgramAverager : public TranslationAverager {
     return norm_ == Norm::kMaximum ? "linf" : "l1_lp";
   }
   std::string Needs() const override {
-    return "a triangle of relative poses that shares an edge with those of the "
-           "others";
-  }
-  std::string Needs() const override {
     return "a triangle of relative poses that shares an edge with the "
            "others' triangles";
   }
