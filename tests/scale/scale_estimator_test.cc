@@ -252,9 +252,11 @@ TEST(ScaleEstimator, TheSubsetFindsWhatTheExhaustiveSearchFinds) {
     options.num_points = 250;
     const SyntheticTriplet triplet = MakeSyntheticTriplet(options, seed);
     ScaleOptions exhaustive;
-    exhaustive.exhaustive = true;
+    exhaustive.search = RatioSearch::kExhaustive;
     const ScaleRatio reference = Estimate(triplet.view, exhaustive);
-    const ScaleRatio ratio = Estimate(triplet.view);
+    ScaleOptions subset;
+    subset.search = RatioSearch::kFeatures;
+    const ScaleRatio ratio = Estimate(triplet.view, subset);
     EXPECT_LE(reference.log10_nfa, ratio.log10_nfa + 1e-9);
     EXPECT_LT(ratio.log10_nfa, 0.95 * reference.log10_nfa);
     EXPECT_NEAR(ratio.log_ratio, reference.log_ratio,

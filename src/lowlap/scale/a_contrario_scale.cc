@@ -6,8 +6,34 @@
 #include "lowlap/scale/ratio_nfa.h"
 #include "lowlap/scale/ratio_search.h"
 #include "lowlap/scale/ratio_support.h"
+#include "lowlap/scale/ratio_sweep.h"
 
 namespace lowlap {
+namespace {
+
+RatioOptimum FindOptimum(const RatioSupport& support,
+                         const RatioNfaCriterion& criterion,
+                         const ScaleOptions& options) {
+  if (options.search == RatioSearch::kSweep &&
+      options.nfa_form == NfaForm::kCalibrated) {
+    const RatioOptimum optimum = SweepRatios(support, criterion);
+    if (optimum.nfa.log10_nfa < 0) return optimum;
+    // Chance explains the optimum: a ratio that a feature asks for is the
+    // better guess.
+  }
+  const std::vector<Hypothesis>& hypotheses = support.hypotheses();
+  SupportWorkspace workspace;
+  const auto nfa_of = [&](int index) {
+    const Hypothesis& hypothesis = hypotheses[index];
+    return criterion.Evaluate(hypothesis,
+                              support.Count(hypothesis.log_ratio, &workspace));
+  };
+  const int best = SearchRatios(
+      hypotheses, options.search == RatioSearch::kExhaustive, nfa_of);
+  return {hypotheses[best].log_ratio, nfa_of(best)};
+}
+
+}  // namespace
 
 Result<ScaleRatio> AContrarioScaleEstimator::Estimate(
     const TripletView& triplet) const {
@@ -16,18 +42,11 @@ Result<ScaleRatio> AContrarioScaleEstimator::Estimate(
   }
   const RatioSupport support(triplet, options_);
   ScaleRatio ratio = EmptyRatio(triplet, support);
-  const std::vector<Hypothesis>& hypotheses = support.hypotheses();
-  if (hypotheses.empty()) return ratio;
+  if (support.hypotheses().empty()) return ratio;
 
   const RatioNfaCriterion criterion(support, triplet, options_);
-  SupportWorkspace workspace;
-  const auto nfa_of = [&](int index) {
-    const Hypothesis& hypothesis = hypotheses[index];
-    return criterion.Evaluate(hypothesis,
-                              support.Count(hypothesis.log_ratio, &workspace));
-  };
-  const int best = SearchRatios(hypotheses, options_.exhaustive, nfa_of);
-  const RatioNfa nfa = nfa_of(best);
+  const RatioOptimum optimum = FindOptimum(support, criterion, options_);
+  const RatioNfa& nfa = optimum.nfa;
   ratio.log10_nfa = nfa.log10_nfa;
   ratio.points.log10_nfa = nfa.points.log10_nfa;
   ratio.lines.log10_nfa = nfa.lines.log10_nfa;
@@ -45,8 +64,7 @@ Result<ScaleRatio> AContrarioScaleEstimator::Estimate(
       threshold_px(nfa.lines, support.num_lines()),
       threshold_px(nfa.coplanar, support.num_pairs()),
       support.Tier(nfa.coplanar_tier).num_pairs};
-  RefineOnInliers(triplet, support, thresholds, hypotheses[best].log_ratio,
-                  &ratio);
+  RefineOnInliers(triplet, support, thresholds, optimum.log_ratio, &ratio);
   return ratio;
 }
 

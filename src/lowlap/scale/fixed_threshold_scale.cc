@@ -46,7 +46,8 @@ Result<ScaleRatio> FixedThresholdScaleEstimator::Estimate(
     }
     return agreement;
   };
-  const int best = SearchRatios(hypotheses, options_.exhaustive, agreement_of);
+  const int best = SearchRatios(
+      hypotheses, options_.search == RatioSearch::kExhaustive, agreement_of);
 
   SupportWorkspace workspace;
   const RatioNfaCriterion criterion(support, triplet, options_);

@@ -71,4 +71,18 @@ double RatioDensity::Log10Relative(double log_ratio) const {
          share * log10_relative_[node + 1];
 }
 
+double RatioDensity::LeastLog10Relative(double low, double high) const {
+  double least = std::min(Log10Relative(low), Log10Relative(high));
+  const int num_nodes = static_cast<int>(log10_relative_.size());
+  if (num_nodes == 0) return least;
+  const auto node_at = [&](double log_ratio) {
+    return static_cast<int>(
+        std::clamp((log_ratio - low_) / kGridStep, 0.0, num_nodes - 1.0));
+  };
+  for (int node = node_at(low) + 1; node <= node_at(high); ++node) {
+    least = std::min(least, log10_relative_[node]);
+  }
+  return least;
+}
+
 }  // namespace lowlap

@@ -21,6 +21,8 @@ class RatioDensity {
   /// ratios. Not below that of half the mean, since little is known of the
   /// tails; 0 without ratios.
   double Log10Relative(double log_ratio) const;
+  /// Its least value between two log ratios.
+  double LeastLog10Relative(double low, double high) const;
 
  private:
   double low_ = 0;

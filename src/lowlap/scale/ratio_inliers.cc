@@ -155,7 +155,7 @@ ScaleRatio EmptyRatio(const TripletView& triplet, const RatioSupport& support) {
 void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
                      const InlierThresholds& thresholds, double log_ratio,
                      ScaleRatio* ratio) {
-  constexpr int kRounds = 2;
+  constexpr int kRounds = 4;
   std::vector<WeightedFeature> features;
   RefinedRatio refined = RefineRatio(
       InlierRatios(support, triplet,

@@ -52,17 +52,36 @@ LadderProbabilities Log10Law(const LadderSums& counts, double num_errors,
   return law;
 }
 
-// Every hypothesis, and what the kinds together gain by chance: the product of
-// m uniform numbers is below x with probability x sum_j<m (-ln x)^j / j!, which
-// for x around 1 / 500 is 1, 7 and 26 times x. More for one and for two kinds,
-// since the background is measured on few features.
+// Every ratio that is tried, and what the kinds together gain by chance: the
+// product of m uniform numbers is below x with probability
+// x sum_j<m (-ln x)^j / j!, which for x around 1 / 500 is 1, 7 and 26 times x.
+// More for one and for two kinds, since the background is measured on few
+// features. Tried are the ends of the intervals in which features are inliers.
+// A point has one for each threshold, about one ratio, of which the threshold
+// that decides tells the one that counts; the intervals of lines and pairs are
+// several and overlap at random, so that every end counts.
 double Log10Tests(const RatioSupport& support) {
   const int num_kinds = (support.num_points() > 0) + (support.num_lines() > 0) +
                         (support.num_pairs() > 0);
-  const double num_hypotheses =
-      std::max<double>(1.0, static_cast<double>(support.hypotheses().size()));
+  const double num_tried =
+      support.num_points() +
+      kNumThresholds *
+          static_cast<double>(support.num_lines() + support.num_pairs());
   constexpr double kByKinds[] = {1, 4, 8, 26};
-  return std::log10(num_hypotheses) + std::log10(kByKinds[num_kinds]);
+  return std::log10(std::max(1.0, num_tried)) + std::log10(kByKinds[num_kinds]);
+}
+
+LadderProbabilities Scaled(LadderProbabilities law, double log10_relative) {
+  for (double& log10_alpha : law) log10_alpha += log10_relative;
+  return law;
+}
+
+void AddUp(double log10_tests, RatioNfa* nfa) {
+  nfa->log10_nfa = nfa->uncapped = log10_tests;
+  for (const NfaTerm* term : {&nfa->points, &nfa->lines, &nfa->coplanar}) {
+    nfa->log10_nfa += term->log10_nfa;
+    nfa->uncapped += term->uncapped;
+  }
 }
 
 }  // namespace
@@ -140,10 +159,6 @@ RatioNfa RatioNfaCriterion::Evaluate(const Hypothesis& hypothesis,
   } else {
     EvaluateCalibrated(hypothesis, counts, &nfa);
   }
-  for (const NfaTerm* term : {&nfa.points, &nfa.lines, &nfa.coplanar}) {
-    nfa.log10_nfa += term->log10_nfa;
-    nfa.uncapped += term->uncapped;
-  }
   return nfa;
 }
 
@@ -163,28 +178,24 @@ void RatioNfaCriterion::EvaluatePaper(const SupportCounts& counts,
       factorials_, support_.Tier(kAll).num_first + support_.Tier(kAll).num_last,
       coplanar, image_area_px2_, num_neighbors_);
   nfa->coplanar_tier = kAll;
+  AddUp(0.0, nfa);
 }
 
-void RatioNfaCriterion::EvaluateCalibrated(const Hypothesis& hypothesis,
-                                           const SupportCounts& counts,
-                                           RatioNfa* nfa) const {
-  const auto law = [&](const LadderProbabilities& mean,
-                       const RatioDensity& density) {
-    const double log10_relative = density.Log10Relative(hypothesis.log_ratio);
-    LadderProbabilities scaled = mean;
-    for (double& log10_alpha : scaled) log10_alpha += log10_relative;
-    return scaled;
-  };
-  nfa->points =
-      CalibratedTerm(factorials_, support_.num_points(), counts.points,
-                     law(points_.log10_alpha, points_.density),
-                     hypothesis.kind == FeatureKind::kPoint);
-  nfa->lines = CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
-                              law(lines_.log10_alpha, lines_.density),
-                              hypothesis.kind == FeatureKind::kLine);
-  const bool is_pair = hypothesis.kind == FeatureKind::kCoplanar;
-  const int tier_of_sample =
-      is_pair ? support_.TierOfPair(hypothesis.index) : kPairTiers;
+RatioNfaCriterion::Densities RatioNfaCriterion::DensitiesAt(
+    double log_ratio) const {
+  Densities densities{points_.density.Log10Relative(log_ratio),
+                      lines_.density.Log10Relative(log_ratio)};
+  for (int t = 0; t < kPairTiers; ++t) {
+    densities[2 + t] = pairs_[t].density.Log10Relative(log_ratio);
+  }
+  return densities;
+}
+
+NfaTerm RatioNfaCriterion::PairTerm(const SupportCounts& counts,
+                                    const Densities& densities,
+                                    int sampled_tier, int* best_tier) const {
+  NfaTerm best;
+  *best_tier = 0;
   bool first_tier = true;
   for (int t = 0; t < kPairTiers; ++t) {
     const PairTier& tier = support_.Tier(t);
@@ -192,20 +203,96 @@ void RatioNfaCriterion::EvaluateCalibrated(const Hypothesis& hypothesis,
     const PairBackground& background = pairs_[t];
     NfaTerm term = CalibratedPairTerm(
         factorials_, tier.num_first, counts.coplanar[t].first,
-        law(background.log10_alpha_first, background.density), tier.num_last,
+        Scaled(background.log10_alpha_first, densities[2 + t]), tier.num_last,
         counts.coplanar[t].last,
-        law(background.log10_alpha_last, background.density),
-        t >= tier_of_sample);
+        Scaled(background.log10_alpha_last, densities[2 + t]),
+        t >= sampled_tier);
     term.uncapped += std::log10(static_cast<double>(kPairTiers));
     term.log10_nfa = std::min(0.0, term.uncapped);
-    if (first_tier || term.uncapped < nfa->coplanar.uncapped) {
-      nfa->coplanar = term;
-      nfa->coplanar_tier = t;
+    if (first_tier || term.uncapped < best.uncapped) {
+      best = term;
+      *best_tier = t;
     }
     first_tier = false;
   }
-  nfa->log10_nfa = log10_tests_;
-  nfa->uncapped = log10_tests_;
+  return best;
+}
+
+void RatioNfaCriterion::EvaluateCalibrated(const Hypothesis& hypothesis,
+                                           const SupportCounts& counts,
+                                           RatioNfa* nfa) const {
+  const Densities densities = DensitiesAt(hypothesis.log_ratio);
+  nfa->points =
+      CalibratedTerm(factorials_, support_.num_points(), counts.points,
+                     Scaled(points_.log10_alpha, densities[0]),
+                     hypothesis.kind == FeatureKind::kPoint);
+  nfa->lines = CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
+                              Scaled(lines_.log10_alpha, densities[1]),
+                              hypothesis.kind == FeatureKind::kLine);
+  const int tier_of_sample = hypothesis.kind == FeatureKind::kCoplanar
+                                 ? support_.TierOfPair(hypothesis.index)
+                                 : kPairTiers;
+  nfa->coplanar =
+      PairTerm(counts, densities, tier_of_sample, &nfa->coplanar_tier);
+  AddUp(log10_tests_, nfa);
+}
+
+RatioNfa RatioNfaCriterion::EvaluateAt(double log_ratio,
+                                       const SupportCounts& counts) const {
+  return LeastOverKinds(counts, DensitiesAt(log_ratio));
+}
+
+double RatioNfaCriterion::LeastLog10Nfa(double low, double high,
+                                        const SupportCounts& most) const {
+  Densities densities{points_.density.LeastLog10Relative(low, high),
+                      lines_.density.LeastLog10Relative(low, high)};
+  for (int t = 0; t < kPairTiers; ++t) {
+    densities[2 + t] = pairs_[t].density.LeastLog10Relative(low, high);
+  }
+  return LeastOverKinds(most, densities).log10_nfa;
+}
+
+RatioNfa RatioNfaCriterion::LeastOverKinds(const SupportCounts& counts,
+                                           const Densities& densities) const {
+  const LadderProbabilities points = Scaled(points_.log10_alpha, densities[0]);
+  const LadderProbabilities lines = Scaled(lines_.log10_alpha, densities[1]);
+  const auto point_term = [&](int sampled) {
+    return CalibratedTerm(factorials_, support_.num_points(), counts.points,
+                          points, sampled);
+  };
+  const auto line_term = [&](int sampled) {
+    return CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
+                          lines, sampled);
+  };
+  RatioNfa unsampled;
+  unsampled.points = point_term(0);
+  unsampled.lines = line_term(0);
+  unsampled.coplanar =
+      PairTerm(counts, densities, kPairTiers, &unsampled.coplanar_tier);
+  // A ratio from a pair of a wider tier is not a sample of the nearer ones.
+  int last_tier = 0;
+  for (int t = 1; t < kPairTiers; ++t) {
+    if (support_.Tier(t).num_pairs > support_.Tier(t - 1).num_pairs) {
+      last_tier = t;
+    }
+  }
+  RatioNfa best;
+  bool is_first = true;
+  for (const FeatureKind kind : kFeatureKinds) {
+    if (support_.Ratios(kind).empty()) continue;
+    RatioNfa nfa = unsampled;
+    if (kind == FeatureKind::kPoint) {
+      nfa.points = point_term(1);
+    } else if (kind == FeatureKind::kLine) {
+      nfa.lines = line_term(1);
+    } else {
+      nfa.coplanar = PairTerm(counts, densities, last_tier, &nfa.coplanar_tier);
+    }
+    AddUp(log10_tests_, &nfa);
+    if (is_first || nfa.BetterThan(best)) best = nfa;
+    is_first = false;
+  }
+  return best;
 }
 
 }  // namespace lowlap

@@ -50,8 +50,10 @@ struct RatioNfa {
 ///  - Only the kind of the sampled feature loses one sample.
 ///  - Every probability, and the NFA of every kind, is at most 1: a kind with
 ///    nothing to say never outvotes the others.
-///  - The number of tests is the number of hypotheses, times 2 for every kind
-///    that may speak or be capped, times 2 as a margin for the background.
+///  - The number of tests is the number of ratios at which a feature becomes
+///    an inlier (see ratio_sweep.h), times 2 for every kind that may speak or
+///    be capped, times 2 as a margin for the background. It is the same for
+///    every search, so that their results can be compared.
 /// So built, at most one ratio in a hundred comes out below NFA 1 on triplets
 /// of unrelated features (tests/scale).
 /// Paper form: the product of the three printed terms.
@@ -63,6 +65,15 @@ class RatioNfaCriterion {
   /// The NFA of a hypothesis, from the inliers at its ratio.
   RatioNfa Evaluate(const Hypothesis& hypothesis,
                     const SupportCounts& counts) const;
+  /// The NFA of any log ratio, in the calibrated form: the least over the kinds
+  /// that the ratio may have been computed from. The inliers that decide share
+  /// an interval of ratios, and one of its ends is where one of them becomes an
+  /// inlier: trying all ends tries as many ratios as there are hypotheses.
+  RatioNfa EvaluateAt(double log_ratio, const SupportCounts& counts) const;
+  /// A lower bound of log10_nfa over an interval of log ratios, from counts
+  /// that no ratio in it exceeds.
+  double LeastLog10Nfa(double low, double high,
+                       const SupportCounts& most) const;
 
  private:
   // What unrelated features of one kind do.
@@ -77,8 +88,16 @@ class RatioNfaCriterion {
   };
   void MeasureBackground(const TripletView& triplet);
   void EvaluatePaper(const SupportCounts& counts, RatioNfa* nfa) const;
+  // log10 of the densities by kind: points, lines, tiers of pairs.
+  using Densities = std::array<double, 2 + kPairTiers>;
+  Densities DensitiesAt(double log_ratio) const;
+  // Pairs count as sampled from `sampled_tier` on.
+  NfaTerm PairTerm(const SupportCounts& counts, const Densities& densities,
+                   int sampled_tier, int* best_tier) const;
   void EvaluateCalibrated(const Hypothesis& hypothesis,
                           const SupportCounts& counts, RatioNfa* nfa) const;
+  RatioNfa LeastOverKinds(const SupportCounts& counts,
+                          const Densities& densities) const;
 
   const RatioSupport& support_;
   NfaForm form_;

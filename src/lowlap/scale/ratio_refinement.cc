@@ -8,6 +8,9 @@
 namespace lowlap {
 namespace {
 
+// Cauchy's constant for 95 % efficiency on normal residuals.
+constexpr double kCauchy = 2.3849;
+
 // Squared noise of every group in units of the inliers' own deviations.
 std::vector<double> GroupNoise(const std::vector<RatioInlier>& inliers,
                                double log_ratio) {
@@ -37,14 +40,23 @@ std::vector<double> GroupNoise(const std::vector<RatioInlier>& inliers,
 
 double Weight(const RatioInlier& inlier, const std::vector<double>& noise,
               double log_ratio) {
-  // Cauchy's constant for 95 % efficiency on normal residuals.
-  constexpr double kCauchy = 2.3849;
   const double residual = inlier.log_ratio - log_ratio;
   const double variance =
       noise[inlier.group] * inlier.log_ratio_stddev * inlier.log_ratio_stddev;
   const double robust =
       1.0 / (1.0 + residual * residual / (kCauchy * kCauchy * variance));
   return robust / (variance * inlier.multiplicity);
+}
+
+// Derivative of an inlier's term in the estimating equation sum w r = 0.
+double Curvature(const RatioInlier& inlier, const std::vector<double>& noise,
+                 double log_ratio) {
+  const double residual = inlier.log_ratio - log_ratio;
+  const double variance =
+      noise[inlier.group] * inlier.log_ratio_stddev * inlier.log_ratio_stddev;
+  const double squared = residual * residual / (kCauchy * kCauchy * variance);
+  return (1.0 - squared) / ((1.0 + squared) * (1.0 + squared) * variance *
+                            inlier.multiplicity);
 }
 
 // Of the weighted mean, from the sums over cells; 0 with too few of them.
@@ -89,8 +101,13 @@ RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
     log_ratio += step;
     if (std::abs(step) < 1e-12) break;
   }
+  double curvature = 0;
+  for (const RatioInlier& inlier : inliers) {
+    curvature += Curvature(inlier, noise, log_ratio);
+  }
+  curvature = std::max(curvature, 0.25 * information);
   const double variance = std::max(
-      1.0 / information, CellVariance(inliers, noise, log_ratio, information));
+      1.0 / information, CellVariance(inliers, noise, log_ratio, curvature));
   for (double& group : noise) group = std::sqrt(group);
   return {log_ratio, std::sqrt(variance), noise};
 }

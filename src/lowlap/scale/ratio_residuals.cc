@@ -1,7 +1,9 @@
 #include "lowlap/scale/ratio_residuals.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "lowlap/geometry/plucker_line.h"
 #include "lowlap/geometry/triangulation.h"
@@ -29,24 +31,44 @@ void Push(Column& column, double value) {
   column.push_back(static_cast<float>(value));
 }
 
+using Values = Eigen::ArrayXf;
+
+// Where a side lies least in the interval, for a minimum at column `turn`.
+auto Clamped(const Column& turn, int count, float low, float high) {
+  return View(turn, count).cwiseMax(low).cwiseMin(high);
+}
+
 // (v + tau w) as a projection into a view that observes `observed`.
 void PushPointSide(Column* column, const Vec3& v, const Vec3& w,
                    const Vec3& observed, double focal_px, double tau) {
   const double depth = v.z() + tau * w.z();
   const Vec3 v1 = v / depth, w1 = w / depth;
-  Push(column[0], focal_px * (v1.x() - observed.x() * v1.z()));
-  Push(column[1], focal_px * (w1.x() - observed.x() * w1.z()));
-  Push(column[2], focal_px * (v1.y() - observed.y() * v1.z()));
-  Push(column[3], focal_px * (w1.y() - observed.y() * w1.z()));
+  const Vec2 a = focal_px * (v1 - observed * v1.z()).head<2>();
+  const Vec2 b = focal_px * (w1 - observed * w1.z()).head<2>();
+  Push(column[0], a.x());
+  Push(column[1], b.x());
+  Push(column[2], a.y());
+  Push(column[3], b.y());
   Push(column[4], v1.z());
   Push(column[5], w1.z());
+  // Of |a + tau b| / (c + tau d).
+  const double least = (w1.z() * a.squaredNorm() - v1.z() * a.dot(b)) /
+                       (v1.z() * b.squaredNorm() - w1.z() * a.dot(b));
+  Push(column[6], std::isfinite(least) ? least : tau);
 }
 
-auto PointSide(const Column* c, float tau) {
+template <class Tau>
+auto PointSideAt(const Column* c, const Tau& tau) {
   return ((View(c[0]) + tau * View(c[1])).square() +
           (View(c[2]) + tau * View(c[3])).square())
              .sqrt() /
          (View(c[4]) + tau * View(c[5])).cwiseMax(kMinDepth);
+}
+
+float PointSideOf(const Column* c, float tau, int n) {
+  const float x = c[0][n] + tau * c[1][n], y = c[2][n] + tau * c[3][n];
+  return std::sqrt(x * x + y * y) /
+         std::max(kMinDepth, c[4][n] + tau * c[5][n]);
 }
 
 void PushLineSide(Column* column, const Vec3& v, const Vec3& w,
@@ -73,6 +95,34 @@ auto LineSide(const Column* c, float tau) {
              .cwiseMax(kMinDepth);
 }
 
+float LineSideOf(const Column* c, float tau, int n) {
+  const float x = c[4][n] + tau * c[5][n], y = c[6][n] + tau * c[7][n];
+  return (std::abs(c[0][n] + tau * c[1][n]) +
+          std::abs(c[2][n] + tau * c[3][n])) /
+         std::max(kMinDepth, std::sqrt(x * x + y * y));
+}
+
+// The least and the most of a side of one line in an interval.
+std::pair<float, float> BoundLineSide(const Column* c, float low, float high,
+                                      int n) {
+  float numerator[2] = {0, 0};
+  for (int end = 0; end < 4; end += 2) {
+    const float a = c[end][n] + low * c[end + 1][n];
+    const float b = c[end][n] + high * c[end + 1][n];
+    if ((a > 0) == (b > 0)) numerator[0] += std::min(std::abs(a), std::abs(b));
+    numerator[1] += std::max(std::abs(a), std::abs(b));
+  }
+  const auto length = [&](float tau) {
+    const float x = c[4][n] + tau * c[5][n], y = c[6][n] + tau * c[7][n];
+    return std::max(kMinDepth, std::sqrt(x * x + y * y));
+  };
+  const float speed = c[5][n] * c[5][n] + c[7][n] * c[7][n];
+  const float turn =
+      speed > 0 ? -(c[4][n] * c[5][n] + c[6][n] * c[7][n]) / speed : low;
+  return {numerator[0] / std::max(length(low), length(high)),
+          numerator[1] / length(std::clamp(turn, low, high))};
+}
+
 // (v + tau w) as a projection into a view that observes the line `normal`.
 void PushTransferSide(Column* column, const Vec3& v, const Vec3& w,
                       const Vec3& normal, double focal_px, double tau) {
@@ -82,11 +132,40 @@ void PushTransferSide(Column* column, const Vec3& v, const Vec3& w,
   Push(column[1], to_px * normal.dot(w));
   Push(column[2], v.z() / depth);
   Push(column[3], w.z() / depth);
+  const double least = -normal.dot(v) / normal.dot(w);
+  Push(column[4], std::isfinite(least) ? least : tau);
 }
 
-auto TransferSide(const Column* c, float tau, int n) {
+template <class Tau>
+auto TransferSideAt(const Column* c, const Tau& tau, int n) {
   return (View(c[0], n) + tau * View(c[1], n)).abs() /
          (View(c[2], n) + tau * View(c[3], n)).cwiseMax(kMinDepth);
+}
+
+float TransferSideOf(const Column* c, float tau, int n) {
+  return std::abs(c[0][n] + tau * c[1][n]) /
+         std::max(kMinDepth, c[2][n] + tau * c[3][n]);
+}
+
+// A little below or above, for what rounding does to the errors.
+constexpr float kRoundingPx = 1e-3f;
+constexpr float kRounding = 1e-5f;
+
+float Lowered(float least_px) {
+  return std::max(0.0f, least_px * (1 - kRounding) - kRoundingPx);
+}
+float Raised(float most_px) { return most_px * (1 + kRounding) + kRoundingPx; }
+
+void Widen(int count, float* least_px, float* most_px) {
+  using Map = Eigen::Map<Eigen::ArrayXf>;
+  if (least_px != nullptr) {
+    Map least(least_px, count);
+    least = (least * (1 - kRounding) - kRoundingPx).cwiseMax(0.0f);
+  }
+  if (most_px != nullptr) {
+    Map most(most_px, count);
+    most = most * (1 + kRounding) + kRoundingPx;
+  }
 }
 
 }  // namespace
@@ -110,7 +189,38 @@ void PointResiduals::Add(const TripletGeometry& geometry,
 void PointResiduals::Evaluate(double tau, float* errors_px) const {
   const float t = static_cast<float>(tau);
   Eigen::Map<Eigen::ArrayXf>(errors_px, size()) =
-      0.5f * (PointSide(column_, t) + PointSide(column_ + kSide, t));
+      0.5f * (PointSideAt(column_, t) + PointSideAt(column_ + kSide, t));
+}
+
+float PointResiduals::ErrorOf(double tau, int index) const {
+  const float t = static_cast<float>(tau);
+  return 0.5f * (PointSideOf(column_, t, index) +
+                 PointSideOf(column_ + kSide, t, index));
+}
+
+void PointResiduals::Bound(double tau_low, double tau_high, float* least_px,
+                           float* most_px) const {
+  const float low = static_cast<float>(tau_low);
+  const float high = static_cast<float>(tau_high);
+  const Column* const c = column_;
+  const Column* const d = column_ + kSide;
+  if (least_px != nullptr) {
+    Eigen::Map<Values>(least_px, size()) =
+        0.5f * (PointSideAt(c, Clamped(c[6], size(), low, high)) +
+                PointSideAt(d, Clamped(d[6], size(), low, high)));
+  }
+  if (most_px != nullptr) {
+    Eigen::Map<Values>(most_px, size()) =
+        0.5f * (PointSideAt(c, low).cwiseMax(PointSideAt(c, high)) +
+                PointSideAt(d, low).cwiseMax(PointSideAt(d, high)));
+  }
+  Widen(size(), least_px, most_px);
+}
+
+int PointResiduals::Turns(int index, double* taus) const {
+  taus[0] = column_[6][index];
+  taus[1] = column_[kSide + 6][index];
+  return 2;
 }
 
 void LineResiduals::Add(const TripletGeometry& geometry,
@@ -140,6 +250,35 @@ void LineResiduals::Evaluate(double tau, float* errors_px) const {
       0.25f * (LineSide(column_, t) + LineSide(column_ + kSide, t));
 }
 
+float LineResiduals::ErrorOf(double tau, int index) const {
+  const float t = static_cast<float>(tau);
+  return 0.25f * (LineSideOf(column_, t, index) +
+                  LineSideOf(column_ + kSide, t, index));
+}
+
+void LineResiduals::Bound(double tau_low, double tau_high, float* least_px,
+                          float* most_px) const {
+  const float low = static_cast<float>(tau_low);
+  const float high = static_cast<float>(tau_high);
+  for (int n = 0; n < size(); ++n) {
+    const auto [least_k, most_k] = BoundLineSide(column_, low, high, n);
+    const auto [least_i, most_i] = BoundLineSide(column_ + kSide, low, high, n);
+    if (least_px != nullptr) least_px[n] = Lowered(0.25f * (least_k + least_i));
+    if (most_px != nullptr) most_px[n] = Raised(0.25f * (most_k + most_i));
+  }
+}
+
+int LineResiduals::Turns(int index, double* taus) const {
+  int turn = 0;
+  for (const int side : {0, kSide}) {
+    for (const int end : {0, 2}) {
+      taus[turn++] =
+          -column_[side + end][index] / column_[side + end + 1][index];
+    }
+  }
+  return turn;
+}
+
 void TransferResiduals::Add(const TripletGeometry& geometry,
                             const MatchedLine& a, const MatchedLine& b,
                             double log_ratio) {
@@ -162,62 +301,41 @@ void TransferResiduals::Evaluate(double tau, int count,
                                  float* errors_px) const {
   const float t = static_cast<float>(tau);
   Eigen::Map<Eigen::ArrayXf>(errors_px, count) =
-      0.5f * (TransferSide(column_, t, count) +
-              TransferSide(column_ + kSide, t, count));
+      0.5f * (TransferSideAt(column_, t, count) +
+              TransferSideAt(column_ + kSide, t, count));
 }
 
-void PlaneResiduals::Add(const TripletGeometry& geometry, const MatchedLine& a,
-                         const MatchedLine& b, double log_ratio) {
-  CandidateStatus status;
-  const PluckerLine line_a =
-      LineInMiddle(geometry.cami_from_camj, a.in_middle.segment,
-                   a.in_neighbor.segment, &status)
-          .value_or(PluckerLine());
-  const PluckerLine line_b =
-      LineInMiddle(geometry.camk_from_camj, b.in_middle.segment,
-                   b.in_neighbor.segment, &status)
-          .value_or(PluckerLine());
-  const Vec3 n = line_a.direction.cross(line_b.direction);
-  const double n2 = n.squaredNorm();
-  if (!(n2 > 1e-18)) {
-    for (Column& column : column_) {
-      Push(column, std::numeric_limits<double>::infinity());
-    }
-    return;
-  }
-  const Vec3 foot_a = line_a.FootPoint(), foot_b = line_b.FootPoint();
-  // P = p0 + tau p1 for either point.
-  const Vec3 along_a = line_b.direction.cross(n) / n2;
-  const Vec3 along_b = line_a.direction.cross(n) / n2;
-  const Vec3 ab0 = foot_a - foot_a.dot(along_a) * line_a.direction;
-  const Vec3 ab1 = foot_b.dot(along_a) * line_a.direction;
-  const Vec3 ba0 = -foot_a.dot(along_b) * line_b.direction;
-  const Vec3 ba1 = foot_b + foot_b.dot(along_b) * line_b.direction;
-  const double scale = std::abs((ab0 + std::exp(log_ratio) * ab1).z()) + 1e-300;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double to_px = (axis < 2 ? geometry.focal_j_px : 1.0) / scale;
-    Push(column_[axis], to_px * ab0(axis));
-    Push(column_[3 + axis], to_px * ab1(axis));
-    Push(column_[6 + axis], to_px * ba0(axis));
-    Push(column_[9 + axis], to_px * ba1(axis));
-  }
-}
-
-void PlaneResiduals::Evaluate(double tau, int count, float* errors_px) const {
+float TransferResiduals::ErrorOf(double tau, int index) const {
   const float t = static_cast<float>(tau);
-  for (int n = 0; n < count; ++n) {
-    const auto at = [&](int column) {
-      return column_[column][n] + t * column_[column + 3][n];
-    };
-    const float depth_ab = at(2), depth_ba = at(8);
-    if (!(depth_ab > kMinDepth) || !(depth_ba > kMinDepth)) {
-      errors_px[n] = std::numeric_limits<float>::infinity();
-      continue;
-    }
-    const float dx = at(0) / depth_ab - at(6) / depth_ba;
-    const float dy = at(1) / depth_ab - at(7) / depth_ba;
-    errors_px[n] = std::sqrt(dx * dx + dy * dy);
+  return 0.5f * (TransferSideOf(column_, t, index) +
+                 TransferSideOf(column_ + kSide, t, index));
+}
+
+void TransferResiduals::Bound(double tau_low, double tau_high, int count,
+                              float* least_px, float* most_px) const {
+  const float low = static_cast<float>(tau_low);
+  const float high = static_cast<float>(tau_high);
+  const Column* const c = column_;
+  const Column* const d = column_ + kSide;
+  if (least_px != nullptr) {
+    Eigen::Map<Values>(least_px, count) =
+        0.5f * (TransferSideAt(c, Clamped(c[4], count, low, high), count) +
+                TransferSideAt(d, Clamped(d[4], count, low, high), count));
   }
+  if (most_px != nullptr) {
+    Eigen::Map<Values>(most_px, count) =
+        0.5f * (TransferSideAt(c, low, count)
+                    .cwiseMax(TransferSideAt(c, high, count)) +
+                TransferSideAt(d, low, count)
+                    .cwiseMax(TransferSideAt(d, high, count)));
+  }
+  Widen(count, least_px, most_px);
+}
+
+int TransferResiduals::Turns(int index, double* taus) const {
+  taus[0] = column_[4][index];
+  taus[1] = column_[kSide + 4][index];
+  return 2;
 }
 
 }  // namespace lowlap

@@ -45,8 +45,7 @@ RatioSupport::RatioSupport(const TripletView& triplet,
   if (options.use_points) AddPoints(triplet);
   if (options.use_lines) AddLines(triplet);
   if (options.use_coplanar) AddPairs(triplet);
-  for (const FeatureKind kind :
-       {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kCoplanar}) {
+  for (const FeatureKind kind : kFeatureKinds) {
     int index = 0;
     for (const RatioCandidate& ratio : Ratios(kind)) {
       hypotheses_.push_back(
@@ -145,6 +144,69 @@ void RatioSupport::PairErrors(double log_ratio, int num_pairs,
   }
 }
 
+float RatioSupport::ErrorOf(FeatureKind kind, int index,
+                            double log_ratio) const {
+  const double tau = std::exp(log_ratio);
+  if (kind == FeatureKind::kPoint) return points_.ErrorOf(tau, index);
+  if (kind == FeatureKind::kLine) return lines_.ErrorOf(tau, index);
+  return coplanar_residual_ == CoplanarResidual::kPlane
+             ? plane_.ErrorOf(tau, index)
+             : transfer_.ErrorOf(tau, index);
+}
+
+int RatioSupport::Turns(FeatureKind kind, int index, double* log_ratios) const {
+  double taus[kMaxTurns];
+  const int num_taus = kind == FeatureKind::kPoint  ? points_.Turns(index, taus)
+                       : kind == FeatureKind::kLine ? lines_.Turns(index, taus)
+                       : coplanar_residual_ == CoplanarResidual::kPlane
+                           ? plane_.Turns(index, taus)
+                           : transfer_.Turns(index, taus);
+  int num_turns = 0;
+  for (int n = 0; n < num_taus; ++n) {
+    if (taus[n] > 0) log_ratios[num_turns++] = std::log(taus[n]);
+  }
+  return num_turns;
+}
+
+void RatioSupport::Bound(double low, double high, KindErrors* least_px,
+                         KindErrors* most_px) const {
+  const double tau_low = std::exp(low), tau_high = std::exp(high);
+  for (const FeatureKind kind : kFeatureKinds) {
+    const std::size_t n = static_cast<std::size_t>(kind);
+    const std::size_t size = Ratios(kind).size();
+    float* least = nullptr;
+    float* most = nullptr;
+    if (least_px != nullptr) {
+      (*least_px)[n].resize(size);
+      least = (*least_px)[n].data();
+    }
+    if (most_px != nullptr) {
+      (*most_px)[n].resize(size);
+      most = (*most_px)[n].data();
+    }
+    if (size == 0) continue;
+    if (kind == FeatureKind::kPoint) {
+      points_.Bound(tau_low, tau_high, least, most);
+    } else if (kind == FeatureKind::kLine) {
+      lines_.Bound(tau_low, tau_high, least, most);
+    } else if (coplanar_residual_ == CoplanarResidual::kPlane) {
+      plane_.Bound(tau_low, tau_high, num_pairs(), least, most);
+    } else {
+      transfer_.Bound(tau_low, tau_high, num_pairs(), least, most);
+    }
+  }
+}
+
+SupportCounts RatioSupport::Count(const KindErrors& errors_px,
+                                  SupportWorkspace* workspace) const {
+  SupportCounts counts;
+  counts.points = CountOnLadder(errors_px[0].data(), num_points());
+  counts.lines = CountOnLadder(errors_px[1].data(), num_lines());
+  counts.coplanar =
+      CountPairErrors(errors_px[2].data(), kPairTiers - 1, workspace);
+  return counts;
+}
+
 SupportCounts RatioSupport::Count(double log_ratio,
                                   SupportWorkspace* workspace) const {
   SupportCounts counts;
@@ -168,17 +230,23 @@ LadderCounts RatioSupport::CountLines(double log_ratio,
 
 std::array<PairCounts, kPairTiers> RatioSupport::CountPairs(
     double log_ratio, int last_tier, SupportWorkspace* workspace) const {
+  const int num_pairs = tiers_[last_tier].num_pairs;
+  if (num_pairs == 0) return {};
+  workspace->errors_px.resize(num_pairs);
+  PairErrors(log_ratio, num_pairs, workspace->errors_px.data());
+  return CountPairErrors(workspace->errors_px.data(), last_tier, workspace);
+}
+
+std::array<PairCounts, kPairTiers> RatioSupport::CountPairErrors(
+    const float* errors_px, int last_tier, SupportWorkspace* workspace) const {
   std::array<PairCounts, kPairTiers> counts{};
   const PairTier& all = tiers_[last_tier];
   if (all.num_pairs == 0) return counts;
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  workspace->errors_px.resize(all.num_pairs);
   workspace->least_first_px.assign(all.num_first, kInfinity);
   workspace->least_last_px.assign(all.num_last, kInfinity);
-  const float* const errors_px = workspace->errors_px.data();
   float* const least_first = workspace->least_first_px.data();
   float* const least_last = workspace->least_last_px.data();
-  PairErrors(log_ratio, all.num_pairs, workspace->errors_px.data());
   int pair = 0;
   for (int tier = 0; tier <= last_tier; ++tier) {
     for (; pair < tiers_[tier].num_pairs; ++pair) {

@@ -12,6 +12,12 @@ namespace lowlap {
 
 enum class FeatureKind { kPoint, kLine, kCoplanar };
 
+inline constexpr std::array<FeatureKind, 3> kFeatureKinds = {
+    FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kCoplanar};
+
+/// Errors in pixels of all features, by kind.
+using KindErrors = std::array<std::vector<float>, kFeatureKinds.size()>;
+
 /// A log ratio that one feature asks for, and which feature.
 struct Hypothesis {
   double log_ratio = 0;
@@ -83,10 +89,27 @@ class RatioSupport {
   /// Indices into TripletView::lines_ij and lines_jk of a pair.
   const CoplanarPairCandidate& Pair(int index) const { return pairs_[index]; }
 
+  /// The ranks of a pair's lines: those of a tier are the first num_first
+  /// (num_last) ones.
+  int FirstLineOf(int pair) const { return pair_first_[pair]; }
+  int LastLineOf(int pair) const { return pair_last_[pair]; }
+
   /// Errors in pixels of all features of a kind at one ratio.
   void Errors(FeatureKind kind, double log_ratio,
               std::vector<float>* errors_px) const;
+  /// The error of one feature.
+  float ErrorOf(FeatureKind kind, int index, double log_ratio) const;
+  /// The log ratios at which one feature's error may turn; see
+  /// ratio_residuals.h. Returns how many were written (at most kMaxTurns).
+  int Turns(FeatureKind kind, int index, double* log_ratios) const;
+  /// Bounds of the errors over an interval of log ratios; either output may be
+  /// null.
+  void Bound(double low, double high, KindErrors* least_px,
+             KindErrors* most_px) const;
   SupportCounts Count(double log_ratio, SupportWorkspace* workspace) const;
+  /// The counts for given errors.
+  SupportCounts Count(const KindErrors& errors_px,
+                      SupportWorkspace* workspace) const;
   LadderCounts CountPoints(double log_ratio, SupportWorkspace* workspace) const;
   LadderCounts CountLines(double log_ratio, SupportWorkspace* workspace) const;
   /// The counts of the tiers up to `last_tier`; the others are left at zero.
@@ -98,6 +121,8 @@ class RatioSupport {
   void AddLines(const TripletView& triplet);
   void AddPairs(const TripletView& triplet);
   void PairErrors(double log_ratio, int num_pairs, float* errors_px) const;
+  std::array<PairCounts, kPairTiers> CountPairErrors(
+      const float* errors_px, int last_tier, SupportWorkspace* workspace) const;
 
   CoplanarResidual coplanar_residual_;
   PointResiduals points_;
@@ -110,8 +135,7 @@ class RatioSupport {
   std::vector<int> point_of_;
   std::vector<int> line_of_;
   std::vector<CoplanarPairCandidate> pairs_;
-  // Of a pair, the rank of its lines in the order in which they first occur:
-  // the lines of a tier are the first num_first (num_last) ones.
+  // Lines are ranked in the order in which they first occur.
   std::vector<int> pair_first_;
   std::vector<int> pair_last_;
   std::array<PairTier, kPairTiers> tiers_{};

@@ -22,6 +22,13 @@ enum class CoplanarResidual {
   kPlane,     // d_co of the paper, in the middle view; blind to frontal planes
 };
 
+/// Where the ratio with the least NFA is looked for.
+enum class RatioSearch {
+  kSweep,       // every tau, see ratio_sweep.h; the default
+  kFeatures,    // the ratios of the features; of many, a subset first
+  kExhaustive,  // the ratio of every feature (the reference)
+};
+
 struct ScaleOptions {
   bool use_points = true;
   bool use_lines = true;
@@ -35,9 +42,9 @@ struct ScaleOptions {
   double threshold_px = 3.0;
   /// Nearest lines that each line is paired with.
   int num_neighbors = 10;
-  /// Try the ratio of every candidate, whatever their number (the reference);
-  /// otherwise large triplets try a fixed subset first, see ratio_search.h.
-  bool exhaustive = false;
+  /// kSweep needs the calibrated a-contrario criterion; the others fall back to
+  /// kFeatures.
+  RatioSearch search = RatioSearch::kSweep;
 
   Status Validate() const;
 };

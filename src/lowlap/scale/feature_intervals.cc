@@ -1,0 +1,57 @@
+#include "lowlap/scale/feature_intervals.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lowlap {
+
+FeatureProfile::FeatureProfile(const RatioSupport& support, FeatureKind kind,
+                               int index, double low, double high)
+    : support_(support), kind_(kind), index_(index) {
+  at_[size_++] = low;
+  double turns[kMaxTurns + 1];
+  int num_turns = support.Turns(kind, index, turns);
+  turns[num_turns++] = support.Ratios(kind)[index].log_ratio;
+  for (int n = 0; n < num_turns; ++n) {
+    if (turns[n] > low && turns[n] < high) at_[size_++] = turns[n];
+  }
+  std::sort(at_.begin() + 1, at_.begin() + size_);
+  at_[size_++] = high;
+  for (int n = 0; n < size_; ++n) {
+    error_px_[n] = support.ErrorOf(kind, index, at_[n]);
+  }
+}
+
+double FeatureProfile::Crossing(int n, float threshold_px) const {
+  // Single precision resolves no more.
+  const double accuracy_px = 1e-5 * threshold_px;
+  constexpr int kMaxIterations = 60;
+  const auto difference = [&](float error_px) {
+    // Errors behind a camera are huge: bounded, so that steps stay useful.
+    return std::isfinite(error_px)
+               ? std::min<double>(error_px, 100 * threshold_px) - threshold_px
+               : 99.0 * threshold_px;
+  };
+  double a = at_[n], b = at_[n + 1];
+  double fa = difference(error_px_[n]), fb = difference(error_px_[n + 1]);
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    // Illinois; now and then halving, for errors far from linear.
+    const double at = iteration % 4 == 3 ? 0.5 * (a + b)
+                                         : (a * fb - b * fa) / (fb - fa);
+    if (!(at > a && at < b)) break;
+    const double f = difference(support_.ErrorOf(kind_, index_, at));
+    if (std::abs(f) <= accuracy_px) return at;
+    if ((f < 0) == (fa < 0)) {
+      a = at;
+      fa = f;
+      fb *= 0.5;
+    } else {
+      b = at;
+      fb = f;
+      fa *= 0.5;
+    }
+  }
+  return 0.5 * (a + b);
+}
+
+}  // namespace lowlap

@@ -1,0 +1,285 @@
+#include "lowlap/scale/ratio_sweep.h"
+
+#include <algorithm>
+#include <cmath>
+#include <queue>
+#include <vector>
+
+#include "lowlap/robust/interval_sweep.h"
+#include "lowlap/scale/feature_intervals.h"
+
+namespace lowlap {
+namespace {
+
+// Where sorted values lie closest: halves of the values, as short as possible.
+double HalfSampleMode(const std::vector<double>& sorted) {
+  std::size_t begin = 0, size = sorted.size();
+  while (size > 2) {
+    const std::size_t half = (size + 1) / 2;
+    std::size_t best = begin;
+    for (std::size_t n = begin; n + half <= begin + size; ++n) {
+      if (sorted[n + half - 1] - sorted[n] <
+          sorted[best + half - 1] - sorted[best]) {
+        best = n;
+      }
+    }
+    begin = best;
+    size = half;
+  }
+  return 0.5 * (sorted[begin] + sorted[begin + size - 1]);
+}
+
+// Counters of the sweep: a ladder each for points, lines, and both sides of
+// every tier of pairs.
+constexpr int kPoints = 0;
+constexpr int kLines = kNumThresholds;
+constexpr int Side(int tier, int side) {
+  return (2 + 2 * tier + side) * kNumThresholds;
+}
+constexpr int kNumCounters = Side(kPairTiers, 0);
+
+void ToCounters(const SupportCounts& counts, std::vector<int>* counters) {
+  counters->resize(kNumCounters);
+  const auto copy = [&](const LadderCounts& ladder, int at) {
+    std::copy(ladder.begin(), ladder.end(), counters->begin() + at);
+  };
+  copy(counts.points, kPoints);
+  copy(counts.lines, kLines);
+  for (int t = 0; t < kPairTiers; ++t) {
+    copy(counts.coplanar[t].first, Side(t, 0));
+    copy(counts.coplanar[t].last, Side(t, 1));
+  }
+}
+
+void FromCounters(const std::vector<int>& counters, SupportCounts* counts) {
+  const auto copy = [&](int at, LadderCounts* ladder) {
+    std::copy_n(counters.begin() + at, kNumThresholds, ladder->begin());
+  };
+  copy(kPoints, &counts->points);
+  copy(kLines, &counts->lines);
+  for (int t = 0; t < kPairTiers; ++t) {
+    copy(Side(t, 0), &counts->coplanar[t].first);
+    copy(Side(t, 1), &counts->coplanar[t].last);
+  }
+}
+
+struct Window {
+  double low = 0;
+  double high = 0;
+  double bound = 0;  // of log10 NFA
+
+  // For a queue that hands out the least bound first.
+  bool operator<(const Window& other) const {
+    return bound != other.bound ? bound > other.bound : low > other.low;
+  }
+};
+
+class RatioSweeper {
+ public:
+  RatioSweeper(const RatioSupport& support, const RatioNfaCriterion& criterion)
+      : support_(support), criterion_(criterion), sweep_(kNumCounters) {}
+
+  RatioOptimum Run(double low, double high) {
+    for (const double seed : Seeds(low, high)) Try(seed);
+    PushAround(best_.log_ratio, low, high);
+    const int few =
+        std::max<int>(64, static_cast<int>(support_.hypotheses().size()) / 2);
+    while (!windows_.empty()) {
+      const Window window = windows_.top();
+      windows_.pop();
+      if (!(window.bound < best_.nfa.log10_nfa - kTolerance)) break;
+      constexpr double kNarrow = 1e-7;
+      if (NumCrossings(window) <= few || window.high - window.low < kNarrow) {
+        Sweep(window);
+        continue;
+      }
+      const double middle = 0.5 * (window.low + window.high);
+      Try(middle);
+      Push(window.low, middle);
+      Push(middle, window.high);
+    }
+    TryNeighbors();
+    return best_;
+  }
+
+ private:
+  static constexpr double kTolerance = 1e-9;
+
+  // Where the ratios of each kind, and all of them, lie closest.
+  std::vector<double> Seeds(double low, double high) const {
+    std::array<std::vector<double>, kFeatureKinds.size() + 1> ratios;
+    for (const Hypothesis& hypothesis : support_.hypotheses()) {
+      if (hypothesis.log_ratio < low || hypothesis.log_ratio > high) continue;
+      ratios[static_cast<std::size_t>(hypothesis.kind)].push_back(
+          hypothesis.log_ratio);
+      ratios.back().push_back(hypothesis.log_ratio);
+    }
+    std::vector<double> seeds;
+    for (const std::vector<double>& sorted : ratios) {
+      if (sorted.empty()) continue;
+      seeds.push_back(HalfSampleMode(sorted));
+      seeds.push_back(sorted[sorted.size() / 2]);
+    }
+    if (seeds.empty()) seeds.push_back(0.5 * (low + high));
+    return seeds;
+  }
+
+  void Try(double log_ratio) {
+    const RatioNfa nfa = criterion_.EvaluateAt(
+        log_ratio, support_.Count(log_ratio, &workspace_));
+    if (!has_best_ || nfa.BetterThan(best_.nfa)) best_ = {log_ratio, nfa};
+    has_best_ = true;
+  }
+
+  // The ratios of features beside the best one: within its segment they differ
+  // by the densities alone, which rounding may bring beyond the ends tried.
+  void TryNeighbors() {
+    constexpr std::ptrdiff_t kNeighbors = 4;
+    const std::vector<Hypothesis>& all = support_.hypotheses();
+    const auto at =
+        std::lower_bound(all.begin(), all.end(), best_.log_ratio,
+                         [](const Hypothesis& hypothesis, double log_ratio) {
+                           return hypothesis.log_ratio < log_ratio;
+                         });
+    const auto begin = at - std::min(kNeighbors, at - all.begin());
+    const auto end = at + std::min(kNeighbors, all.end() - at);
+    for (auto it = begin; it != end; ++it) Try(it->log_ratio);
+  }
+
+  void Push(double low, double high) {
+    if (!(low < high)) return;
+    support_.Bound(low, high, &least_px_, nullptr);
+    const double bound = criterion_.LeastLog10Nfa(
+        low, high, support_.Count(least_px_, &workspace_));
+    if (bound < best_.nfa.log10_nfa - kTolerance) {
+      windows_.push({low, high, bound});
+    }
+  }
+
+  // Windows that grow with their distance from the best ratio so far.
+  void PushAround(double center, double low, double high) {
+    constexpr double kFirst = 2e-3;
+    constexpr double kGrowth = 4;
+    for (const int side : {-1, 1}) {
+      const double last = side < 0 ? center - low : high - center;
+      double near = 0;
+      for (double far = kFirst; near < last; far *= kGrowth) {
+        far = std::min(far, last);
+        Push(side < 0 ? center - far : center + near,
+             side < 0 ? center - near : center + far);
+        near = far;
+      }
+    }
+  }
+
+  // Fills the bounds of the window and counts the thresholds that errors may
+  // cross in it.
+  int NumCrossings(const Window& window) {
+    support_.Bound(window.low, window.high, &least_px_, &most_px_);
+    int crossings = 0;
+    for (const FeatureKind kind : kFeatureKinds) {
+      const std::size_t k = static_cast<std::size_t>(kind);
+      for (std::size_t n = 0; n < least_px_[k].size(); ++n) {
+        crossings += LadderStep(most_px_[k][n]) - LadderStep(least_px_[k][n]);
+      }
+    }
+    return crossings;
+  }
+
+  // Needs the bounds that NumCrossings leaves.
+  void Sweep(const Window& window) {
+    ToCounters(support_.Count(most_px_, &workspace_), &counters_);
+    sweep_.Reset(counters_);
+    AddFeatures(window, FeatureKind::kPoint, kPoints);
+    AddFeatures(window, FeatureKind::kLine, kLines);
+    AddPairs(window);
+    SupportCounts counts;
+    const auto score = [&](double log_ratio) {
+      if (criterion_.EvaluateAt(log_ratio, counts).log10_nfa <
+          best_.nfa.log10_nfa - kTolerance) {
+        Try(log_ratio);
+      }
+    };
+    sweep_.Run(window.low, window.high,
+               [&](double begin, double end, const std::vector<int>& counters) {
+                 constexpr double kInside = 1e-3;
+                 FromCounters(counters, &counts);
+                 score(begin + kInside * (end - begin));
+                 score(end - kInside * (end - begin));
+               });
+  }
+
+  void AddFeatures(const Window& window, FeatureKind kind, int first_counter) {
+    const std::size_t k = static_cast<std::size_t>(kind);
+    for (std::size_t n = 0; n < least_px_[k].size(); ++n) {
+      VisitInlierIntervals(support_, kind, static_cast<int>(n), window.low,
+                           window.high, LadderStep(least_px_[k][n]),
+                           LadderStep(most_px_[k][n]),
+                           [&](int step, double begin, double end) {
+                             sweep_.Add(begin, end, first_counter + step);
+                           });
+    }
+  }
+
+  void AddPairs(const Window& window) {
+    const std::size_t k = static_cast<std::size_t>(FeatureKind::kCoplanar);
+    const std::vector<float>& most = most_px_[k];
+    // From which step on a line is an inlier in the whole window.
+    std::array<std::array<std::vector<int>, 2>, kPairTiers> sure;
+    for (int t = 0; t < kPairTiers; ++t) {
+      sure[t][0].assign(support_.Tier(t).num_first, kNumThresholds);
+      sure[t][1].assign(support_.Tier(t).num_last, kNumThresholds);
+      for (int pair = 0; pair < support_.Tier(t).num_pairs; ++pair) {
+        for (const int side : {0, 1}) {
+          int& step = sure[t][side][LineOf(pair, side)];
+          step = std::min(step, LadderStep(most[pair]));
+        }
+      }
+    }
+    for (int pair = 0; pair < support_.num_pairs(); ++pair) {
+      VisitInlierIntervals(
+          support_, FeatureKind::kCoplanar, pair, window.low, window.high,
+          LadderStep(least_px_[k][pair]), LadderStep(most[pair]),
+          [&](int step, double begin, double end) {
+            for (int t = support_.TierOfPair(pair); t < kPairTiers; ++t) {
+              for (const int side : {0, 1}) {
+                const int line = LineOf(pair, side);
+                if (step >= sure[t][side][line]) continue;
+                sweep_.AddMember(begin, end, Side(t, side) + step, line);
+              }
+            }
+          });
+    }
+  }
+
+  int LineOf(int pair, int side) const {
+    return side == 0 ? support_.FirstLineOf(pair) : support_.LastLineOf(pair);
+  }
+
+  const RatioSupport& support_;
+  const RatioNfaCriterion& criterion_;
+  RatioOptimum best_;
+  bool has_best_ = false;
+  std::priority_queue<Window> windows_;
+  IntervalSweep sweep_;
+  SupportWorkspace workspace_;
+  KindErrors least_px_;
+  KindErrors most_px_;
+  std::vector<int> counters_;
+};
+
+}  // namespace
+
+RatioOptimum SweepRatios(const RatioSupport& support,
+                         const RatioNfaCriterion& criterion, double low,
+                         double high) {
+  return RatioSweeper(support, criterion).Run(low, high);
+}
+
+RatioOptimum SweepRatios(const RatioSupport& support,
+                         const RatioNfaCriterion& criterion) {
+  return SweepRatios(support, criterion, support.hypotheses().front().log_ratio,
+                     support.hypotheses().back().log_ratio);
+}
+
+}  // namespace lowlap
