@@ -1,15 +1,13 @@
 #include "lowlap/averaging/rigidity.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/internal/rigid_parts.h"
 #include "lowlap/averaging/union_find.h"
-#include "lowlap/core/random.h"
 
 namespace lowlap {
 namespace {
@@ -64,58 +62,17 @@ std::vector<int> SharedTracks(const Scene& scene,
   return counts;
 }
 
-// One scale per group; one equation C_b - C_a = s d per edge, in the plane.
-// Groups whose scales are proportional over the whole null space are merged.
-void MergeByNullSpace(const std::vector<ViewPair>& edges, UnionFind* groups) {
-  const std::vector<std::size_t> label = groups->Labels();
-  const std::size_t num_groups =
-      label.empty() ? 0 : *std::max_element(label.begin(), label.end()) + 1;
-  if (num_groups < 3) return;  // fewer cannot close a cycle
-  std::map<ViewId, Eigen::Vector2d> centers;
-  std::map<ViewId, Eigen::Index> column;
-  Random random(20170331);
-  for (const ViewPair& edge : edges) {
-    for (const ViewId view : {edge.first, edge.second}) {
-      if (centers.count(view) > 0) continue;
-      column[view] = static_cast<Eigen::Index>(2 * column.size());
-      centers[view] = {random.Uniform(-1, 1), random.Uniform(-1, 1)};
-    }
-  }
-  const Eigen::Index scale_offset =
-      static_cast<Eigen::Index>(2 * centers.size());
-  Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(
-      static_cast<Eigen::Index>(2 * edges.size()),
-      scale_offset + static_cast<Eigen::Index>(num_groups));
-  for (std::size_t e = 0; e < edges.size(); ++e) {
-    const Eigen::Index row = static_cast<Eigen::Index>(2 * e);
-    const Eigen::Vector2d offset =
-        centers[edges[e].second] - centers[edges[e].first];
-    for (int axis = 0; axis < 2; ++axis) {
-      equations(row + axis, column[edges[e].second] + axis) = 1;
-      equations(row + axis, column[edges[e].first] + axis) = -1;
-      equations(row + axis,
-                scale_offset + static_cast<Eigen::Index>(label[e])) =
-          -offset(axis);
-    }
-  }
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(equations, Eigen::ComputeFullV);
-  Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() &&
-         svd.singularValues()(rank) > 1e-9 * svd.singularValues()(0)) {
-    ++rank;
-  }
-  const Eigen::MatrixXd scales = svd.matrixV().bottomRightCorner(
-      static_cast<Eigen::Index>(num_groups), equations.cols() - rank);
-  // The true lengths are scale 1 for every group, so proportional means equal.
-  std::vector<std::size_t> edge_of_group(num_groups);
-  for (std::size_t e = 0; e < edges.size(); ++e) edge_of_group[label[e]] = e;
-  for (std::size_t a = 0; a < num_groups; ++a) {
-    for (std::size_t b = a + 1; b < num_groups; ++b) {
-      const auto difference = scales.row(static_cast<Eigen::Index>(a)) -
-                              scales.row(static_cast<Eigen::Index>(b));
-      if (difference.norm() < 1e-7) {
-        groups->Union(edge_of_group[a], edge_of_group[b]);
-      }
+// The two relative poses of every triplet with a known ratio.
+void MergeRatios(const std::vector<ViewTriplet>& ratios, const EdgeIndex& index,
+                 UnionFind* groups) {
+  const auto find = [&](ViewId a, ViewId b) {
+    return index.find({std::min(a, b), std::max(a, b)});
+  };
+  for (const ViewTriplet& views : ratios) {
+    const auto reference = find(views.first, views.middle);
+    const auto target = find(views.middle, views.last);
+    if (reference != index.end() && target != index.end()) {
+      groups->Union(reference->second, target->second);
     }
   }
 }
@@ -191,7 +148,8 @@ RigidityReport AnalyzeRigidity(const Scene& scene,
     MergeTriangle(triangle, index, &sets);
   }
   if (options.rule == RigidityRule::kDirections) {
-    MergeByNullSpace(edges, &sets);
+    MergeRatios(options.ratios, index, &sets);
+    MergeRigidParts(edges, &sets);
   }
 
   RigidityReport report;

@@ -47,16 +47,21 @@ struct RigidityOptions {
   RigidityRule rule = RigidityRule::kDirections;
   /// For kTriplets; OpenMVG asks for 30.
   int min_shared_tracks = 30;
+  /// For kDirections: triplets whose two relative poses have a known ratio of
+  /// lengths. Triplets without these relative poses are ignored.
+  std::vector<ViewTriplet> ratios;
 };
 
 /// Which parts of the view graph share a scale, before anything is solved.
 ///
 /// kDirections: edges belong to one group iff their lengths are proportional in
-/// every solution of C_j - C_i = s_ij d_ij. The test is generic: the null space
-/// of the cycle equations for random centres in a plane, since photographs are
-/// mostly taken at one height, where a 4-cycle is not rigid. Triangles are
-/// merged first, so the null space is computed only for what they leave.
-/// Cost: cubic in the number of triangle groups.
+/// every solution of C_j - C_i = s_ij d_ij, and s_jk = tau s_ij for the given
+/// ratios. The test is generic: the null space of these equations for random
+/// centres in a plane, since photographs are mostly taken at one height, where
+/// a 4-cycle is not rigid. Triangles and ratios are merged first, so the null
+/// space is computed only for what they leave. Cost: cubic in the number of
+/// these parts that no single view separates; beyond 250 of them only parts
+/// that share two views are merged.
 ///
 /// kTriplets: edges outside every counted triplet are left out; their views are
 /// isolated unless another edge holds them.
