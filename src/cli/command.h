@@ -52,5 +52,6 @@ void AddSubsets(CLI::App* program, Action* action);
 void AddConvert(CLI::App* program, Action* action);
 void AddValidate(CLI::App* program, Action* action);
 void AddSimulate(CLI::App* program, Action* action);
+void AddRobustness(CLI::App* program, Action* action);
 
 }  // namespace lowlap::cli

@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   lowlap::cli::AddConvert(&program, &action);
   lowlap::cli::AddValidate(&program, &action);
   lowlap::cli::AddSimulate(&program, &action);
+  lowlap::cli::AddRobustness(&program, &action);
 
   CLI11_PARSE(program, argc, argv);
   lowlap::cli::CatchInterrupts();
