@@ -1,0 +1,90 @@
+#include <cstdio>
+#include <memory>
+#include <ostream>
+#include <utility>
+
+#include "cli/command.h"
+#include "cli/scene_input.h"
+#include "cli/solve_flags.h"
+#include "lowlap/averaging/diagnosis.h"
+#include "lowlap/core/atomic_file.h"
+#include "lowlap/pipeline/diagnosis_output.h"
+#include "lowlap/scale/scale_ratios.h"
+
+namespace lowlap::cli {
+namespace {
+
+constexpr int kNotFirm = 2;
+
+struct Flags {
+  CommonFlags common;
+  SceneInputFlags input;
+  ScaleFlags scale;
+  DiagnosisOptions diagnosis;
+  std::string json;
+  bool strict = false;
+};
+
+int RunDiagnose(const Flags& flags) {
+  const RunContext context = MakeContext(flags.common);
+  const auto options = MakeScaleOptions(flags.scale);
+  if (!options) return Fail(options.error());
+  StageLog stages;
+  auto loaded = LoadMeasuredScene(flags.input, context, &stages);
+  if (!loaded) return Fail(loaded.error());
+  Scene scene = std::move(loaded->scene);
+  if (scene.scale_ratios.empty()) {
+    auto ratios = EstimateScaleRatios(scene, *options, context);
+    if (!ratios) return Fail(ratios.error());
+    scene.scale_ratios = std::move(*ratios);
+  }
+  const auto diagnosis = Diagnose(scene, flags.diagnosis);
+  if (!diagnosis) return Fail(diagnosis.error());
+  if (!flags.json.empty()) {
+    const Status written =
+        WriteFileAtomically(flags.json, [&](std::ostream& out) -> Status {
+          out << ToJson(*diagnosis, scene) << '\n';
+          return {};
+        });
+    if (!written) return Fail(written.error());
+  }
+  std::printf("%s", ToText(*diagnosis, scene).c_str());
+  return flags.strict && !diagnosis->IsFirm() ? kNotFirm : 0;
+}
+
+}  // namespace
+
+void AddDiagnose(CLI::App* program, Action* action) {
+  auto flags = std::make_shared<Flags>();
+  CLI::App* command = program->add_subcommand(
+      "diagnose",
+      "Say before anything is solved which views share one scale and through "
+      "what, which float or hang on one camera or on weak ratios, and what "
+      "kind of photograph would mend it");
+  AddSceneInputFlags(command, &flags->input);
+  AddScaleFlags(command, &flags->scale);
+  command
+      ->add_option("--min-inliers", flags->diagnosis.min_inliers,
+                   "A ratio with fewer inliers is weak")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command
+      ->add_option("--max-log10-nfa", flags->diagnosis.max_log10_nfa,
+                   "A ratio with more false alarms is weak")
+      ->capture_default_str();
+  command
+      ->add_option("--max-stddev", flags->diagnosis.max_stddev,
+                   "A ratio whose logarithm has a larger deviation is weak")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  command->add_option("--json", flags->json,
+                      "Also write the diagnosis as JSON");
+  command->add_flag("--strict", flags->strict,
+                    "Exit code 2 unless all views hang together firmly: one "
+                    "scale, without weak ratios");
+  AddCommonFlags(command, &flags->common);
+  command->callback(
+      [flags, action] { *action = [flags] { return RunDiagnose(*flags); }; });
+}
+
+}  // namespace lowlap::cli
