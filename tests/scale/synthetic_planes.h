@@ -21,6 +21,7 @@ struct SyntheticPlanesOptions {
 /// way: the left, middle and right third of the image. f = 900 px.
 struct SyntheticPlanes {
   static constexpr double kFocalPx = 900;
+  static constexpr double kDiagonalPx = 1298;  // of 1080 x 720
   static constexpr int kNumWalls = 3;
 
   TripletGeometry geometry;
@@ -39,7 +40,7 @@ struct SyntheticPlanes {
                                    points_jk, lines_jk));
   }
   std::vector<PlanePoint> Points() const {
-    return FindPlanePoints(geometry, PlanesIj(), PlanesJk());
+    return FindPlanePoints(geometry, PlanesIj(), PlanesJk(), kDiagonalPx);
   }
 };
 

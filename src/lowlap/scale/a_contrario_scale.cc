@@ -50,7 +50,8 @@ Result<ScaleRatio> AContrarioScaleEstimator::Estimate(
   ratio.log10_nfa = nfa.log10_nfa;
   ratio.points.log10_nfa = nfa.points.log10_nfa;
   ratio.lines.log10_nfa = nfa.lines.log10_nfa;
-  ratio.coplanar.log10_nfa = nfa.coplanar.log10_nfa;
+  ratio.coplanar.log10_nfa =
+      nfa.coplanar.log10_nfa + nfa.plane_points.log10_nfa;
   ratio.verdict = nfa.log10_nfa < 0 ? RatioVerdict::kMeaningful
                                     : RatioVerdict::kNotMeaningful;
 
@@ -63,6 +64,7 @@ Result<ScaleRatio> AContrarioScaleEstimator::Estimate(
       threshold_px(nfa.points, support.num_points()),
       threshold_px(nfa.lines, support.num_lines()),
       threshold_px(nfa.coplanar, support.num_pairs()),
+      threshold_px(nfa.plane_points, support.num_plane_points()),
       support.Tier(nfa.coplanar_tier).num_pairs};
   RefineOnInliers(triplet, support, thresholds, optimum.log_ratio, &ratio);
   return ratio;

@@ -35,8 +35,7 @@ Result<ScaleRatio> FixedThresholdScaleEstimator::Estimate(
   std::vector<float> errors_px;
   const auto agreement_of = [&](int index) {
     Agreement agreement;
-    for (const FeatureKind kind :
-         {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kCoplanar}) {
+    for (const FeatureKind kind : kFeatureKinds) {
       support.Errors(kind, hypotheses[index].log_ratio, &errors_px);
       for (const float error_px : errors_px) {
         if (!(error_px < options_.threshold_px)) continue;
@@ -56,12 +55,13 @@ Result<ScaleRatio> FixedThresholdScaleEstimator::Estimate(
   ratio.log10_nfa = nfa.log10_nfa;
   ratio.points.log10_nfa = nfa.points.log10_nfa;
   ratio.lines.log10_nfa = nfa.lines.log10_nfa;
-  ratio.coplanar.log10_nfa = nfa.coplanar.log10_nfa;
+  ratio.coplanar.log10_nfa =
+      nfa.coplanar.log10_nfa + nfa.plane_points.log10_nfa;
   ratio.verdict = agreement_of(best).inliers > 1 ? RatioVerdict::kMeaningful
                                                  : RatioVerdict::kNotMeaningful;
-  const InlierThresholds thresholds{options_.threshold_px,
-                                    options_.threshold_px,
-                                    options_.threshold_px, support.num_pairs()};
+  const InlierThresholds thresholds{
+      options_.threshold_px, options_.threshold_px, options_.threshold_px,
+      options_.threshold_px, support.num_pairs()};
   RefineOnInliers(triplet, support, thresholds, hypotheses[best].log_ratio,
                   &ratio);
   return ratio;

@@ -17,8 +17,7 @@ std::vector<WeightedFeature> Sample(
     const std::vector<WeightedFeature>& features) {
   constexpr std::size_t kMaxOfKind = 100;
   std::vector<WeightedFeature> sample;
-  for (const FeatureKind kind :
-       {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kCoplanar}) {
+  for (const FeatureKind kind : kFeatureKinds) {
     std::vector<WeightedFeature> of_kind;
     for (const WeightedFeature& feature : features) {
       if (feature.kind == kind) of_kind.push_back(feature);
@@ -42,6 +41,9 @@ RatioCandidate RatioIn(const TripletGeometry& geometry,
     case FeatureKind::kLine:
       return TrifocalLineRatio(geometry,
                                triplet.lines[support.LineOf(feature.index)]);
+    case FeatureKind::kPlanePoint:
+      return TrifocalPointRatio(geometry,
+                                triplet.plane_points[feature.index].point);
     case FeatureKind::kCoplanar:
       break;
   }

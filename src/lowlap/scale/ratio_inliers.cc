@@ -17,6 +17,7 @@ struct Inliers {
   Indices points;
   Indices lines;
   Indices pairs;
+  Indices plane_points;
 };
 
 // The features of a kind that are considered.
@@ -45,7 +46,8 @@ Inliers FindInliers(const RatioSupport& support,
   };
   return {below(FeatureKind::kPoint, thresholds.points_px),
           below(FeatureKind::kLine, thresholds.lines_px),
-          below(FeatureKind::kCoplanar, thresholds.coplanar_px)};
+          below(FeatureKind::kCoplanar, thresholds.coplanar_px),
+          below(FeatureKind::kPlanePoint, thresholds.plane_points_px)};
 }
 
 Indices Within3Stddev(const RatioSupport& support, FeatureKind kind,
@@ -75,7 +77,8 @@ Inliers FindConsistent(const RatioSupport& support,
   };
   return {within(FeatureKind::kPoint, thresholds.points_px),
           within(FeatureKind::kLine, thresholds.lines_px),
-          within(FeatureKind::kCoplanar, thresholds.coplanar_px)};
+          within(FeatureKind::kCoplanar, thresholds.coplanar_px),
+          within(FeatureKind::kPlanePoint, thresholds.plane_points_px)};
 }
 
 // A cell of the middle view, an eighth of its diagonal wide: of a point, of the
@@ -90,6 +93,8 @@ int CellOf(const RatioSupport& support, const TripletView& triplet,
     const NormalizedSegment& segment =
         triplet.lines[support.LineOf(index)].in_j.segment;
     at = 0.5 * (segment.start + segment.end);
+  } else if (kind == FeatureKind::kPlanePoint) {
+    at = triplet.plane_points[index].point.in_j;
   } else {
     const CoplanarPairCandidate& pair = support.Pair(index);
     at = CrossingInMiddle(triplet.lines_ij[pair.first].in_middle.segment,
@@ -137,6 +142,9 @@ std::vector<RatioInlier> InlierRatios(const RatioSupport& support,
     add(FeatureKind::kCoplanar, index,
         0.5 * (first[pair.first] + last[pair.last]));
   }
+  for (const int index : inliers.plane_points) {
+    add(FeatureKind::kPlanePoint, index, 1.0);
+  }
   return ratios;
 }
 
@@ -147,7 +155,7 @@ ScaleRatio EmptyRatio(const TripletView& triplet, const RatioSupport& support) {
   ratio.views = triplet.views;
   ratio.points.candidates = support.num_points();
   ratio.lines.candidates = support.num_lines();
-  ratio.coplanar.candidates = support.num_pairs();
+  ratio.coplanar.candidates = support.num_pairs() + support.num_plane_points();
   ratio.num_rejected_negative = support.num_rejected_negative();
   return ratio;
 }
@@ -174,10 +182,13 @@ void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
                 PoseVariance(triplet, support, features));
   ratio->points.inliers = static_cast<int>(inliers.points.size());
   ratio->lines.inliers = static_cast<int>(inliers.lines.size());
-  ratio->coplanar.inliers = static_cast<int>(inliers.pairs.size());
+  ratio->coplanar.inliers =
+      static_cast<int>(inliers.pairs.size() + inliers.plane_points.size());
   ratio->points.threshold_px = thresholds.points_px;
   ratio->lines.threshold_px = thresholds.lines_px;
-  ratio->coplanar.threshold_px = thresholds.coplanar_px;
+  ratio->coplanar.threshold_px = thresholds.coplanar_px > 0
+                                     ? thresholds.coplanar_px
+                                     : thresholds.plane_points_px;
   ratio->coplanar_inliers.clear();
   for (const int index : inliers.pairs) {
     const CoplanarPairCandidate& pair = support.Pair(index);

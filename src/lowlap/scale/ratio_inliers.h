@@ -11,6 +11,7 @@ struct InlierThresholds {
   double points_px = 0;
   double lines_px = 0;
   double coplanar_px = 0;
+  double plane_points_px = 0;
   int num_pairs = 0;  // the pairs that are considered, from the nearest tier on
 };
 

@@ -54,20 +54,21 @@ LadderProbabilities Log10Law(const LadderSums& counts, double num_errors,
 
 // Every ratio that is tried, and what the kinds together gain by chance: the
 // product of m uniform numbers is below x with probability
-// x sum_j<m (-ln x)^j / j!, which for x around 1 / 500 is 1, 7 and 26 times x.
-// More for one and for two kinds, since the background is measured on few
+// x sum_j<m (-ln x)^j / j!, which for x around 1 / 500 is 1, 7, 26 and 67 times
+// x. More for one and for two kinds, since the background is measured on few
 // features. Tried are the ends of the intervals in which features are inliers.
 // A point has one for each threshold, about one ratio, of which the threshold
 // that decides tells the one that counts; the intervals of lines and pairs are
 // several and overlap at random, so that every end counts.
 double Log10Tests(const RatioSupport& support) {
   const int num_kinds = (support.num_points() > 0) + (support.num_lines() > 0) +
-                        (support.num_pairs() > 0);
+                        (support.num_pairs() > 0) +
+                        (support.num_plane_points() > 0);
   const double num_tried =
-      support.num_points() +
+      support.num_points() + support.num_plane_points() +
       kNumThresholds *
           static_cast<double>(support.num_lines() + support.num_pairs());
-  constexpr double kByKinds[] = {1, 4, 8, 26};
+  constexpr double kByKinds[] = {1, 4, 8, 26, 67};
   return std::log10(std::max(1.0, num_tried)) + std::log10(kByKinds[num_kinds]);
 }
 
@@ -78,7 +79,8 @@ LadderProbabilities Scaled(LadderProbabilities law, double log10_relative) {
 
 void AddUp(double log10_tests, RatioNfa* nfa) {
   nfa->log10_nfa = nfa->uncapped = log10_tests;
-  for (const NfaTerm* term : {&nfa->points, &nfa->lines, &nfa->coplanar}) {
+  for (const NfaTerm* term :
+       {&nfa->points, &nfa->lines, &nfa->coplanar, &nfa->plane_points}) {
     nfa->log10_nfa += term->log10_nfa;
     nfa->uncapped += term->uncapped;
   }
@@ -96,6 +98,7 @@ RatioNfaCriterion::RatioNfaCriterion(const RatioSupport& support,
       image_diagonal_px_(triplet.image_diagonal_px),
       log10_tests_(Log10Tests(support)),
       factorials_(std::max({support.num_points(), support.num_lines(),
+                            support.num_plane_points(),
                             support.Tier(kPairTiers - 1).num_first +
                                 support.Tier(kPairTiers - 1).num_last})) {
   if (form_ == NfaForm::kCalibrated) MeasureBackground(triplet);
@@ -117,7 +120,9 @@ void RatioNfaCriterion::MeasureBackground(const TripletView& triplet) {
     for (const double log_ratio : BackgroundRatios(support_.Ratios(kind))) {
       add(kind == FeatureKind::kPoint
               ? support_.CountPoints(log_ratio, &workspace)
-              : support_.CountLines(log_ratio, &workspace),
+          : kind == FeatureKind::kLine
+              ? support_.CountLines(log_ratio, &workspace)
+              : support_.CountPlanePoints(log_ratio, &workspace),
           &sums);
       num_errors += num_features;
     }
@@ -125,6 +130,8 @@ void RatioNfaCriterion::MeasureBackground(const TripletView& triplet) {
   };
   measure(FeatureKind::kPoint, support_.num_points(), &points_);
   measure(FeatureKind::kLine, support_.num_lines(), &lines_);
+  measure(FeatureKind::kPlanePoint, support_.num_plane_points(),
+          &plane_points_);
 
   const std::vector<RatioCandidate>& all =
       support_.Ratios(FeatureKind::kCoplanar);
@@ -184,9 +191,10 @@ void RatioNfaCriterion::EvaluatePaper(const SupportCounts& counts,
 RatioNfaCriterion::Densities RatioNfaCriterion::DensitiesAt(
     double log_ratio) const {
   Densities densities{points_.density.Log10Relative(log_ratio),
-                      lines_.density.Log10Relative(log_ratio)};
+                      lines_.density.Log10Relative(log_ratio),
+                      plane_points_.density.Log10Relative(log_ratio)};
   for (int t = 0; t < kPairTiers; ++t) {
-    densities[2 + t] = pairs_[t].density.Log10Relative(log_ratio);
+    densities[3 + t] = pairs_[t].density.Log10Relative(log_ratio);
   }
   return densities;
 }
@@ -203,9 +211,9 @@ NfaTerm RatioNfaCriterion::PairTerm(const SupportCounts& counts,
     const PairBackground& background = pairs_[t];
     NfaTerm term = CalibratedPairTerm(
         factorials_, tier.num_first, counts.coplanar[t].first,
-        Scaled(background.log10_alpha_first, densities[2 + t]), tier.num_last,
+        Scaled(background.log10_alpha_first, densities[3 + t]), tier.num_last,
         counts.coplanar[t].last,
-        Scaled(background.log10_alpha_last, densities[2 + t]),
+        Scaled(background.log10_alpha_last, densities[3 + t]),
         t >= sampled_tier);
     term.uncapped += std::log10(static_cast<double>(kPairTiers));
     term.log10_nfa = std::min(0.0, term.uncapped);
@@ -229,6 +237,10 @@ void RatioNfaCriterion::EvaluateCalibrated(const Hypothesis& hypothesis,
   nfa->lines = CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
                               Scaled(lines_.log10_alpha, densities[1]),
                               hypothesis.kind == FeatureKind::kLine);
+  nfa->plane_points = CalibratedTerm(
+      factorials_, support_.num_plane_points(), counts.plane_points,
+      Scaled(plane_points_.log10_alpha, densities[2]),
+      hypothesis.kind == FeatureKind::kPlanePoint);
   const int tier_of_sample = hypothesis.kind == FeatureKind::kCoplanar
                                  ? support_.TierOfPair(hypothesis.index)
                                  : kPairTiers;
@@ -245,9 +257,10 @@ RatioNfa RatioNfaCriterion::EvaluateAt(double log_ratio,
 double RatioNfaCriterion::LeastLog10Nfa(double low, double high,
                                         const SupportCounts& most) const {
   Densities densities{points_.density.LeastLog10Relative(low, high),
-                      lines_.density.LeastLog10Relative(low, high)};
+                      lines_.density.LeastLog10Relative(low, high),
+                      plane_points_.density.LeastLog10Relative(low, high)};
   for (int t = 0; t < kPairTiers; ++t) {
-    densities[2 + t] = pairs_[t].density.LeastLog10Relative(low, high);
+    densities[3 + t] = pairs_[t].density.LeastLog10Relative(low, high);
   }
   return LeastOverKinds(most, densities).log10_nfa;
 }
@@ -256,6 +269,8 @@ RatioNfa RatioNfaCriterion::LeastOverKinds(const SupportCounts& counts,
                                            const Densities& densities) const {
   const LadderProbabilities points = Scaled(points_.log10_alpha, densities[0]);
   const LadderProbabilities lines = Scaled(lines_.log10_alpha, densities[1]);
+  const LadderProbabilities plane_points =
+      Scaled(plane_points_.log10_alpha, densities[2]);
   const auto point_term = [&](int sampled) {
     return CalibratedTerm(factorials_, support_.num_points(), counts.points,
                           points, sampled);
@@ -264,9 +279,14 @@ RatioNfa RatioNfaCriterion::LeastOverKinds(const SupportCounts& counts,
     return CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
                           lines, sampled);
   };
+  const auto plane_point_term = [&](int sampled) {
+    return CalibratedTerm(factorials_, support_.num_plane_points(),
+                          counts.plane_points, plane_points, sampled);
+  };
   RatioNfa unsampled;
   unsampled.points = point_term(0);
   unsampled.lines = line_term(0);
+  unsampled.plane_points = plane_point_term(0);
   unsampled.coplanar =
       PairTerm(counts, densities, kPairTiers, &unsampled.coplanar_tier);
   // A ratio from a pair of a wider tier is not a sample of the nearer ones.
@@ -285,6 +305,8 @@ RatioNfa RatioNfaCriterion::LeastOverKinds(const SupportCounts& counts,
       nfa.points = point_term(1);
     } else if (kind == FeatureKind::kLine) {
       nfa.lines = line_term(1);
+    } else if (kind == FeatureKind::kPlanePoint) {
+      nfa.plane_points = plane_point_term(1);
     } else {
       nfa.coplanar = PairTerm(counts, densities, last_tier, &nfa.coplanar_tier);
     }

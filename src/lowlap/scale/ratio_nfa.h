@@ -17,6 +17,7 @@ struct RatioNfa {
   NfaTerm points;
   NfaTerm lines;
   NfaTerm coplanar;
+  NfaTerm plane_points;
   int coplanar_tier = 0;  // the tier of pairs that `coplanar` counts
 
   bool BetterThan(const RatioNfa& other) const {
@@ -88,8 +89,9 @@ class RatioNfaCriterion {
   };
   void MeasureBackground(const TripletView& triplet);
   void EvaluatePaper(const SupportCounts& counts, RatioNfa* nfa) const;
-  // log10 of the densities by kind: points, lines, tiers of pairs.
-  using Densities = std::array<double, 2 + kPairTiers>;
+  // log10 of the densities by kind: points, lines, plane points, tiers of
+  // pairs.
+  using Densities = std::array<double, 3 + kPairTiers>;
   Densities DensitiesAt(double log_ratio) const;
   // Pairs count as sampled from `sampled_tier` on.
   NfaTerm PairTerm(const SupportCounts& counts, const Densities& densities,
@@ -108,6 +110,7 @@ class RatioNfaCriterion {
   LogFactorials factorials_;
   Background points_;
   Background lines_;
+  Background plane_points_;
   std::array<PairBackground, kPairTiers> pairs_;
 };
 

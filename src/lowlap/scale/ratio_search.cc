@@ -18,8 +18,7 @@ std::vector<int> EvenlySpaced(int count, int wanted) {
 
 std::vector<int> CoarseSubset(const std::vector<Hypothesis>& hypotheses) {
   std::vector<int> subset;
-  for (const FeatureKind kind :
-       {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kCoplanar}) {
+  for (const FeatureKind kind : kFeatureKinds) {
     std::vector<int> of_kind;
     for (std::size_t n = 0; n < hypotheses.size(); ++n) {
       if (hypotheses[n].kind == kind) of_kind.push_back(static_cast<int>(n));

@@ -45,6 +45,7 @@ RatioSupport::RatioSupport(const TripletView& triplet,
   if (options.use_points) AddPoints(triplet);
   if (options.use_lines) AddLines(triplet);
   if (options.use_coplanar) AddPairs(triplet);
+  if (options.use_coplanar) AddPlanePoints(triplet);
   for (const FeatureKind kind : kFeatureKinds) {
     int index = 0;
     for (const RatioCandidate& ratio : Ratios(kind)) {
@@ -107,6 +108,13 @@ void RatioSupport::AddPairs(const TripletView& triplet) {
   }
 }
 
+void RatioSupport::AddPlanePoints(const TripletView& triplet) {
+  for (const PlanePoint& point : triplet.plane_points) {
+    plane_points_.Add(triplet.geometry, point.point, point.ratio.log_ratio);
+    plane_point_ratios_.push_back(point.ratio);
+  }
+}
+
 int RatioSupport::TierOfPair(int index) const {
   int tier = 0;
   while (index >= tiers_[tier].num_pairs) ++tier;
@@ -115,9 +123,17 @@ int RatioSupport::TierOfPair(int index) const {
 
 const std::vector<RatioCandidate>& RatioSupport::Ratios(
     FeatureKind kind) const {
-  return kind == FeatureKind::kPoint  ? point_ratios_
-         : kind == FeatureKind::kLine ? line_ratios_
-                                      : pair_ratios_;
+  switch (kind) {
+    case FeatureKind::kPoint:
+      return point_ratios_;
+    case FeatureKind::kLine:
+      return line_ratios_;
+    case FeatureKind::kCoplanar:
+      return pair_ratios_;
+    case FeatureKind::kPlanePoint:
+      break;
+  }
+  return plane_point_ratios_;
 }
 
 void RatioSupport::Errors(FeatureKind kind, double log_ratio,
@@ -129,6 +145,8 @@ void RatioSupport::Errors(FeatureKind kind, double log_ratio,
     points_.Evaluate(tau, errors_px->data());
   } else if (kind == FeatureKind::kLine) {
     lines_.Evaluate(tau, errors_px->data());
+  } else if (kind == FeatureKind::kPlanePoint) {
+    plane_points_.Evaluate(tau, errors_px->data());
   } else {
     PairErrors(log_ratio, num_pairs(), errors_px->data());
   }
@@ -149,6 +167,9 @@ float RatioSupport::ErrorOf(FeatureKind kind, int index,
   const double tau = std::exp(log_ratio);
   if (kind == FeatureKind::kPoint) return points_.ErrorOf(tau, index);
   if (kind == FeatureKind::kLine) return lines_.ErrorOf(tau, index);
+  if (kind == FeatureKind::kPlanePoint) {
+    return plane_points_.ErrorOf(tau, index);
+  }
   return coplanar_residual_ == CoplanarResidual::kPlane
              ? plane_.ErrorOf(tau, index)
              : transfer_.ErrorOf(tau, index);
@@ -158,6 +179,8 @@ int RatioSupport::Turns(FeatureKind kind, int index, double* log_ratios) const {
   double taus[kMaxTurns];
   const int num_taus = kind == FeatureKind::kPoint  ? points_.Turns(index, taus)
                        : kind == FeatureKind::kLine ? lines_.Turns(index, taus)
+                       : kind == FeatureKind::kPlanePoint
+                           ? plane_points_.Turns(index, taus)
                        : coplanar_residual_ == CoplanarResidual::kPlane
                            ? plane_.Turns(index, taus)
                            : transfer_.Turns(index, taus);
@@ -189,6 +212,8 @@ void RatioSupport::Bound(double low, double high, KindErrors* least_px,
       points_.Bound(tau_low, tau_high, least, most);
     } else if (kind == FeatureKind::kLine) {
       lines_.Bound(tau_low, tau_high, least, most);
+    } else if (kind == FeatureKind::kPlanePoint) {
+      plane_points_.Bound(tau_low, tau_high, least, most);
     } else if (coplanar_residual_ == CoplanarResidual::kPlane) {
       plane_.Bound(tau_low, tau_high, num_pairs(), least, most);
     } else {
@@ -204,6 +229,7 @@ SupportCounts RatioSupport::Count(const KindErrors& errors_px,
   counts.lines = CountOnLadder(errors_px[1].data(), num_lines());
   counts.coplanar =
       CountPairErrors(errors_px[2].data(), kPairTiers - 1, workspace);
+  counts.plane_points = CountOnLadder(errors_px[3].data(), num_plane_points());
   return counts;
 }
 
@@ -213,6 +239,7 @@ SupportCounts RatioSupport::Count(double log_ratio,
   counts.points = CountPoints(log_ratio, workspace);
   counts.lines = CountLines(log_ratio, workspace);
   counts.coplanar = CountPairs(log_ratio, kPairTiers - 1, workspace);
+  counts.plane_points = CountPlanePoints(log_ratio, workspace);
   return counts;
 }
 
@@ -226,6 +253,12 @@ LadderCounts RatioSupport::CountLines(double log_ratio,
                                       SupportWorkspace* workspace) const {
   Errors(FeatureKind::kLine, log_ratio, &workspace->errors_px);
   return CountOnLadder(workspace->errors_px.data(), num_lines());
+}
+
+LadderCounts RatioSupport::CountPlanePoints(double log_ratio,
+                                            SupportWorkspace* workspace) const {
+  Errors(FeatureKind::kPlanePoint, log_ratio, &workspace->errors_px);
+  return CountOnLadder(workspace->errors_px.data(), num_plane_points());
 }
 
 std::array<PairCounts, kPairTiers> RatioSupport::CountPairs(

@@ -10,10 +10,11 @@
 
 namespace lowlap {
 
-enum class FeatureKind { kPoint, kLine, kCoplanar };
+enum class FeatureKind { kPoint, kLine, kCoplanar, kPlanePoint };
 
-inline constexpr std::array<FeatureKind, 3> kFeatureKinds = {
-    FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kCoplanar};
+inline constexpr std::array<FeatureKind, 4> kFeatureKinds = {
+    FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kCoplanar,
+    FeatureKind::kPlanePoint};
 
 /// Errors in pixels of all features, by kind.
 using KindErrors = std::array<std::vector<float>, kFeatureKinds.size()>;
@@ -55,6 +56,7 @@ struct SupportCounts {
   LadderCounts points{};
   LadderCounts lines{};
   std::array<PairCounts, kPairTiers> coplanar{};
+  LadderCounts plane_points{};
 };
 
 /// Buffers of RatioSupport's evaluations, one per thread.
@@ -76,6 +78,8 @@ class RatioSupport {
   int num_points() const { return points_.size(); }
   int num_lines() const { return lines_.size(); }
   int num_pairs() const { return static_cast<int>(pairs_.size()); }
+  /// In the order of TripletView::plane_points.
+  int num_plane_points() const { return plane_points_.size(); }
   /// Pairs are numbered by tier, so that a tier is the first num_pairs ones.
   const PairTier& Tier(int tier) const { return tiers_[tier]; }
   int TierOfPair(int index) const;
@@ -112,6 +116,8 @@ class RatioSupport {
                       SupportWorkspace* workspace) const;
   LadderCounts CountPoints(double log_ratio, SupportWorkspace* workspace) const;
   LadderCounts CountLines(double log_ratio, SupportWorkspace* workspace) const;
+  LadderCounts CountPlanePoints(double log_ratio,
+                                SupportWorkspace* workspace) const;
   /// The counts of the tiers up to `last_tier`; the others are left at zero.
   std::array<PairCounts, kPairTiers> CountPairs(
       double log_ratio, int last_tier, SupportWorkspace* workspace) const;
@@ -120,6 +126,7 @@ class RatioSupport {
   void AddPoints(const TripletView& triplet);
   void AddLines(const TripletView& triplet);
   void AddPairs(const TripletView& triplet);
+  void AddPlanePoints(const TripletView& triplet);
   void PairErrors(double log_ratio, int num_pairs, float* errors_px) const;
   std::array<PairCounts, kPairTiers> CountPairErrors(
       const float* errors_px, int last_tier, SupportWorkspace* workspace) const;
@@ -129,9 +136,11 @@ class RatioSupport {
   LineResiduals lines_;
   TransferResiduals transfer_;
   PlaneResiduals plane_;
+  PointResiduals plane_points_;
   std::vector<RatioCandidate> point_ratios_;
   std::vector<RatioCandidate> line_ratios_;
   std::vector<RatioCandidate> pair_ratios_;
+  std::vector<RatioCandidate> plane_point_ratios_;
   std::vector<int> point_of_;
   std::vector<int> line_of_;
   std::vector<CoplanarPairCandidate> pairs_;

@@ -29,12 +29,13 @@ double HalfSampleMode(const std::vector<double>& sorted) {
   return 0.5 * (sorted[begin] + sorted[begin + size - 1]);
 }
 
-// Counters of the sweep: a ladder each for points, lines, and both sides of
-// every tier of pairs.
+// Counters of the sweep: a ladder each for points, lines, plane points, and
+// both sides of every tier of pairs.
 constexpr int kPoints = 0;
 constexpr int kLines = kNumThresholds;
+constexpr int kPlanePoints = 2 * kNumThresholds;
 constexpr int Side(int tier, int side) {
-  return (2 + 2 * tier + side) * kNumThresholds;
+  return (3 + 2 * tier + side) * kNumThresholds;
 }
 constexpr int kNumCounters = Side(kPairTiers, 0);
 
@@ -45,6 +46,7 @@ void ToCounters(const SupportCounts& counts, std::vector<int>* counters) {
   };
   copy(counts.points, kPoints);
   copy(counts.lines, kLines);
+  copy(counts.plane_points, kPlanePoints);
   for (int t = 0; t < kPairTiers; ++t) {
     copy(counts.coplanar[t].first, Side(t, 0));
     copy(counts.coplanar[t].last, Side(t, 1));
@@ -57,6 +59,7 @@ void FromCounters(const std::vector<int>& counters, SupportCounts* counts) {
   };
   copy(kPoints, &counts->points);
   copy(kLines, &counts->lines);
+  copy(kPlanePoints, &counts->plane_points);
   for (int t = 0; t < kPairTiers; ++t) {
     copy(Side(t, 0), &counts->coplanar[t].first);
     copy(Side(t, 1), &counts->coplanar[t].last);
@@ -192,6 +195,7 @@ class RatioSweeper {
     sweep_.Reset(counters_);
     AddFeatures(window, FeatureKind::kPoint, kPoints);
     AddFeatures(window, FeatureKind::kLine, kLines);
+    AddFeatures(window, FeatureKind::kPlanePoint, kPlanePoints);
     AddPairs(window);
     SupportCounts counts;
     const auto score = [&](double log_ratio) {

@@ -33,6 +33,9 @@ struct ScaleOptions {
   bool use_points = true;
   bool use_lines = true;
   bool use_coplanar = true;
+  /// With use_coplanar: also points and lines of one pair that lie on a plane
+  /// of the other; see plane_points.h.
+  bool use_coplanar_points = false;
 
   ScaleCriterion criterion = ScaleCriterion::kAContrario;
   NfaForm nfa_form = NfaForm::kCalibrated;

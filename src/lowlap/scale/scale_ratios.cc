@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lowlap/core/parallel.h"
+#include "lowlap/scale/planes_by_pair.h"
 #include "lowlap/scale/scale_estimator.h"
 #include "lowlap/scale/triplet_view.h"
 
@@ -43,12 +44,19 @@ Result<std::vector<ScaleRatio>> EstimateScaleRatios(
     return tl::unexpected<Error>(status.error());
   }
   const NormalizedFeaturesByView features = NormalizeAllFeatures(scene);
+  PlanesByPair planes;
+  if (options.use_coplanar && options.use_coplanar_points) {
+    Result<PlanesByPair> found =
+        FindPlanesByPair(scene, features, triplets, context);
+    if (!found) return tl::unexpected<Error>(std::move(found.error()));
+    planes = std::move(*found);
+  }
   const std::unique_ptr<ScaleEstimator> estimator = MakeScaleEstimator(options);
   std::vector<Result<ScaleRatio>> results(triplets.size());
   const Status status =
       ParallelFor(context, "scale ratios", triplets.size(), [&](std::size_t n) {
         const Result<TripletView> triplet =
-            MakeTripletView(scene, features, triplets[n], options);
+            MakeTripletView(scene, features, triplets[n], options, &planes);
         results[n] =
             triplet
                 ? estimator->Estimate(*triplet)

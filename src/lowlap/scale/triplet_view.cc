@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lowlap/scale/broken_lines.h"
+#include "lowlap/scale/planes_by_pair.h"
 #include "lowlap/scale/pose_uncertainty.h"
 
 namespace lowlap {
@@ -68,6 +69,28 @@ void Chain(const std::vector<MiddleMatch>& ij,
   }
 }
 
+std::vector<PlanePoint> PlanePointsOf(const Scene& scene,
+                                      const NormalizedFeaturesByView& features,
+                                      const TripletView& triplet,
+                                      const PlanesByPair* planes) {
+  const ViewTriplet& views = triplet.views;
+  PairPlanes found[2];
+  const PairPlanes* used[2];
+  for (const int n : {0, 1}) {
+    const ViewId neighbor = n == 0 ? views.first : views.last;
+    const auto it = planes == nullptr ? PlanesByPair::const_iterator()
+                                      : planes->find({views.middle, neighbor});
+    used[n] = &found[n];
+    if (planes != nullptr && it != planes->end()) {
+      used[n] = &it->second;
+    } else {
+      found[n] = PlanesOfPair(scene, features, views.middle, neighbor);
+    }
+  }
+  return FindPlanePoints(triplet.geometry, *used[0], *used[1],
+                         triplet.image_diagonal_px);
+}
+
 ObservedSegment Observe(const NormalizedFeatures& features,
                         const ViewFeatures& raw,
                         const std::vector<FeatureIndex>& pieces) {
@@ -94,7 +117,8 @@ NormalizedFeaturesByView NormalizeAllFeatures(const Scene& scene) {
 Result<TripletView> MakeTripletView(const Scene& scene,
                                     const NormalizedFeaturesByView& features,
                                     const ViewTriplet& views,
-                                    const ScaleOptions& options) {
+                                    const ScaleOptions& options,
+                                    const PlanesByPair* planes) {
   const std::string name = "triplet (" + std::to_string(views.first) + ", " +
                            std::to_string(views.middle) + ", " +
                            std::to_string(views.last) + ")";
@@ -172,6 +196,9 @@ Result<TripletView> MakeTripletView(const Scene& scene,
               triplet.points.push_back(point);
             }
           });
+  }
+  if (options.use_coplanar && options.use_coplanar_points) {
+    triplet.plane_points = PlanePointsOf(scene, features, triplet, planes);
   }
   if (!options.use_lines && !options.use_coplanar) return triplet;
   const std::vector<MiddleMatch> lines_ij =

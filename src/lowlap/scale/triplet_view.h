@@ -1,11 +1,13 @@
 #pragma once
 
 #include <map>
+#include <utility>
 #include <vector>
 
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
 #include "lowlap/scale/coplanar_candidates.h"
+#include "lowlap/scale/plane_points.h"
 #include "lowlap/scale/scale_options.h"
 #include "lowlap/scale/triplet_geometry.h"
 #include "lowlap/scene/normalized_features.h"
@@ -29,9 +31,12 @@ struct TripletView {
   std::vector<MatchedLine> lines_ij;
   std::vector<MatchedLine> lines_jk;
   CoplanarPairCandidates coplanar;
+  std::vector<PlanePoint> plane_points;
 };
 
 using NormalizedFeaturesByView = std::map<ViewId, NormalizedFeatures>;
+/// By middle view and neighbour.
+using PlanesByPair = std::map<std::pair<ViewId, ViewId>, PairPlanes>;
 
 /// NormalizeFeatures for every view that has features and an intrinsic.
 NormalizedFeaturesByView NormalizeAllFeatures(const Scene& scene);
@@ -40,7 +45,8 @@ NormalizedFeaturesByView NormalizeAllFeatures(const Scene& scene);
 /// poses, chained through the feature index in the middle view (points: every
 /// combination, where one is matched more than once; lines: the pieces of a
 /// broken segment joined, see GroupMatches), and the coplanar candidates. Only
-/// the kinds that `options` enables are filled.
+/// the kinds that `options` enables are filled; plane points from `planes`
+/// (planes_by_pair.h), or from planes found here if there are none.
 ///
 /// Errors: kInvalidArgument if one of the two relative poses, or the middle
 /// view's intrinsic, is missing; kInvalidScene if a match refers to a feature
@@ -48,6 +54,7 @@ NormalizedFeaturesByView NormalizeAllFeatures(const Scene& scene);
 Result<TripletView> MakeTripletView(const Scene& scene,
                                     const NormalizedFeaturesByView& features,
                                     const ViewTriplet& views,
-                                    const ScaleOptions& options);
+                                    const ScaleOptions& options,
+                                    const PlanesByPair* planes = nullptr);
 
 }  // namespace lowlap
