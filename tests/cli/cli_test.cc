@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
+#include "cli_fixture.h"
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/io/scene_json.h"
 
@@ -21,70 +21,16 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-struct Outcome {
-  int exit_code = -1;
-  std::string output;  // standard output and error
-};
-
-Outcome Lowlap(const std::string& arguments) {
-  Outcome outcome;
-  const std::string line =
-      std::string(LOWLAP_COMMAND) + " " + arguments + " 2>&1";
-  FILE* pipe = ::popen(line.c_str(), "r");
-  std::array<char, 4096> buffer;
-  for (std::size_t n;
-       (n = std::fread(buffer.data(), 1, buffer.size(), pipe));) {
-    outcome.output.append(buffer.data(), n);
-  }
-  const int status = ::pclose(pipe);
-  outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return outcome;
-}
-
-std::string ReadText(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 std::string RoomImages() {
   return std::string(LOWLAP_SOURCE_DIR) + "/sfm_data/samples/room/images";
 }
-
-class Cli : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ =
-        fs::temp_directory_path() / (std::string("lowlap_cli_") + info->name() +
-                                     "_" + std::to_string(::getpid()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  std::string Path(const std::string& name) const {
-    return (folder_ / name).string();
-  }
-  void Write(const std::string& name, const std::string& text) const {
-    std::ofstream(Path(name), std::ios::binary) << text;
-  }
-  std::size_t FilesIn(const std::string& name) const {
-    if (!fs::exists(Path(name))) return 0;
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(Path(name)), {}));
-  }
-
-  fs::path folder_;
-};
 
 TEST_F(Cli, HelpNamesEveryCommand) {
   const Outcome help = Lowlap("--help");
   EXPECT_EQ(help.exit_code, 0);
   for (const char* command :
-       {"run", "solve", "scales", "adjust", "evaluate", "features", "inspect",
-        "convert", "validate", "simulate"}) {
+       {"run", "solve", "compare", "ablate", "scales", "adjust", "evaluate",
+        "features", "inspect", "convert", "validate", "simulate"}) {
     EXPECT_THAT(help.output, HasSubstr(command));
     const Outcome own = Lowlap(std::string(command) + " --help");
     EXPECT_EQ(own.exit_code, 0) << command;
