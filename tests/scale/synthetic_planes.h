@@ -4,6 +4,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/scale/plane_points.h"
+#include "lowlap/scale/triplet_view.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap::testing {
@@ -13,7 +14,7 @@ struct SyntheticPlanesOptions {
   int num_lines_per_wall = 0;
   int num_scattered = 0;  // points of either pair on no wall
   double noise_px = 0;
-  /// Every wall has a scale of its own in (j, k): there is no ratio.
+  /// The walls that (j, k) sees are others: there is no ratio.
   bool unrelated_walls = false;
 };
 
@@ -39,8 +40,18 @@ struct SyntheticPlanes {
     return FindPlanes(DepthSamples(geometry.camk_from_camj, kFocalPx, kFocalPx,
                                    points_jk, lines_jk));
   }
+  /// With the plane points alone.
+  TripletView View() const {
+    TripletView view;
+    view.views = {0, 1, 2};
+    view.geometry = geometry;
+    view.image_area_px2 = 1080 * 720;
+    view.image_diagonal_px = kDiagonalPx;
+    view.plane_points = Points();
+    return view;
+  }
   std::vector<PlanePoint> Points() const {
-    return FindPlanePoints(geometry, PlanesIj(), PlanesJk(), kDiagonalPx);
+    return FindPlanePoints(geometry, PlanesIj(), PlanesJk());
   }
 };
 
@@ -62,17 +73,11 @@ class SyntheticPlanesMaker {
     scene.baseline_i = length_i;
     scene.true_log_ratio = std::log(length_k / length_i);
     for (int w = 0; w < SyntheticPlanes::kNumWalls; ++w) {
-      const double depth = random_.Uniform(2.5, 5);
-      const double x = random_.Uniform(-0.4, 0.4);
-      scene.walls.push_back(Vec3(x, random_.Uniform(-0.3, 0.3), 1) / depth);
-    }
-    for (int w = 0; w < SyntheticPlanes::kNumWalls; ++w) {
-      // In (j, k) the scene is larger by this factor.
-      const double factor =
-          options_.unrelated_walls ? std::exp(random_.Uniform(-0.7, 0.7)) : 1;
+      scene.walls.push_back(RandomWall());
+      const Vec3 other = RandomWall();
       AddWall(scene.walls[w], w, i_from_j, &scene.points_ij, &scene.lines_ij);
-      AddWall(scene.walls[w] / factor, w, k_from_j, &scene.points_jk,
-              &scene.lines_jk);
+      AddWall(options_.unrelated_walls ? other : scene.walls[w], w, k_from_j,
+              &scene.points_jk, &scene.lines_jk);
     }
     for (int n = 0; n < options_.num_scattered; ++n) {
       AddPoint(Ray(0, 3) * random_.Uniform(1.5, 6), i_from_j, &scene.points_ij);
@@ -88,6 +93,12 @@ class SyntheticPlanesMaker {
     const Vec3 turn(0, -side * random_.Uniform(0, 0.1), 0.02);
     return RigidTransform::FromRotationAndCenter(RotationFromAngleAxis(turn),
                                                  center);
+  }
+
+  Vec3 RandomWall() {
+    const double depth = random_.Uniform(2.5, 5);
+    const double x = random_.Uniform(-0.4, 0.4);
+    return Vec3(x, random_.Uniform(-0.3, 0.3), 1) / depth;
   }
 
   // Of the middle camera, in thirds [first, end) of the image.

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <utility>
 
 namespace lowlap {
@@ -13,7 +11,6 @@ namespace {
 
 constexpr double kAgree = 2.5;
 constexpr int kMinSamples = 2;
-constexpr double kSeparationOfDiagonal = 1.0 / 8;
 
 // What one sample says, with the plane of the other pair below it.
 struct Vote {
@@ -126,104 +123,38 @@ Vec3 Transfer(const RigidTransform& camn_from_camj, const Vec3& ray,
   return y / y.z();
 }
 
-// The votes around up to three places that are `separation` apart from each
-// other, the third also from the line through the first two.
-std::vector<std::vector<Vote>> Split(const std::vector<Vote>& votes,
-                                     double separation) {
-  const auto farthest = [&](const auto& distance) {
-    return *std::max_element(votes.begin(), votes.end(),
-                             [&](const Vote& a, const Vote& b) {
-                               return distance(a) < distance(b);
-                             });
-  };
-  Vec3 mean = Vec3::Zero();
-  for (const Vote& vote : votes) mean += vote.ray / votes.size();
-  std::vector<Vec3> anchors;
-  const auto add = [&](const auto& distance) {
-    const Vote vote = farthest(distance);
-    if (distance(vote) >= separation) anchors.push_back(vote.ray);
-  };
-  anchors.push_back(
-      farthest([&](const Vote& v) { return (v.ray - mean).norm(); }).ray);
-  add([&](const Vote& v) { return (v.ray - anchors[0]).norm(); });
-  if (anchors.size() == 2) {
-    const Vec3 along = (anchors[1] - anchors[0]).normalized();
-    add([&](const Vote& v) {
-      return (v.ray - anchors[0]).cross(along).norm();
-    });
-  }
-  std::vector<std::vector<Vote>> groups(anchors.size());
-  for (const Vote& vote : votes) {
-    const auto nearest = std::min_element(
-        anchors.begin(), anchors.end(), [&](const Vec3& a, const Vec3& b) {
-          return (vote.ray - a).squaredNorm() < (vote.ray - b).squaredNorm();
-        });
-    groups[nearest - anchors.begin()].push_back(vote);
-  }
-  return groups;
-}
-
-// The point of a group of votes, if most of them agree.
-std::optional<PlanePoint> PointOf(const TripletGeometry& geometry,
-                                  const std::vector<Vote>& group,
-                                  const PairPlane& plane, bool plane_is_first) {
-  const std::vector<Vote> votes = LargestAgreement(group);
-  if (static_cast<int>(votes.size()) < kMinSamples ||
-      2 * votes.size() <= group.size()) {
-    return std::nullopt;
-  }
-  const Place place = Join(votes, plane);
-  const double of_plane = plane.InverseDepth(place.ray);
-  const double of_samples = of_plane * std::exp(place.log_quotient);
-  if (!(of_plane > 0) || !(place.stddev <= kMaxCoplanarLogRatioStddev)) {
-    return std::nullopt;
-  }
-  PlanePoint point;
-  point.point.in_j = place.ray;
-  point.point.in_i = Transfer(geometry.cami_from_camj, place.ray,
-                              plane_is_first ? of_plane : of_samples);
-  point.point.in_k = Transfer(geometry.camk_from_camj, place.ray,
-                              plane_is_first ? of_samples : of_plane);
-  point.ratio.status = CandidateStatus::kValid;
-  point.ratio.log_ratio =
-      plane_is_first ? place.log_quotient : -place.log_quotient;
-  point.ratio.log_ratio_stddev = place.stddev;
-  point.plane_is_first = plane_is_first;
-  point.num_samples = static_cast<int>(votes.size());
-  point.num_lying_on = static_cast<int>(group.size());
-  return point;
-}
-
-// The points of one plane, with the surest standard deviation.
-struct PointsOfPlane {
-  std::vector<PlanePoint> points;
-  double stddev = std::numeric_limits<double>::infinity();
-
-  bool BetterThan(const PointsOfPlane& other) const {
-    return points.size() != other.points.size()
-               ? points.size() > other.points.size()
-               : stddev < other.stddev;
-  }
-};
-
 void AddPlanePoints(const TripletGeometry& geometry, const PairPlanes& planes,
                     const PairPlanes& others, bool plane_is_first,
-                    double separation, std::vector<PointsOfPlane>* result) {
+                    std::vector<PlanePoint>* points) {
   const std::vector<std::vector<Vote>> by_plane = VotesByPlane(planes, others);
   for (std::size_t n = 0; n < by_plane.size(); ++n) {
-    if (by_plane[n].empty()) continue;
-    PointsOfPlane of_plane;
-    for (const std::vector<Vote>& group : Split(by_plane[n], separation)) {
-      std::optional<PlanePoint> point =
-          PointOf(geometry, group, planes.planes[n], plane_is_first);
-      if (!point) continue;
-      point->plane = static_cast<int>(n);
-      point->other_plane = OtherPlane(by_plane[n], others.planes.size());
-      of_plane.stddev =
-          std::min(of_plane.stddev, point->ratio.log_ratio_stddev);
-      of_plane.points.push_back(*point);
+    const std::vector<Vote> votes = LargestAgreement(by_plane[n]);
+    if (static_cast<int>(votes.size()) < kMinSamples ||
+        2 * votes.size() <= by_plane[n].size()) {
+      continue;
     }
-    if (!of_plane.points.empty()) result->push_back(std::move(of_plane));
+    const Place place = Join(votes, planes.planes[n]);
+    const double of_plane = planes.planes[n].InverseDepth(place.ray);
+    const double of_samples = of_plane * std::exp(place.log_quotient);
+    if (!(of_plane > 0) || !(place.stddev <= kMaxCoplanarLogRatioStddev)) {
+      continue;
+    }
+    PlanePoint point;
+    point.point.in_j = place.ray;
+    point.point.in_i = Transfer(geometry.cami_from_camj, place.ray,
+                                plane_is_first ? of_plane : of_samples);
+    point.point.in_k = Transfer(geometry.camk_from_camj, place.ray,
+                                plane_is_first ? of_samples : of_plane);
+    point.ratio.status = CandidateStatus::kValid;
+    point.ratio.log_ratio =
+        plane_is_first ? place.log_quotient : -place.log_quotient;
+    point.ratio.log_ratio_stddev = place.stddev;
+    point.plane_is_first = plane_is_first;
+    point.plane = static_cast<int>(n);
+    point.other_plane = OtherPlane(votes, others.planes.size());
+    point.num_samples = static_cast<int>(votes.size());
+    point.num_lying_on = static_cast<int>(by_plane[n].size());
+    points->push_back(point);
   }
 }
 
@@ -261,25 +192,23 @@ class Surfaces {
 
 std::vector<PlanePoint> FindPlanePoints(const TripletGeometry& geometry,
                                         const PairPlanes& planes_ij,
-                                        const PairPlanes& planes_jk,
-                                        double image_diagonal_px) {
-  const double separation =
-      kSeparationOfDiagonal * image_diagonal_px / geometry.focal_j_px;
-  std::vector<PointsOfPlane> all;
-  AddPlanePoints(geometry, planes_ij, planes_jk, true, separation, &all);
-  AddPlanePoints(geometry, planes_jk, planes_ij, false, separation, &all);
+                                        const PairPlanes& planes_jk) {
+  std::vector<PlanePoint> all;
+  AddPlanePoints(geometry, planes_ij, planes_jk, true, &all);
+  AddPlanePoints(geometry, planes_jk, planes_ij, false, &all);
   Surfaces surfaces(planes_ij, planes_jk);
-  for (const PointsOfPlane& plane : all) surfaces.Unite(plane.points.front());
-  std::map<int, const PointsOfPlane*> best;  // by surface
-  for (const PointsOfPlane& plane : all) {
-    const auto [it, is_new] =
-        best.emplace(surfaces.Of(plane.points.front()), &plane);
-    if (!is_new && plane.BetterThan(*it->second)) it->second = &plane;
+  for (const PlanePoint& point : all) surfaces.Unite(point);
+  std::map<int, std::size_t> surest;  // by surface
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    const auto [it, is_new] = surest.emplace(surfaces.Of(all[n]), n);
+    if (!is_new && all[n].ratio.log_ratio_stddev <
+                       all[it->second].ratio.log_ratio_stddev) {
+      it->second = n;
+    }
   }
   std::vector<PlanePoint> points;
-  for (const PointsOfPlane& plane : all) {
-    if (best[surfaces.Of(plane.points.front())] != &plane) continue;
-    points.insert(points.end(), plane.points.begin(), plane.points.end());
+  for (std::size_t n = 0; n < all.size(); ++n) {
+    if (surest[surfaces.Of(all[n])] == n) points.push_back(all[n]);
   }
   return points;
 }

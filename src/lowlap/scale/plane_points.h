@@ -17,15 +17,14 @@ struct PlanePoint {
   /// Of which pair the plane is: (i, j), else (j, k).
   bool plane_is_first = true;
   int plane = 0;  // index in that pair's planes
-  /// The other pair's plane on which most of what lies on this one lies too;
-  /// kNoPlane: none.
+  /// The other pair's plane on which most of its samples lie; kNoPlane: none.
   int other_plane = PairPlanes::kNoPlane;
-  int num_samples = 0;   // of the other pair that agree on the ratio here
-  int num_lying_on = 0;  // all of them here
+  int num_samples = 0;   // of the other pair that agree on the ratio
+  int num_lying_on = 0;  // all of them in the plane's extent
 };
 
-/// The ratios on which the samples of one pair agree that are in the extent of
-/// a plane of the other pair.
+/// For every plane of either pair that has samples of the other in its extent,
+/// the ratio on which most of them agree.
 ///
 /// A sample with inverse depth rho at the ray x, in the extent of a plane with
 /// p . x of the other pair, says (Salaün et al. 2017, conclusion: points that
@@ -36,23 +35,19 @@ struct PlanePoint {
 /// is used unless hopeless (kMaxCoplanarLogRatioStddev). Features matched in
 /// both pairs are passed over: they are trifocal.
 ///
-/// A plane has three parameters, so that whatever lies on it agrees with one
-/// ratio at no more than three places by more than its smoothness: a surface
-/// gives up to three points, an eighth of the image diagonal from each other
-/// and not in line. Planes that lie on each other (a wall of (i, j), its like
-/// in (j, k), the parts into which either has fallen) are one surface, and only
-/// the points of the plane with most of them, then of the surest, are kept.
-///
-/// The ratio of a place is the weighted mean of the largest set of its samples
-/// that agree with one of them within 2.5 standard deviations. The errors of
-/// the samples average out, and are scaled by their scatter; that of the plane
-/// does not. Left out: places where fewer than two samples agree, or fewer than
-/// half of those there.
+/// What lies on one plane agrees with each other, also if it is a wrong one
+/// (of two parallel planes, say), so a plane is one piece of evidence: its
+/// samples are joined, and of the planes that are connected by lying on each
+/// other (a wall of (i, j), its like in (j, k), the parts into which either has
+/// fallen) only the surest is kept. The ratio of a plane is the weighted mean
+/// of the largest set that agrees with one of them within kAgree standard
+/// deviations. The errors of the samples average out, and are scaled by their
+/// scatter; that of the plane does not. Left out: planes with fewer than
+/// kMinSamples that agree, or whose set is not the majority.
 ///
 /// Sorted: planes of (i, j), then those of (j, k), each by index.
 std::vector<PlanePoint> FindPlanePoints(const TripletGeometry& geometry,
                                         const PairPlanes& planes_ij,
-                                        const PairPlanes& planes_jk,
-                                        double image_diagonal_px);
+                                        const PairPlanes& planes_jk);
 
 }  // namespace lowlap

@@ -87,8 +87,7 @@ std::vector<PlanePoint> PlanePointsOf(const Scene& scene,
       found[n] = PlanesOfPair(scene, features, views.middle, neighbor);
     }
   }
-  return FindPlanePoints(triplet.geometry, *used[0], *used[1],
-                         triplet.image_diagonal_px);
+  return FindPlanePoints(triplet.geometry, *used[0], *used[1]);
 }
 
 ObservedSegment Observe(const NormalizedFeatures& features,
