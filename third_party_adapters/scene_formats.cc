@@ -12,6 +12,7 @@
 
 #include "lowlap/io/ply.h"
 #include "lowlap/io/scene_json.h"
+#include "third_party_adapters/onedsfm/problem.h"
 #include "third_party_adapters/openmvg/prepare.h"
 #include "third_party_adapters/openmvg/sfm_data_bin.h"
 #include "third_party_adapters/openmvg/sfm_data_xml.h"
@@ -84,6 +85,23 @@ class OpenMvgXmlFormat : public SceneFormat {
   }
 };
 
+class OneDSfmFormat : public SceneFormat {
+ public:
+  std::string Name() const override { return "1dsfm"; }
+  std::string Description() const override {
+    return "a problem folder of 1DSfM (EGs.txt, cc.txt, ...), read only";
+  }
+  bool Recognizes(const std::string& path) const override {
+    return onedsfm::IsProblemFolder(path);
+  }
+  Result<Scene> Read(const std::string& path) const override {
+    auto problem = onedsfm::ReadProblem(path);
+    if (!problem) return tl::unexpected<Error>(problem.error());
+    return std::move(problem->scene);
+  }
+  bool CanWrite() const override { return false; }
+};
+
 class PlyFormat : public SceneFormat {
  public:
   std::string Name() const override { return "ply"; }
@@ -141,6 +159,7 @@ SceneFormats AllSceneFormats() {
   formats.push_back(std::make_unique<const OpenMvgJsonFormat>());
   formats.push_back(std::make_unique<const OpenMvgBinFormat>());
   formats.push_back(std::make_unique<const OpenMvgXmlFormat>());
+  formats.push_back(std::make_unique<const OneDSfmFormat>());
   formats.push_back(std::make_unique<const PlyFormat>());
   return formats;
 }

@@ -15,13 +15,14 @@ namespace lowlap {
 ///   openmvg-json  -        what OpenMVG holds and nothing else
 ///   openmvg-bin   .bin     what OpenMVG holds
 ///   openmvg-xml   .xml     what OpenMVG holds
+///   1dsfm         folder   a problem of 1DSfM; read only
 ///   ply           .ply     points, lines and cameras; written only
 SceneFormats AllSceneFormats();
 
 /// One line per format, for help texts and messages.
 std::string DescribeSceneFormats();
 
-/// Reads a scene file. An sfm_data file is told by its first bytes, so that a
+/// Reads a scene file or folder. An sfm_data file is told by its first bytes, so that a
 /// wrong extension does no harm; other files by the extension. kUnsupported,
 /// with the list of formats, for anything else.
 Result<Scene> ReadScene(const std::string& path);

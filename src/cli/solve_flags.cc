@@ -10,6 +10,7 @@
 #include "lowlap/averaging/pose_warnings.h"
 #include "lowlap/averaging/strategies.h"
 #include "lowlap/pipeline/output_folder.h"
+#include "third_party_adapters/onedsfm/problem.h"
 #include "third_party_adapters/scene_formats.h"
 #include "third_party_adapters/strecha/strecha.h"
 
@@ -126,7 +127,12 @@ void AddSolveFlags(CLI::App* command, SolveFlags* flags) {
       ->add_option("--strategy", flags->strategy,
                    "How poses are composed: graph (average over all ratios) or "
                    "chain (the paper's composition)")
-      ->check(CLI::IsMember(TranslationAveragerNames()));
+      ->check(CLI::Validator(
+          [](const std::string& name) {
+            const auto averager = MakeTranslationAverager(name);
+            return averager ? std::string() : averager.error().message;
+          },
+          "NAME"));
   AddAdjustFlags(command, flags);
   AddRefinementFlag(command, &flags->refine_intrinsics);
   AddTruthFlag(command, &flags->ground_truth);
@@ -233,6 +239,11 @@ Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
     const auto truth = ReadScene(path);
     if (!truth) return tl::unexpected<Error>(truth.error());
     return std::optional<GroundTruth>(GroundTruthFromScene(*truth));
+  }
+  if (onedsfm::IsProblemFolder(path)) {
+    auto truth = onedsfm::ReadTruePoses(path);
+    if (!truth) return tl::unexpected<Error>(truth.error());
+    return std::optional<GroundTruth>(std::move(*truth));
   }
   const auto poses = strecha::ReadGroundTruth(path);
   if (!poses) return tl::unexpected<Error>(poses.error());
