@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/averaging/rigidity.h"
 #include "lowlap/pipeline/decide_motions.h"
 #include "lowlap/scale/scale_ratios.h"
 
@@ -99,6 +100,20 @@ Result<std::vector<ScaleRatio>> CompleteRatios(
   return complete;
 }
 
+// The number of parts of the placed views that directions alone leave with
+// scales of their own.
+std::size_t CountScaleParts(const Scene& scene, const PoseSummary& summary) {
+  Scene graph;
+  graph.views = scene.views;
+  for (const auto& entry : scene.relative_poses) {
+    graph.relative_poses[entry.first];
+  }
+  for (const OutlierEdge& outlier : summary.outlier_edges) {
+    graph.relative_poses.erase(outlier.views);
+  }
+  return AnalyzeRigidity(WithoutViews(graph, summary.unplaced)).groups.size();
+}
+
 }  // namespace
 
 Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
@@ -131,7 +146,8 @@ Result<RatioSummary> EstimateBelievedRatios(Scene* scene,
 }
 
 // Relative poses that are a little off bend what many others hold already, but
-// may be all that holds a view: they are left out if that loses none.
+// may be all that holds a view, or all that closes a loop: they are left out if
+// that loses no view, and leaves no part of the views to its ratios alone.
 Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
                                  const PoseOptions& options,
                                  const RunContext& context, StageLog* stages) {
@@ -145,7 +161,8 @@ Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
   const std::map<PoseId, Pose> poses = scene->poses;
   auto solved = SolveScenePoses(scene, *fewer, strict, context);
   if (solved && solved->num_placed >= all->num_placed &&
-      solved->IsDoubtful() <= all->IsDoubtful()) {
+      solved->IsDoubtful() <= all->IsDoubtful() &&
+      CountScaleParts(*scene, *solved) <= CountScaleParts(*scene, *all)) {
     return solved;
   }
   scene->poses = poses;
