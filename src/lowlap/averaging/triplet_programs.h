@@ -14,7 +14,7 @@ struct TripletProgramOptions {
   /// a smaller angle than this is then too flat.
   double min_angle_deg = 3.0;
   /// An edge that this many better triplets hold already asks for no more.
-  int max_triplets_per_edge = 8;
+  int max_triplets_per_edge = 3;
 };
 
 /// Centres from the motions of view triplets by one linear program (Moulon,
