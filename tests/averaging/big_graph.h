@@ -17,7 +17,6 @@ namespace lowlap {
 enum class GraphShape {
   kStreet,  // every view with the four next ones: errors add up on the way
   kTown,    // views in a square, each with its nearest
-  kTangle,  // any with any: a matrix that fills up when it is factored
 };
 
 struct BigGraphOptions {
@@ -38,8 +37,7 @@ struct BigGraph {
 };
 
 inline std::vector<std::pair<std::size_t, std::size_t>> PairsOfShape(
-    const BigGraphOptions& options, const std::vector<Vec3>& centers,
-    Random* random) {
+    const BigGraphOptions& options, const std::vector<Vec3>& centers) {
   const std::size_t n = options.num_views;
   std::set<std::pair<std::size_t, std::size_t>> pairs;
   for (std::size_t a = 0; a + 1 < n; ++a) pairs.insert({a, a + 1});
@@ -48,12 +46,6 @@ inline std::vector<std::pair<std::size_t, std::size_t>> PairsOfShape(
       for (std::size_t a = 0; a + step < n; ++a) {
         if (pairs.size() < options.num_edges) pairs.insert({a, a + step});
       }
-    }
-  } else if (options.shape == GraphShape::kTangle) {
-    while (pairs.size() < options.num_edges) {
-      const std::size_t a = random->Index(static_cast<std::uint32_t>(n));
-      const std::size_t b = random->Index(static_cast<std::uint32_t>(n));
-      if (a != b) pairs.insert({std::min(a, b), std::max(a, b)});
     }
   } else {
     // All pairs of a town, nearest first.
@@ -106,7 +98,7 @@ inline BigGraph MakeBigGraph(const BigGraphOptions& options) {
     problem.views.push_back(static_cast<ViewId>(i));
     problem.cam_from_world.push_back(Mat3::Identity());
   }
-  for (const auto& [a, b] : PairsOfShape(options, made.centers, &random)) {
+  for (const auto& [a, b] : PairsOfShape(options, made.centers)) {
     DirectionEdge edge;
     edge.first = a;
     edge.second = b;

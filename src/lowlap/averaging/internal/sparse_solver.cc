@@ -15,9 +15,11 @@ using Matrix = Eigen::SparseMatrix<double>;
 
 // Below this CHOLMOD's administration costs more than it saves.
 constexpr Eigen::Index kLargeSystem = 2000;
-constexpr double kMaxFactorEntries = 2e7;
-constexpr double kGradientTolerance = 1e-9;
-constexpr int kMaxGradientSteps = 2000;
+constexpr double kMaxOperations = 1e10;
+constexpr double kGradientTolerance = 1e-6;
+// What is reached after so many steps will do, if it is no worse than this.
+constexpr int kMaxGradientSteps = 500;
+constexpr double kWorstGradientError = 0.1;
 
 using Gradients = Eigen::ConjugateGradient<Matrix, Eigen::Lower>;
 
@@ -30,7 +32,7 @@ class Cholmod : public Eigen::CholmodDecomposition<Matrix, Eigen::Lower> {
     cholmod().postorder = 1;
   }
   /// After analyzePattern.
-  double FactorEntries() { return cholmod().lnz; }
+  double Operations() { return cholmod().fl; }
 };
 
 // CHOLMOD's parallel regions run on the calling thread while this lives: they
@@ -68,6 +70,12 @@ class Pattern {
  private:
   std::vector<Matrix::StorageIndex> outer_, inner_;
 };
+
+tl::unexpected<Error> Unsolvable(const Matrix& lower) {
+  return MakeError(ErrorCode::kNumerical, "a sparse system of " +
+                                              std::to_string(lower.rows()) +
+                                              " unknowns could not be solved");
+}
 
 template <class Solver>
 Result<Eigen::MatrixXd> SolveWith(const Matrix& lower,
@@ -109,14 +117,18 @@ Result<Eigen::MatrixXd> SparseSolver::Solve(const Matrix& lower,
     f.large = std::make_unique<Cholmod>();
     f.large->analyzePattern(lower);
   }
-  if (f.large->FactorEntries() <= kMaxFactorEntries) {
+  if (f.large->Operations() <= kMaxOperations) {
     return SolveWith(lower, rhs, f.large.get());
   }
   Gradients gradients;
   gradients.setTolerance(kGradientTolerance);
   gradients.setMaxIterations(kMaxGradientSteps);
-  gradients.analyzePattern(lower);
-  return SolveWith(lower, rhs, &gradients);
+  gradients.compute(lower);
+  Eigen::MatrixXd solution = gradients.solve(rhs);
+  if (solution.allFinite() && gradients.error() <= kWorstGradientError) {
+    return solution;
+  }
+  return Unsolvable(lower);
 }
 
 }  // namespace lowlap
