@@ -23,7 +23,7 @@ int RunSimulation(Flags flags) {
     return Fail({ErrorCode::kInvalidArgument,
                  "unknown kind of scene '" + flags.kind +
                      "'; known: room, corridor, ring, planar, collinear, "
-                     "pure_rotation",
+                     "pure_rotation, twins",
                  {},
                  {}});
   }
@@ -55,13 +55,14 @@ void AddSimulate(CLI::App* program, Action* action) {
       "simulate", "Make a synthetic scene whose truth is known");
   command->add_option("--kind", flags->kind,
                       "room, corridor, ring; degenerate: planar, collinear, "
-                      "pure_rotation");
+                      "pure_rotation, twins");
   command->add_option("-o,--output", flags->output, "Scene file to write")
       ->required();
   command->add_option("--truth", flags->truth,
                       "Also write the scene with its true solution");
   command->add_option("--views", o.num_views, "Number of views");
-  command->add_option("--pairs", o.pairs, "chain, cycle, window:N or all");
+  command->add_option("--pairs", o.pairs,
+                      "chain, cycle, window:N, loop:N or all");
   command->add_option("--points", o.points_per_wall, "Points per wall");
   command->add_option("--lines", o.lines_per_wall, "Lines per wall");
   command->add_option("--trifocal-points", o.trifocal_point_share,
@@ -81,6 +82,16 @@ void AddSimulate(CLI::App* program, Action* action) {
                       "Error of relative rotations, in degrees");
   command->add_option("--direction-noise", o.direction_noise_deg,
                       "Error of relative directions, in degrees");
+  command->add_option("--pose-noise-of-points", o.pose_noise_factor,
+                      "Errors of relative poses as the points with their noise "
+                      "leave them, times this factor");
+  command->add_option("--wrong-directions", o.wrong_direction_share,
+                      "Share of relative poses with any direction");
+  command->add_option("--off-line", o.off_line_m,
+                      "Collinear: how far centres are off the line, in metres");
+  command->add_option("--twin-baseline", o.twin_baseline_m,
+                      "Twins: distance of every odd view from the one before "
+                      "it, in metres");
   command->add_flag("--look-outwards", o.look_outwards,
                     "Rooms: look at the wall behind the camera's back");
   AddCommonFlags(command, &flags->common);

@@ -45,6 +45,13 @@ TEST(SyntheticOptions, EveryBadValueIsNamed) {
   expect_named("direction_noise_deg", [](Options* o) {
     o->direction_noise_deg = std::numeric_limits<double>::infinity();
   });
+  expect_named("pose_noise_factor",
+               [](Options* o) { o->pose_noise_factor = -1; });
+  expect_named("wrong_direction_share",
+               [](Options* o) { o->wrong_direction_share = 1.1; });
+  expect_named("off_line_m", [=](Options* o) { o->off_line_m = nan; });
+  expect_named("twin_baseline_m",
+               [](Options* o) { o->twin_baseline_m = -0.1; });
   expect_named("width_px", [](Options* o) { o->width_px = 0; });
   expect_named("focal_px", [](Options* o) { o->focal_px = 0; });
   for (const char* pairs : {"", "ring", "window", "window:", "window:0",
@@ -61,7 +68,7 @@ TEST(SyntheticKind, NamesComeBack) {
   for (const SyntheticKind kind :
        {SyntheticKind::kRoom, SyntheticKind::kCorridor, SyntheticKind::kRing,
         SyntheticKind::kPlanar, SyntheticKind::kCollinear,
-        SyntheticKind::kPureRotation}) {
+        SyntheticKind::kPureRotation, SyntheticKind::kTwins}) {
     EXPECT_EQ(SyntheticKindFromName(SyntheticKindName(kind)), kind);
   }
   EXPECT_EQ(SyntheticKindFromName("garden"), std::nullopt);

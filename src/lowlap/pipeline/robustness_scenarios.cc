@@ -31,6 +31,9 @@ RobustnessLevel FeatureLevel(SyntheticKind world, Kinds kinds) {
   level.scale.use_lines = kinds == Kinds::kLines || kinds == Kinds::kAll;
   level.scale.use_coplanar = kinds == Kinds::kCoplanar || kinds == Kinds::kAll;
   if (kinds == Kinds::kCoplanar) {
+    // Every feature belongs to one pair only: more are needed.
+    scene.points_per_wall *= 4;
+    scene.lines_per_wall *= 5;
     scene.trifocal_point_share = 0;
     scene.trifocal_line_share = 0;
   }
