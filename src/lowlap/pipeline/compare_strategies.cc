@@ -71,14 +71,16 @@ std::string DescribeLimit(const StrategyResult& result,
       std::count_if(solution.component.begin(), solution.component.end(),
                     [](int component) { return component > 0; }));
   const std::size_t nowhere = result.unplaced.size() - in_parts;
-  std::string limit = "places " + std::to_string(result.num_placed) + " of " +
-                      std::to_string(num_views) + " cameras on one scale";
+  std::string limit =
+      "places " +
+      (result.num_placed == 0 ? "none" : std::to_string(result.num_placed)) +
+      " of " + std::to_string(num_views) + " cameras";
   if (in_parts > 0) {
-    limit += "; " + std::to_string(in_parts) + " more in " +
+    limit += ", " + std::to_string(in_parts) + " more in " +
              std::to_string(solution.num_components - 1) +
              " part(s) with a scale of their own";
+    if (nowhere > 0) limit += ", " + std::to_string(nowhere) + " not at all";
   }
-  if (nowhere > 0) limit += "; " + std::to_string(nowhere) + " not at all";
   return limit + ". A view needs " + needs + ".";
 }
 

@@ -1,5 +1,6 @@
 #include "lowlap/pipeline/comparison_output.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
 
@@ -123,9 +124,22 @@ std::string ToText(const Comparison& comparison) {
   text +=
       "direction, ratio: median disagreement of the solved centres (before "
       "adjustment) with\nthe measured directions and scale ratios\n";
+  // Strategies that are stopped by the same thing share a line.
+  std::vector<std::pair<std::string, std::string>> names_of_reason;
   for (const StrategyResult& result : comparison.results) {
     const std::string reason = ReasonOf(result);
-    if (!reason.empty()) text += "\n" + result.strategy + ": " + reason + "\n";
+    if (reason.empty()) continue;
+    const auto known =
+        std::find_if(names_of_reason.begin(), names_of_reason.end(),
+                     [&](const auto& entry) { return entry.first == reason; });
+    if (known == names_of_reason.end()) {
+      names_of_reason.emplace_back(reason, result.strategy);
+    } else {
+      known->second += ", " + result.strategy;
+    }
+  }
+  for (const auto& [reason, names] : names_of_reason) {
+    text += "\n" + names + ": " + reason + "\n";
   }
   return text;
 }
