@@ -9,6 +9,7 @@
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/evaluation/relative_errors.h"
 #include "lowlap/pipeline/summary_json.h"
+#include "lowlap/scale/ratio_profile.h"
 #include "lowlap/scale/scale_ratios.h"
 
 namespace lowlap::cli {
@@ -20,7 +21,42 @@ struct Flags {
   ScaleFlags scale;
   std::string json;
   std::string ground_truth;
+  std::string profile;
 };
+
+// One line per ratio of the grid, mode, second mode and end of the interval.
+Status WriteProfiles(const std::string& path,
+                     const std::vector<RatioProfile>& profiles) {
+  return WriteFileAtomically(path, [&](std::ostream& out) -> Status {
+    out.precision(9);
+    out << "first,middle,last,what,log_ratio,log10_nfa,points,lines,coplanar\n";
+    for (const RatioProfile& profile : profiles) {
+      const auto start = [&](const char* what, double log_ratio) {
+        out << profile.views.first << ',' << profile.views.middle << ','
+            << profile.views.last << ',' << what << ',' << log_ratio;
+      };
+      const auto write = [&](const char* what, const RatioOptimum& optimum) {
+        start(what, optimum.log_ratio);
+        const RatioNfa& nfa = optimum.nfa;
+        out << ',' << nfa.log10_nfa << ',' << nfa.points.log10_nfa << ','
+            << nfa.lines.log10_nfa << ',' << nfa.coplanar.log10_nfa << '\n';
+      };
+      if (profile.nodes.empty()) continue;
+      write("mode", profile.mode);
+      if (profile.second_mode) write("second mode", *profile.second_mode);
+      start("interval low", profile.interval_low);
+      out << ",,,,\n";
+      start("interval high", profile.interval_high);
+      out << ",,,,\n";
+      // Shares of the information in the columns of the kinds.
+      start("information", profile.log_ratio);
+      const auto& share = profile.information_share;
+      out << ",," << share[0] << ',' << share[1] << ',' << share[2] << '\n';
+      for (const RatioOptimum& node : profile.nodes) write("node", node);
+    }
+    return {};
+  });
+}
 
 void PrintTable(const std::vector<ScaleRatio>& ratios) {
   std::printf("%-17s %9s %9s %9s %13s %13s %13s  %s\n", "views", "ratio",
@@ -59,6 +95,13 @@ int Scales(const Flags& flags) {
         });
     if (!written) return Fail(written.error());
   }
+  if (!flags.profile.empty()) {
+    const auto profiles = ProfileScaleRatios(
+        loaded->scene, FindTriplets(loaded->scene), *options, context);
+    if (!profiles) return Fail(profiles.error());
+    const Status written = WriteProfiles(flags.profile, *profiles);
+    if (!written) return Fail(written.error());
+  }
   PrintTable(*ratios);
   if (*truth) {
     loaded->scene.scale_ratios = *ratios;
@@ -81,6 +124,9 @@ void AddScales(CLI::App* program, Action* action) {
   AddSceneInputFlags(command, &flags->input);
   AddScaleFlags(command, &flags->scale);
   command->add_option("--json", flags->json, "Also write the table as JSON");
+  command->add_option("--profile", flags->profile,
+                      "Also write the NFA as a function of the ratio, its "
+                      "modes and 95 % intervals as CSV");
   command->add_option("--gt", flags->ground_truth,
                       "True cameras to compare with (folder or scene file)");
   AddCommonFlags(command, &flags->common);

@@ -61,18 +61,53 @@ double Log10ChanceOfSet(const LogFactorials& factorials, int n, int k,
   return factorials.Log10Binomial(n, k) + k * std::min(0.0, log10_alpha);
 }
 
+NfaTerm LeastOverSteps(const LadderValues& values) {
+  return MinimumOverSteps([&](int step) { return values[step]; }, true);
+}
+
+LadderValues CalibratedValues(const LogFactorials& factorials, int n,
+                              const LadderCounts& counts,
+                              const LadderProbabilities& log10_alpha,
+                              int sampled) {
+  LadderValues values{};
+  if (n <= sampled) return values;
+  static const double kLog10Tests =
+      std::log10(static_cast<double>(kNumThresholds));
+  for (int step = 0; step < kNumThresholds; ++step) {
+    values[step] = kLog10Tests + Log10ChanceOfSet(factorials, n - sampled,
+                                                  counts[step] - sampled,
+                                                  log10_alpha[step]);
+  }
+  return values;
+}
+
 NfaTerm CalibratedTerm(const LogFactorials& factorials, int n,
                        const LadderCounts& counts,
                        const LadderProbabilities& log10_alpha, int sampled) {
-  if (n <= sampled) return {};
-  const double log10_tests = std::log10(static_cast<double>(kNumThresholds));
-  return MinimumOverSteps(
-      [&](int step) {
-        return log10_tests + Log10ChanceOfSet(factorials, n - sampled,
-                                              counts[step] - sampled,
-                                              log10_alpha[step]);
-      },
-      true);
+  return LeastOverSteps(
+      CalibratedValues(factorials, n, counts, log10_alpha, sampled));
+}
+
+LadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
+                                  const LadderCounts& counts_a,
+                                  const LadderProbabilities& log10_alpha_a,
+                                  int n_b, const LadderCounts& counts_b,
+                                  const LadderProbabilities& log10_alpha_b,
+                                  int sampled) {
+  LadderValues values{};
+  if (n_a <= sampled && n_b <= sampled) return values;
+  static const double kLog10Tests =
+      std::log10(static_cast<double>(kNumThresholds));
+  for (int step = 0; step < kNumThresholds; ++step) {
+    const double a =
+        Log10ChanceOfSet(factorials, n_a - sampled, counts_a[step] - sampled,
+                         log10_alpha_a[step]);
+    const double b =
+        Log10ChanceOfSet(factorials, n_b - sampled, counts_b[step] - sampled,
+                         log10_alpha_b[step]);
+    values[step] = kLog10Tests + 0.5 * (a + b);
+  }
+  return values;
 }
 
 NfaTerm CalibratedPairTerm(const LogFactorials& factorials, int n_a,
@@ -81,19 +116,9 @@ NfaTerm CalibratedPairTerm(const LogFactorials& factorials, int n_a,
                            const LadderCounts& counts_b,
                            const LadderProbabilities& log10_alpha_b,
                            int sampled) {
-  if (n_a <= sampled && n_b <= sampled) return {};
-  const double log10_tests = std::log10(static_cast<double>(kNumThresholds));
-  return MinimumOverSteps(
-      [&](int step) {
-        const double a =
-            Log10ChanceOfSet(factorials, n_a - sampled,
-                             counts_a[step] - sampled, log10_alpha_a[step]);
-        const double b =
-            Log10ChanceOfSet(factorials, n_b - sampled,
-                             counts_b[step] - sampled, log10_alpha_b[step]);
-        return log10_tests + 0.5 * (a + b);
-      },
-      true);
+  return LeastOverSteps(CalibratedPairValues(factorials, n_a, counts_a,
+                                             log10_alpha_a, n_b, counts_b,
+                                             log10_alpha_b, sampled));
 }
 
 NfaTerm PaperPointTerm(const LogFactorials& factorials, int n,

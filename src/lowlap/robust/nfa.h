@@ -41,6 +41,11 @@ double BestOfPartners(double alpha, double num_partners);
 double Log10ChanceOfSet(const LogFactorials& factorials, int n, int k,
                         double log10_alpha);
 
+/// Per step, a log10 NFA.
+using LadderValues = std::array<double, kNumThresholds>;
+/// The least value and its step, uncapped and capped at 0.
+NfaTerm LeastOverSteps(const LadderValues& values);
+
 /// The calibrated term of one kind:
 ///   NFA = min(1, min over steps T C(n - s, k - s) alpha_step^(k - s)),
 /// T = kNumThresholds tests, k the count at the step, s = 1 if the hypothesis
@@ -49,6 +54,11 @@ double Log10ChanceOfSet(const LogFactorials& factorials, int n, int k,
 NfaTerm CalibratedTerm(const LogFactorials& factorials, int n,
                        const LadderCounts& counts,
                        const LadderProbabilities& log10_alpha, int sampled);
+/// Its value at every step, uncapped.
+LadderValues CalibratedValues(const LogFactorials& factorials, int n,
+                              const LadderCounts& counts,
+                              const LadderProbabilities& log10_alpha,
+                              int sampled);
 
 /// The calibrated term of pairs, whose members a (n_a of them) and b form two
 /// sides: an inlier pair makes one member of each side an inlier, so that
@@ -61,6 +71,12 @@ NfaTerm CalibratedPairTerm(const LogFactorials& factorials, int n_a,
                            const LadderCounts& counts_b,
                            const LadderProbabilities& log10_alpha_b,
                            int sampled);
+LadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
+                                  const LadderCounts& counts_a,
+                                  const LadderProbabilities& log10_alpha_a,
+                                  int n_b, const LadderCounts& counts_b,
+                                  const LadderProbabilities& log10_alpha_b,
+                                  int sampled);
 
 /// The terms as printed in Salaün et al. 2017, section 6, with the thresholds
 /// of the ladder for the errors e_k. They are **not** calibrated: on unrelated

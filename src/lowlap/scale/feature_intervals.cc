@@ -7,16 +7,17 @@ namespace lowlap {
 
 FeatureProfile::FeatureProfile(const RatioSupport& support, FeatureKind kind,
                                int index, double low, double high)
-    : support_(support), kind_(kind), index_(index) {
-  at_[size_++] = low;
-  double turns[kMaxTurns + 1];
-  int num_turns = support.Turns(kind, index, turns);
-  turns[num_turns++] = support.Ratios(kind)[index].log_ratio;
+    : support_(support), kind_(kind), index_(index), low_(low), high_(high) {
+  const double tau_low = std::exp(low), tau_high = std::exp(high);
+  at_[size_++] = tau_low;
+  double taus[kMaxTurns + 1];
+  int num_turns = support.Turns(kind, index, taus);
+  taus[num_turns++] = std::exp(support.Ratios(kind)[index].log_ratio);
   for (int n = 0; n < num_turns; ++n) {
-    if (turns[n] > low && turns[n] < high) at_[size_++] = turns[n];
+    if (taus[n] > tau_low && taus[n] < tau_high) at_[size_++] = taus[n];
   }
   std::sort(at_.begin() + 1, at_.begin() + size_);
-  at_[size_++] = high;
+  at_[size_++] = tau_high;
   for (int n = 0; n < size_; ++n) {
     error_px_[n] = support.ErrorOf(kind, index, at_[n]);
   }
@@ -36,11 +37,11 @@ double FeatureProfile::Crossing(int n, float threshold_px) const {
   double fa = difference(error_px_[n]), fb = difference(error_px_[n + 1]);
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     // Illinois; now and then halving, for errors far from linear.
-    const double at = iteration % 4 == 3 ? 0.5 * (a + b)
-                                         : (a * fb - b * fa) / (fb - fa);
+    const double at =
+        iteration % 4 == 3 ? 0.5 * (a + b) : (a * fb - b * fa) / (fb - fa);
     if (!(at > a && at < b)) break;
     const double f = difference(support_.ErrorOf(kind_, index_, at));
-    if (std::abs(f) <= accuracy_px) return at;
+    if (std::abs(f) <= accuracy_px) return std::log(at);
     if ((f < 0) == (fa < 0)) {
       a = at;
       fa = f;
@@ -51,7 +52,7 @@ double FeatureProfile::Crossing(int n, float threshold_px) const {
       fa *= 0.5;
     }
   }
-  return 0.5 * (a + b);
+  return std::log(0.5 * (a + b));
 }
 
 }  // namespace lowlap

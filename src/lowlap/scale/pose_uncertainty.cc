@@ -12,10 +12,10 @@
 namespace lowlap {
 namespace {
 
-// At most 100 of a kind, evenly spaced, with their weights made up for.
+// At most 24 of a kind, evenly spaced, with their weights made up for.
 std::vector<WeightedFeature> Sample(
     const std::vector<WeightedFeature>& features) {
-  constexpr std::size_t kMaxOfKind = 100;
+  constexpr std::size_t kMaxOfKind = 24;
   std::vector<WeightedFeature> sample;
   for (const FeatureKind kind : kFeatureKinds) {
     std::vector<WeightedFeature> of_kind;

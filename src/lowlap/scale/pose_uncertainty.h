@@ -28,7 +28,7 @@ std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
 /// the errors of the two relative poses: all features move together with them,
 /// so that it does not fall with their number. The sum over
 /// `triplet.pose_perturbations` of the squared change of the mean, which is
-/// taken over an even sample of at most 100 features of each kind.
+/// taken over an even sample of at most 24 features of each kind.
 double PoseVariance(const TripletView& triplet, const RatioSupport& support,
                     const std::vector<WeightedFeature>& features);
 

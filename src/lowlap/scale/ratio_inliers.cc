@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "lowlap/scale/coplanar_ratio.h"
@@ -18,6 +19,11 @@ struct Inliers {
   Indices lines;
   Indices pairs;
   Indices plane_points;
+
+  bool operator==(const Inliers& other) const {
+    return points == other.points && lines == other.lines &&
+           pairs == other.pairs && plane_points == other.plane_points;
+  }
 };
 
 // The features of a kind that are considered.
@@ -169,11 +175,13 @@ void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
       InlierRatios(support, triplet,
                    FindInliers(support, thresholds, log_ratio), &features),
       log_ratio);
+  Inliers consistent;
   for (int round = 0; round < kRounds; ++round) {
-    refined = RefineRatio(
-        InlierRatios(support, triplet,
-                     FindConsistent(support, thresholds, refined), &features),
-        refined.log_ratio);
+    Inliers next = FindConsistent(support, thresholds, refined);
+    if (round > 0 && next == consistent) break;
+    consistent = std::move(next);
+    refined = RefineRatio(InlierRatios(support, triplet, consistent, &features),
+                          refined.log_ratio);
   }
   const Inliers inliers = FindInliers(support, thresholds, refined.log_ratio);
   ratio->log_ratio = refined.log_ratio;

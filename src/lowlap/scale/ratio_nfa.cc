@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace lowlap {
 namespace {
@@ -199,24 +200,52 @@ RatioNfaCriterion::Densities RatioNfaCriterion::DensitiesAt(
   return densities;
 }
 
-NfaTerm RatioNfaCriterion::PairTerm(const SupportCounts& counts,
-                                    const Densities& densities,
-                                    int sampled_tier, int* best_tier) const {
-  NfaTerm best;
-  *best_tier = 0;
-  bool first_tier = true;
+RatioNfaCriterion::AllValues RatioNfaCriterion::Values(
+    const SupportCounts& counts, const Densities& densities) const {
+  AllValues values;
+  const auto fill = [&](int num_features, const LadderCounts& of_kind,
+                        const LadderProbabilities& law, KindValues* kind) {
+    if (num_features == 0) return;
+    kind->unsampled =
+        CalibratedValues(factorials_, num_features, of_kind, law, 0);
+    kind->sampled =
+        CalibratedValues(factorials_, num_features, of_kind, law, 1);
+  };
+  fill(support_.num_points(), counts.points,
+       Scaled(points_.log10_alpha, densities[0]), &values.points);
+  fill(support_.num_lines(), counts.lines,
+       Scaled(lines_.log10_alpha, densities[1]), &values.lines);
+  fill(support_.num_plane_points(), counts.plane_points,
+       Scaled(plane_points_.log10_alpha, densities[2]), &values.plane_points);
+  static const double kLog10Tiers = std::log10(static_cast<double>(kPairTiers));
   for (int t = 0; t < kPairTiers; ++t) {
     const PairTier& tier = support_.Tier(t);
     if (tier.num_pairs == 0) continue;
     const PairBackground& background = pairs_[t];
-    NfaTerm term = CalibratedPairTerm(
-        factorials_, tier.num_first, counts.coplanar[t].first,
-        Scaled(background.log10_alpha_first, densities[3 + t]), tier.num_last,
-        counts.coplanar[t].last,
-        Scaled(background.log10_alpha_last, densities[3 + t]),
-        t >= sampled_tier);
-    term.uncapped += std::log10(static_cast<double>(kPairTiers));
-    term.log10_nfa = std::min(0.0, term.uncapped);
+    const auto of_tier = [&](int sampled) {
+      LadderValues pairs = CalibratedPairValues(
+          factorials_, tier.num_first, counts.coplanar[t].first,
+          Scaled(background.log10_alpha_first, densities[3 + t]), tier.num_last,
+          counts.coplanar[t].last,
+          Scaled(background.log10_alpha_last, densities[3 + t]), sampled);
+      for (double& value : pairs) value += kLog10Tiers;
+      return pairs;
+    };
+    values.coplanar[t] = {of_tier(0), of_tier(1)};
+  }
+  return values;
+}
+
+NfaTerm RatioNfaCriterion::LeastOverTiers(
+    const std::array<KindValues, kPairTiers>& values, int sampled_tier,
+    int* best_tier) const {
+  NfaTerm best;
+  *best_tier = 0;
+  bool first_tier = true;
+  for (int t = 0; t < kPairTiers; ++t) {
+    if (support_.Tier(t).num_pairs == 0) continue;
+    const NfaTerm term = LeastOverSteps(
+        t >= sampled_tier ? values[t].sampled : values[t].unsampled);
     if (first_tier || term.uncapped < best.uncapped) {
       best = term;
       *best_tier = t;
@@ -229,66 +258,36 @@ NfaTerm RatioNfaCriterion::PairTerm(const SupportCounts& counts,
 void RatioNfaCriterion::EvaluateCalibrated(const Hypothesis& hypothesis,
                                            const SupportCounts& counts,
                                            RatioNfa* nfa) const {
-  const Densities densities = DensitiesAt(hypothesis.log_ratio);
-  nfa->points =
-      CalibratedTerm(factorials_, support_.num_points(), counts.points,
-                     Scaled(points_.log10_alpha, densities[0]),
-                     hypothesis.kind == FeatureKind::kPoint);
-  nfa->lines = CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
-                              Scaled(lines_.log10_alpha, densities[1]),
-                              hypothesis.kind == FeatureKind::kLine);
-  nfa->plane_points = CalibratedTerm(
-      factorials_, support_.num_plane_points(), counts.plane_points,
-      Scaled(plane_points_.log10_alpha, densities[2]),
-      hypothesis.kind == FeatureKind::kPlanePoint);
+  const AllValues values = Values(counts, DensitiesAt(hypothesis.log_ratio));
+  nfa->points = LeastOverSteps(hypothesis.kind == FeatureKind::kPoint
+                                   ? values.points.sampled
+                                   : values.points.unsampled);
+  nfa->lines = LeastOverSteps(hypothesis.kind == FeatureKind::kLine
+                                  ? values.lines.sampled
+                                  : values.lines.unsampled);
+  nfa->plane_points = LeastOverSteps(hypothesis.kind == FeatureKind::kPlanePoint
+                                         ? values.plane_points.sampled
+                                         : values.plane_points.unsampled);
   const int tier_of_sample = hypothesis.kind == FeatureKind::kCoplanar
                                  ? support_.TierOfPair(hypothesis.index)
                                  : kPairTiers;
   nfa->coplanar =
-      PairTerm(counts, densities, tier_of_sample, &nfa->coplanar_tier);
+      LeastOverTiers(values.coplanar, tier_of_sample, &nfa->coplanar_tier);
   AddUp(log10_tests_, nfa);
 }
 
 RatioNfa RatioNfaCriterion::EvaluateAt(double log_ratio,
                                        const SupportCounts& counts) const {
-  return LeastOverKinds(counts, DensitiesAt(log_ratio));
+  return LeastOverKinds(Values(counts, DensitiesAt(log_ratio)));
 }
 
-double RatioNfaCriterion::LeastLog10Nfa(double low, double high,
-                                        const SupportCounts& most) const {
-  Densities densities{points_.density.LeastLog10Relative(low, high),
-                      lines_.density.LeastLog10Relative(low, high),
-                      plane_points_.density.LeastLog10Relative(low, high)};
-  for (int t = 0; t < kPairTiers; ++t) {
-    densities[3 + t] = pairs_[t].density.LeastLog10Relative(low, high);
-  }
-  return LeastOverKinds(most, densities).log10_nfa;
-}
-
-RatioNfa RatioNfaCriterion::LeastOverKinds(const SupportCounts& counts,
-                                           const Densities& densities) const {
-  const LadderProbabilities points = Scaled(points_.log10_alpha, densities[0]);
-  const LadderProbabilities lines = Scaled(lines_.log10_alpha, densities[1]);
-  const LadderProbabilities plane_points =
-      Scaled(plane_points_.log10_alpha, densities[2]);
-  const auto point_term = [&](int sampled) {
-    return CalibratedTerm(factorials_, support_.num_points(), counts.points,
-                          points, sampled);
-  };
-  const auto line_term = [&](int sampled) {
-    return CalibratedTerm(factorials_, support_.num_lines(), counts.lines,
-                          lines, sampled);
-  };
-  const auto plane_point_term = [&](int sampled) {
-    return CalibratedTerm(factorials_, support_.num_plane_points(),
-                          counts.plane_points, plane_points, sampled);
-  };
+RatioNfa RatioNfaCriterion::LeastOverKinds(const AllValues& values) const {
   RatioNfa unsampled;
-  unsampled.points = point_term(0);
-  unsampled.lines = line_term(0);
-  unsampled.plane_points = plane_point_term(0);
+  unsampled.points = LeastOverSteps(values.points.unsampled);
+  unsampled.lines = LeastOverSteps(values.lines.unsampled);
+  unsampled.plane_points = LeastOverSteps(values.plane_points.unsampled);
   unsampled.coplanar =
-      PairTerm(counts, densities, kPairTiers, &unsampled.coplanar_tier);
+      LeastOverTiers(values.coplanar, kPairTiers, &unsampled.coplanar_tier);
   // A ratio from a pair of a wider tier is not a sample of the nearer ones.
   int last_tier = 0;
   for (int t = 1; t < kPairTiers; ++t) {
@@ -302,19 +301,72 @@ RatioNfa RatioNfaCriterion::LeastOverKinds(const SupportCounts& counts,
     if (support_.Ratios(kind).empty()) continue;
     RatioNfa nfa = unsampled;
     if (kind == FeatureKind::kPoint) {
-      nfa.points = point_term(1);
+      nfa.points = LeastOverSteps(values.points.sampled);
     } else if (kind == FeatureKind::kLine) {
-      nfa.lines = line_term(1);
+      nfa.lines = LeastOverSteps(values.lines.sampled);
     } else if (kind == FeatureKind::kPlanePoint) {
-      nfa.plane_points = plane_point_term(1);
+      nfa.plane_points = LeastOverSteps(values.plane_points.sampled);
     } else {
-      nfa.coplanar = PairTerm(counts, densities, last_tier, &nfa.coplanar_tier);
+      nfa.coplanar =
+          LeastOverTiers(values.coplanar, last_tier, &nfa.coplanar_tier);
     }
     AddUp(log10_tests_, &nfa);
     if (is_first || nfa.BetterThan(best)) best = nfa;
     is_first = false;
   }
   return best;
+}
+
+RatioNfaBound RatioNfaCriterion::Bound(double low, double high,
+                                       const SupportCounts& most) const {
+  const auto least_density = [&](const RatioDensity& density) {
+    return density.LeastLog10Relative(low, high);
+  };
+  Densities densities{least_density(points_.density),
+                      least_density(lines_.density),
+                      least_density(plane_points_.density)};
+  for (int t = 0; t < kPairTiers; ++t) {
+    densities[3 + t] = least_density(pairs_[t].density);
+  }
+  const AllValues values = Values(most, densities);
+  RatioNfaBound bound;
+  bound.log10_nfa = LeastOverKinds(values).log10_nfa;
+
+  // The kinds at their best, unsampled.
+  int tier = 0;
+  const double points = LeastOverSteps(values.points.unsampled).log10_nfa;
+  const double lines = LeastOverSteps(values.lines.unsampled).log10_nfa;
+  const double plane_points =
+      LeastOverSteps(values.plane_points.unsampled).log10_nfa;
+  const double coplanar =
+      LeastOverTiers(values.coplanar, kPairTiers, &tier).log10_nfa;
+  const double all = log10_tests_ + points + lines + plane_points + coplanar;
+  // A kind alone is always the sampled one.
+  int num_kinds = 0;
+  for (const FeatureKind kind : kFeatureKinds) {
+    num_kinds += !support_.Ratios(kind).empty();
+  }
+  const auto by_step = [&](const KindValues& of_kind, double best_of_kind) {
+    LadderValues bounds;
+    for (int step = 0; step < kNumThresholds; ++step) {
+      const double value = num_kinds == 1 ? of_kind.sampled[step]
+                                          : std::min(of_kind.sampled[step],
+                                                     of_kind.unsampled[step]);
+      bounds[step] = value < 0 ? all - best_of_kind + value
+                               : std::numeric_limits<double>::infinity();
+    }
+    return bounds;
+  };
+  bound.points = by_step(values.points, points);
+  bound.lines = by_step(values.lines, lines);
+  bound.plane_points = by_step(values.plane_points, plane_points);
+  for (int t = 0; t < kPairTiers; ++t) {
+    // Pairs of a nearer tier may be unsampled although they are alone.
+    KindValues of_tier = values.coplanar[t];
+    if (t + 1 < kPairTiers) of_tier.sampled = of_tier.unsampled;
+    bound.coplanar[t] = by_step(of_tier, coplanar);
+  }
+  return bound;
 }
 
 }  // namespace lowlap

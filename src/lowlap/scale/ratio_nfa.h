@@ -26,6 +26,17 @@ struct RatioNfa {
   }
 };
 
+/// Lower bounds of log10 NFA over an interval of ratios.
+struct RatioNfaBound {
+  double log10_nfa = 0;
+  /// The same if this step of the ladder decides for this kind (or tier of
+  /// pairs); infinite where the step cannot say anything.
+  LadderValues points;
+  LadderValues lines;
+  LadderValues plane_points;
+  std::array<LadderValues, kPairTiers> coplanar;
+};
+
 /// The a-contrario criterion of a triplet (Salaün et al. 2017, section 6).
 ///
 /// Calibrated form, where it differs from the paper's and why:
@@ -71,10 +82,9 @@ class RatioNfaCriterion {
   /// an interval of ratios, and one of its ends is where one of them becomes an
   /// inlier: trying all ends tries as many ratios as there are hypotheses.
   RatioNfa EvaluateAt(double log_ratio, const SupportCounts& counts) const;
-  /// A lower bound of log10_nfa over an interval of log ratios, from counts
-  /// that no ratio in it exceeds.
-  double LeastLog10Nfa(double low, double high,
-                       const SupportCounts& most) const;
+  /// Lower bounds over an interval of log ratios, from counts that no ratio in
+  /// it exceeds.
+  RatioNfaBound Bound(double low, double high, const SupportCounts& most) const;
 
  private:
   // What unrelated features of one kind do.
@@ -93,13 +103,25 @@ class RatioNfaCriterion {
   // pairs.
   using Densities = std::array<double, 3 + kPairTiers>;
   Densities DensitiesAt(double log_ratio) const;
-  // Pairs count as sampled from `sampled_tier` on.
-  NfaTerm PairTerm(const SupportCounts& counts, const Densities& densities,
-                   int sampled_tier, int* best_tier) const;
+  // A kind (tier) by itself at every step, unsampled and sampled.
+  struct KindValues {
+    LadderValues unsampled{};
+    LadderValues sampled{};
+  };
+  struct AllValues {
+    KindValues points;
+    KindValues lines;
+    KindValues plane_points;
+    std::array<KindValues, kPairTiers> coplanar;
+  };
+  AllValues Values(const SupportCounts& counts,
+                   const Densities& densities) const;
+  // Of the tiers that have pairs; those from `sampled_tier` on are sampled.
+  NfaTerm LeastOverTiers(const std::array<KindValues, kPairTiers>& values,
+                         int sampled_tier, int* best_tier) const;
   void EvaluateCalibrated(const Hypothesis& hypothesis,
                           const SupportCounts& counts, RatioNfa* nfa) const;
-  RatioNfa LeastOverKinds(const SupportCounts& counts,
-                          const Densities& densities) const;
+  RatioNfa LeastOverKinds(const AllValues& values) const;
 
   const RatioSupport& support_;
   NfaForm form_;

@@ -55,8 +55,8 @@ double Curvature(const RatioInlier& inlier, const std::vector<double>& noise,
   const double variance =
       noise[inlier.group] * inlier.log_ratio_stddev * inlier.log_ratio_stddev;
   const double squared = residual * residual / (kCauchy * kCauchy * variance);
-  return (1.0 - squared) / ((1.0 + squared) * (1.0 + squared) * variance *
-                            inlier.multiplicity);
+  return (1.0 - squared) /
+         ((1.0 + squared) * (1.0 + squared) * variance * inlier.multiplicity);
 }
 
 // Of the weighted mean, from the sums over cells; 0 with too few of them.
@@ -82,14 +82,18 @@ double CellVariance(const std::vector<RatioInlier>& inliers,
 RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
                          double initial) {
   constexpr int kMaxIterations = 20;
+  // In standard deviations of the result.
+  constexpr double kAccuracy = 1e-5;
+  constexpr double kSettled = 0.02;
   if (inliers.empty()) {
     return {initial, std::numeric_limits<double>::infinity(), {}};
   }
   double log_ratio = initial;
   double information = 0;
+  bool is_settled = false;  // so that the noise changes no more
   std::vector<double> noise;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    noise = GroupNoise(inliers, log_ratio);
+    if (!is_settled) noise = GroupNoise(inliers, log_ratio);
     double sum = 0;
     information = 0;
     for (const RatioInlier& inlier : inliers) {
@@ -99,7 +103,9 @@ RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
     }
     const double step = sum / information;
     log_ratio += step;
-    if (std::abs(step) < 1e-12) break;
+    const double stddevs = std::abs(step) * std::sqrt(information);
+    if (stddevs < kAccuracy) break;
+    is_settled = iteration > 0 && stddevs < kSettled;
   }
   double curvature = 0;
   for (const RatioInlier& inlier : inliers) {

@@ -162,9 +162,7 @@ void RatioSupport::PairErrors(double log_ratio, int num_pairs,
   }
 }
 
-float RatioSupport::ErrorOf(FeatureKind kind, int index,
-                            double log_ratio) const {
-  const double tau = std::exp(log_ratio);
+float RatioSupport::ErrorOf(FeatureKind kind, int index, double tau) const {
   if (kind == FeatureKind::kPoint) return points_.ErrorOf(tau, index);
   if (kind == FeatureKind::kLine) return lines_.ErrorOf(tau, index);
   if (kind == FeatureKind::kPlanePoint) {
@@ -175,20 +173,13 @@ float RatioSupport::ErrorOf(FeatureKind kind, int index,
              : transfer_.ErrorOf(tau, index);
 }
 
-int RatioSupport::Turns(FeatureKind kind, int index, double* log_ratios) const {
-  double taus[kMaxTurns];
-  const int num_taus = kind == FeatureKind::kPoint  ? points_.Turns(index, taus)
-                       : kind == FeatureKind::kLine ? lines_.Turns(index, taus)
-                       : kind == FeatureKind::kPlanePoint
-                           ? plane_points_.Turns(index, taus)
-                       : coplanar_residual_ == CoplanarResidual::kPlane
-                           ? plane_.Turns(index, taus)
-                           : transfer_.Turns(index, taus);
-  int num_turns = 0;
-  for (int n = 0; n < num_taus; ++n) {
-    if (taus[n] > 0) log_ratios[num_turns++] = std::log(taus[n]);
-  }
-  return num_turns;
+int RatioSupport::Turns(FeatureKind kind, int index, double* taus) const {
+  if (kind == FeatureKind::kPoint) return points_.Turns(index, taus);
+  if (kind == FeatureKind::kLine) return lines_.Turns(index, taus);
+  if (kind == FeatureKind::kPlanePoint) return plane_points_.Turns(index, taus);
+  return coplanar_residual_ == CoplanarResidual::kPlane
+             ? plane_.Turns(index, taus)
+             : transfer_.Turns(index, taus);
 }
 
 void RatioSupport::Bound(double low, double high, KindErrors* least_px,

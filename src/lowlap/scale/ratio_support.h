@@ -101,11 +101,11 @@ class RatioSupport {
   /// Errors in pixels of all features of a kind at one ratio.
   void Errors(FeatureKind kind, double log_ratio,
               std::vector<float>* errors_px) const;
-  /// The error of one feature.
-  float ErrorOf(FeatureKind kind, int index, double log_ratio) const;
-  /// The log ratios at which one feature's error may turn; see
-  /// ratio_residuals.h. Returns how many were written (at most kMaxTurns).
-  int Turns(FeatureKind kind, int index, double* log_ratios) const;
+  /// The error of one feature at tau (not its logarithm).
+  float ErrorOf(FeatureKind kind, int index, double tau) const;
+  /// The taus at which one feature's error may turn; see ratio_residuals.h.
+  /// Returns how many were written (at most kMaxTurns).
+  int Turns(FeatureKind kind, int index, double* taus) const;
   /// Bounds of the errors over an interval of log ratios; either output may be
   /// null.
   void Bound(double low, double high, KindErrors* least_px,

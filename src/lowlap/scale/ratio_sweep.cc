@@ -69,11 +69,13 @@ void FromCounters(const std::vector<int>& counters, SupportCounts* counts) {
 struct Window {
   double low = 0;
   double high = 0;
-  double bound = 0;  // of log10 NFA
+  RatioNfaBound bounds;
 
   // For a queue that hands out the least bound first.
   bool operator<(const Window& other) const {
-    return bound != other.bound ? bound > other.bound : low > other.low;
+    return bounds.log10_nfa != other.bounds.log10_nfa
+               ? bounds.log10_nfa > other.bounds.log10_nfa
+               : low > other.low;
   }
 };
 
@@ -86,11 +88,12 @@ class RatioSweeper {
     for (const double seed : Seeds(low, high)) Try(seed);
     PushAround(best_.log_ratio, low, high);
     const int few =
-        std::max<int>(64, static_cast<int>(support_.hypotheses().size()) / 2);
+        std::max<int>(64, static_cast<int>(support_.hypotheses().size()) / 20);
     while (!windows_.empty()) {
       const Window window = windows_.top();
       windows_.pop();
-      if (!(window.bound < best_.nfa.log10_nfa - kTolerance)) break;
+      if (!CanBeat(window.bounds.log10_nfa)) break;
+      FindUsefulSteps(window.bounds);
       constexpr double kNarrow = 1e-7;
       if (NumCrossings(window) <= few || window.high - window.low < kNarrow) {
         Sweep(window);
@@ -101,12 +104,47 @@ class RatioSweeper {
       Push(window.low, middle);
       Push(middle, window.high);
     }
-    TryNeighbors();
+    TryNeighbors(low, high);
     return best_;
   }
 
  private:
   static constexpr double kTolerance = 1e-9;
+
+  bool CanBeat(double log10_nfa) const {
+    return log10_nfa < best_.nfa.log10_nfa - kTolerance;
+  }
+
+  // The steps of the ladder that can decide in a window for a better ratio than
+  // the best one. The others need no ends of intervals.
+  void FindUsefulSteps(const RatioNfaBound& bounds) {
+    const auto find = [&](const LadderValues& values, int first_counter) {
+      for (int step = 0; step < kNumThresholds; ++step) {
+        is_useful_[first_counter + step] = CanBeat(values[step]);
+      }
+    };
+    find(bounds.points, kPoints);
+    find(bounds.lines, kLines);
+    find(bounds.plane_points, kPlanePoints);
+    for (int t = 0; t < kPairTiers; ++t) {
+      find(bounds.coplanar[t], Side(t, 0));
+      find(bounds.coplanar[t], Side(t, 1));
+    }
+  }
+
+  // Whether the step says something for the features of a kind.
+  bool IsUseful(FeatureKind kind, int step) const {
+    if (kind == FeatureKind::kPoint) return is_useful_[kPoints + step];
+    if (kind == FeatureKind::kLine) return is_useful_[kLines + step];
+    if (kind == FeatureKind::kPlanePoint) {
+      return is_useful_[kPlanePoints + step];
+    }
+    bool is_useful = false;
+    for (int t = 0; t < kPairTiers; ++t) {
+      is_useful = is_useful || is_useful_[Side(t, 0) + step];
+    }
+    return is_useful;
+  }
 
   // Where the ratios of each kind, and all of them, lie closest.
   std::vector<double> Seeds(double low, double high) const {
@@ -136,7 +174,7 @@ class RatioSweeper {
 
   // The ratios of features beside the best one: within its segment they differ
   // by the densities alone, which rounding may bring beyond the ends tried.
-  void TryNeighbors() {
+  void TryNeighbors(double low, double high) {
     constexpr std::ptrdiff_t kNeighbors = 4;
     const std::vector<Hypothesis>& all = support_.hypotheses();
     const auto at =
@@ -146,17 +184,17 @@ class RatioSweeper {
                          });
     const auto begin = at - std::min(kNeighbors, at - all.begin());
     const auto end = at + std::min(kNeighbors, all.end() - at);
-    for (auto it = begin; it != end; ++it) Try(it->log_ratio);
+    for (auto it = begin; it != end; ++it) {
+      if (it->log_ratio >= low && it->log_ratio <= high) Try(it->log_ratio);
+    }
   }
 
   void Push(double low, double high) {
     if (!(low < high)) return;
     support_.Bound(low, high, &least_px_, nullptr);
-    const double bound = criterion_.LeastLog10Nfa(
-        low, high, support_.Count(least_px_, &workspace_));
-    if (bound < best_.nfa.log10_nfa - kTolerance) {
-      windows_.push({low, high, bound});
-    }
+    const RatioNfaBound bounds =
+        criterion_.Bound(low, high, support_.Count(least_px_, &workspace_));
+    if (CanBeat(bounds.log10_nfa)) windows_.push({low, high, bounds});
   }
 
   // Windows that grow with their distance from the best ratio so far.
@@ -182,8 +220,13 @@ class RatioSweeper {
     int crossings = 0;
     for (const FeatureKind kind : kFeatureKinds) {
       const std::size_t k = static_cast<std::size_t>(kind);
+      std::array<int, kNumThresholds + 1> useful_before{};
+      for (int step = 0; step < kNumThresholds; ++step) {
+        useful_before[step + 1] = useful_before[step] + IsUseful(kind, step);
+      }
       for (std::size_t n = 0; n < least_px_[k].size(); ++n) {
-        crossings += LadderStep(most_px_[k][n]) - LadderStep(least_px_[k][n]);
+        crossings += useful_before[LadderStep(most_px_[k][n])] -
+                     useful_before[LadderStep(least_px_[k][n])];
       }
     }
     return crossings;
@@ -199,8 +242,7 @@ class RatioSweeper {
     AddPairs(window);
     SupportCounts counts;
     const auto score = [&](double log_ratio) {
-      if (criterion_.EvaluateAt(log_ratio, counts).log10_nfa <
-          best_.nfa.log10_nfa - kTolerance) {
+      if (CanBeat(criterion_.EvaluateAt(log_ratio, counts).log10_nfa)) {
         Try(log_ratio);
       }
     };
@@ -216,12 +258,13 @@ class RatioSweeper {
   void AddFeatures(const Window& window, FeatureKind kind, int first_counter) {
     const std::size_t k = static_cast<std::size_t>(kind);
     for (std::size_t n = 0; n < least_px_[k].size(); ++n) {
-      VisitInlierIntervals(support_, kind, static_cast<int>(n), window.low,
-                           window.high, LadderStep(least_px_[k][n]),
-                           LadderStep(most_px_[k][n]),
-                           [&](int step, double begin, double end) {
-                             sweep_.Add(begin, end, first_counter + step);
-                           });
+      VisitInlierIntervals(
+          support_, kind, static_cast<int>(n), window.low, window.high,
+          LadderStep(least_px_[k][n]), LadderStep(most_px_[k][n]),
+          [&](int step) { return IsUseful(kind, step); },
+          [&](int step, double begin, double end) {
+            sweep_.Add(begin, end, first_counter + step);
+          });
     }
   }
 
@@ -244,8 +287,10 @@ class RatioSweeper {
       VisitInlierIntervals(
           support_, FeatureKind::kCoplanar, pair, window.low, window.high,
           LadderStep(least_px_[k][pair]), LadderStep(most[pair]),
+          [&](int step) { return IsUseful(FeatureKind::kCoplanar, step); },
           [&](int step, double begin, double end) {
             for (int t = support_.TierOfPair(pair); t < kPairTiers; ++t) {
+              if (!is_useful_[Side(t, 0) + step]) continue;
               for (const int side : {0, 1}) {
                 const int line = LineOf(pair, side);
                 if (step >= sure[t][side][line]) continue;
@@ -270,6 +315,7 @@ class RatioSweeper {
   KindErrors least_px_;
   KindErrors most_px_;
   std::vector<int> counters_;
+  std::array<bool, kNumCounters> is_useful_{};
 };
 
 }  // namespace

@@ -33,8 +33,8 @@ struct RatioOptimum {
 /// The ends of an interval are found by regula falsi to 1e-10 in log tau from
 /// where the error turns (which the sides tell in closed form), the symmetrised
 /// error being taken as monotone in between. Tolerance: the returned log10 NFA
-/// is never above that of any feature's ratio, and within 1 % of that of any
-/// ratio (tests/scale).
+/// is never above that of any feature's ratio, and within 1 % (0.02 near 0;
+/// 0.05 for CoplanarResidual::kPlane) of that of any ratio (tests/scale).
 ///
 /// There must be a hypothesis in [low, high].
 RatioOptimum SweepRatios(const RatioSupport& support,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include "lowlap/core/parallel.h"
@@ -11,6 +12,31 @@
 #include "lowlap/scale/triplet_view.h"
 
 namespace lowlap {
+namespace {
+
+// Triplets with many matches first, so that no thread is left with a large one
+// at the end.
+std::vector<std::size_t> LargestFirst(
+    const Scene& scene, const std::vector<ViewTriplet>& triplets) {
+  const auto num_matches = [&](ViewId a, ViewId b) -> std::size_t {
+    const RelativePose* edge = scene.FindRelativePose(a, b);
+    if (edge == nullptr) return 0;
+    return edge->point_inliers.size() + edge->line_inliers.size();
+  };
+  std::vector<std::size_t> size;
+  for (const ViewTriplet& views : triplets) {
+    size.push_back(num_matches(views.first, views.middle) +
+                   num_matches(views.middle, views.last));
+  }
+  std::vector<std::size_t> order(triplets.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(
+      order.begin(), order.end(),
+      [&](std::size_t a, std::size_t b) { return size[a] > size[b]; });
+  return order;
+}
+
+}  // namespace
 
 std::vector<ViewTriplet> FindTriplets(const Scene& scene) {
   std::map<ViewId, std::vector<ViewId>> neighbors;
@@ -52,12 +78,13 @@ Result<std::vector<ScaleRatio>> EstimateScaleRatios(
     planes = std::move(*found);
   }
   const std::unique_ptr<ScaleEstimator> estimator = MakeScaleEstimator(options);
+  const std::vector<std::size_t> order = LargestFirst(scene, triplets);
   std::vector<Result<ScaleRatio>> results(triplets.size());
   const Status status =
       ParallelFor(context, "scale ratios", triplets.size(), [&](std::size_t n) {
-        const Result<TripletView> triplet =
-            MakeTripletView(scene, features, triplets[n], options, &planes);
-        results[n] =
+        const Result<TripletView> triplet = MakeTripletView(
+            scene, features, triplets[order[n]], options, &planes);
+        results[order[n]] =
             triplet
                 ? estimator->Estimate(*triplet)
                 : Result<ScaleRatio>(tl::unexpected<Error>(triplet.error()));
