@@ -31,7 +31,9 @@ struct Problem {
   /// View ids are the image indices. Views without a known focal length have no
   /// intrinsic: the file holds neither distortion nor aspect ratio, so that
   /// intrinsics are pinholes with the principal point in the middle of the
-  /// image. Pixels are one less than in coords.txt, which calls the centre of
+  /// image; scale ratios need intrinsics, strategies on directions do not.
+  /// Pixels
+  /// are one less than in coords.txt, which calls the centre of
   /// the first pixel (1, 1). The point inliers of a relative pose are what the
   /// tracks match in it; nobody has compared them with the pose. No poses.
   Scene scene;
