@@ -53,7 +53,10 @@ struct Ablation {
 /// scene with true cameras: position errors before bundle adjustment for fixed
 /// inlier thresholds against the a-contrario criterion, and for each kind of
 /// feature. Motions, rotations and the choice of relative poses are found once;
-/// ratios and poses anew in each case. The truth enters no solution.
+/// ratios and poses anew in each case. The truth enters no solution. Every
+/// ratio, however it was found, is refined on the features that agree with it
+/// (RefineOnInliers), which takes away most of what a threshold does in the
+/// paper, where the best sample stands.
 ///
 /// A case without a solution is an entry with its reason. All but the costs are
 /// the same for any number of threads. Errors: kInvalidArgument (options),
