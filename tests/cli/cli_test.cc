@@ -30,7 +30,8 @@ TEST_F(Cli, HelpNamesEveryCommand) {
   EXPECT_EQ(help.exit_code, 0);
   for (const char* command :
        {"run", "solve", "compare", "ablate", "scales", "adjust", "evaluate",
-        "features", "inspect", "convert", "validate", "simulate"}) {
+        "features", "inspect", "diagnose", "subsets", "convert", "validate",
+        "simulate"}) {
     EXPECT_THAT(help.output, HasSubstr(command));
     const Outcome own = Lowlap(std::string(command) + " --help");
     EXPECT_EQ(own.exit_code, 0) << command;

@@ -48,7 +48,7 @@ class Writer {
     return Name(ratio.views.first) + " - " + Name(ratio.views.middle) + " - " +
            Name(ratio.views.last) + " (" + std::to_string(inliers) +
            (inliers == 1 ? " inlier" : " inliers") + ", +-" +
-           Format("%.1f", 100 * ratio.log_ratio_stddev) + " %, log10 NFA " +
+           Format("%.2g", 100 * ratio.log_ratio_stddev) + " %, log10 NFA " +
            Format("%.1f", ratio.log10_nfa) + ")";
   }
 
