@@ -61,7 +61,7 @@ class Averaging {
   /// Goes on from `scales` until no length changes.
   Status Run(Loss loss, int max_iterations, EdgeScales* scales) {
     // The absolute residuals only serve as a start.
-    const double tolerance = loss == Loss::kAbsolute ? 1e-3 : 1e-6;
+    const double tolerance = loss == Loss::kAbsolute ? 1e-3 : 1e-11;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
       SetWeights(loss, scales->normalised_residuals);
       const auto solution = SolveDifferences(problem_.edges.size(), graph_,

@@ -9,6 +9,7 @@
 #include "lowlap/averaging/strategies.h"
 #include "lowlap/core/median.h"
 #include "lowlap/core/parallel.h"
+#include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/scale/scale_ratios.h"
 
@@ -41,6 +42,50 @@ Placement WeightedFit(const std::vector<Vec3>& from,
   fit.scale = square > 0 ? std::max(dot / square, 0.0) : 0.0;
   fit.translation = to_mean - fit.scale * from_mean;
   return fit;
+}
+
+std::vector<double> Distances(const std::vector<Vec3>& from,
+                              const std::vector<Vec3>& to,
+                              const Placement& fit) {
+  std::vector<double> distances;
+  distances.reserve(from.size());
+  for (std::size_t n = 0; n < from.size(); ++n) {
+    distances.push_back((to[n] - fit.scale * from[n] - fit.translation).norm());
+  }
+  return distances;
+}
+
+// Of the placements that two centres fix, the one of least median distance;
+// then reweighted (Geman-McClure) least squares.
+Placement RobustFit(const std::vector<Vec3>& from,
+                    const std::vector<Vec3>& to) {
+  constexpr int kDraws = 200, kPolish = 20;
+  std::vector<double> weights(from.size(), 1.0);
+  Placement best = WeightedFit(from, to, weights);
+  double least = Median(Distances(from, to, best));
+  Random random(0);
+  const auto count = static_cast<std::uint32_t>(from.size());
+  for (int draw = 0; draw < kDraws; ++draw) {
+    const std::uint32_t a = random.Index(count), b = random.Index(count);
+    if (a == b) continue;
+    const Placement fit =
+        WeightedFit({from[a], from[b]}, {to[a], to[b]}, {1.0, 1.0});
+    const double median = Median(Distances(from, to, fit));
+    if (median < least) {
+      least = median;
+      best = fit;
+    }
+  }
+  for (int step = 0; step < kPolish; ++step) {
+    const std::vector<double> distances = Distances(from, to, best);
+    const double scale = 3 * Median(distances);
+    if (!(scale > 0)) break;
+    for (std::size_t n = 0; n < from.size(); ++n) {
+      weights[n] = 1 / std::pow(1 + std::pow(distances[n] / scale, 2), 2);
+    }
+    best = WeightedFit(from, to, weights);
+  }
+  return best;
 }
 
 double Spread(const std::vector<Vec3>& centers) {
@@ -169,17 +214,10 @@ RobustnessOutcome JudgeCenters(const std::vector<Vec3>& truth, int num_views,
   outcome.num_placed = static_cast<int>(from.size());
   if (from.size() < 2) return outcome;
   const double spread = Spread(truth);
-  std::vector<double> weights(from.size(), 1.0);
-  std::vector<double> errors(static_cast<std::size_t>(num_views), HUGE_VAL);
-  constexpr int kIterations = 50;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
-    const Placement fit = WeightedFit(from, to, weights);
-    for (std::size_t n = 0; n < from.size(); ++n) {
-      const Vec3 placed = fit.scale * from[n] + fit.translation;
-      errors[n] = (to[n] - placed).norm() / spread;
-      weights[n] = 1 / std::max(errors[n], 1e-6);
-    }
-  }
+  const Placement fit = RobustFit(from, to);
+  std::vector<double> errors = Distances(from, to, fit);
+  for (double& error : errors) error /= spread;
+  errors.resize(static_cast<std::size_t>(num_views), HUGE_VAL);
   outcome.num_right = static_cast<int>(
       std::count_if(errors.begin(), errors.end(),
                     [&](double error) { return error <= tolerance; }));

@@ -56,7 +56,8 @@ struct RobustnessStudy {
 };
 
 /// Centres of component 0 against the truth, after the scale and translation
-/// of the least sum of distances: false centres do not move the right ones.
+/// of the least median distance, polished: false centres do not move the right
+/// ones.
 /// `truth` has the views of the problem; of the `num_views` in all, those the
 /// problem has not are not placed either. Fills everything but strategy and
 /// note.
