@@ -88,6 +88,10 @@ void AddScaleFlags(CLI::App* command, ScaleFlags* flags) {
                    "commas: points, lines (both seen in three views), coplanar "
                    "(pairs of lines seen in two views each)")
       ->delimiter(',');
+  command->add_flag(
+      "--coplanar-points,!--no-coplanar-points", flags->coplanar_points,
+      "Whether coplanar includes points and lines of one pair that lie on a "
+      "plane of the other");
   command
       ->add_option("--criterion", flags->criterion,
                    "How a ratio is chosen: ac (a contrario, no threshold) or "
@@ -110,6 +114,7 @@ Result<ScaleOptions> MakeScaleOptions(const ScaleFlags& flags) {
   options.use_points = kinds->points;
   options.use_lines = kinds->lines;
   options.use_coplanar = kinds->coplanar;
+  options.use_coplanar_points = flags.coplanar_points;
   options.criterion = flags.criterion == "ac" ? ScaleCriterion::kAContrario
                                               : ScaleCriterion::kFixedThreshold;
   options.nfa_form =

@@ -16,6 +16,7 @@ namespace lowlap::cli {
 /// Flags of the scale step, shared by run, solve and scales.
 struct ScaleFlags {
   std::vector<std::string> features = {"points", "lines", "coplanar"};
+  bool coplanar_points = ScaleOptions().use_coplanar_points;
   std::string criterion = "ac";
   std::string nfa = "calibrated";
   double threshold_px = 3.0;
