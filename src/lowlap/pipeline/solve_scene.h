@@ -74,7 +74,9 @@ Result<RatioSummary> EstimateBelievedRatios(Scene* scene,
                                             StageLog* stages);
 
 /// The third stage: scene->poses by options.strategy (SolveScenePoses), without
-/// the relative poses that are a little off if that loses no view.
+/// the relative poses that are a little off if that loses no view, and leaves
+/// no more parts whose scale directions alone do not fix (AnalyzeRigidity):
+/// what closes a loop is kept.
 Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
                                  const PoseOptions& options,
                                  const RunContext& context, StageLog* stages);
