@@ -119,7 +119,9 @@ TEST(Robustness, CurvesSummariseTheTrials) {
     const bool is_asked = curve["strategy"] != "global_positioning" ||
                           curve["scenario"] == "wrong_points";
     EXPECT_EQ(curve["right_share"].empty(), !is_asked);
-    EXPECT_EQ(curve["note"].empty(), is_asked);
+    if (!is_asked) {
+      EXPECT_NE(curve["note"], "");
+    }
     if (is_asked) {
       EXPECT_NEAR(std::stod(curve["right_share"]), share, 1e-5);
     }

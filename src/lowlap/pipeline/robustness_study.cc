@@ -176,7 +176,9 @@ RobustnessOutcome Try(const std::string& name, const SimulatedProblem& made,
   outcome = JudgeCenters(made.true_centers, level.scene.num_views, *solution,
                          made.truth_from_solved, options.tolerance);
   outcome.was_asked = true;
-  return finish("");
+  return finish(outcome.num_placed < level.scene.num_views
+                    ? "a view needs " + std::string((*averager)->Needs())
+                    : "");
 }
 
 }  // namespace

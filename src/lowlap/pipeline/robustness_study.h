@@ -36,7 +36,8 @@ struct RobustnessOutcome {
   /// Of all views, in shares of the spread; infinite if less than half of the
   /// views are placed.
   double median_error = 0;
-  /// Why it was not asked, or what its error message was; empty if it solved.
+  /// Why it was not asked, what its error message was, or what it lacks to
+  /// place every view; else empty.
   std::string note;
   bool was_asked = false;
 };
