@@ -35,7 +35,7 @@ struct ScaleOptions {
   bool use_coplanar = true;
   /// With use_coplanar: also points and lines of one pair that lie on a plane
   /// of the other; see plane_points.h.
-  bool use_coplanar_points = false;
+  bool use_coplanar_points = true;
 
   ScaleCriterion criterion = ScaleCriterion::kAContrario;
   NfaForm nfa_form = NfaForm::kCalibrated;
