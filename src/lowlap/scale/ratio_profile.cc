@@ -30,11 +30,11 @@ std::vector<double> Grid(double low, double high, double mode) {
 }
 
 // Beyond the highest node between it and the mode, and lower than that by
-// kProminence: the best ratio on one side of the mode. `it` and `end` lead away
-// from the mode; returns the log ratio of that highest node.
+// `prominence` in log10 NFA: the best ratio on one side of the mode. `it` and
+// `end` lead away from the mode; returns the log ratio of that highest node.
 template <class Iterator>
-std::optional<double> PassToSecondMode(Iterator it, Iterator end) {
-  constexpr double kProminence = 1;  // in log10 NFA
+std::optional<double> PassToSecondMode(Iterator it, Iterator end,
+                                       double prominence) {
   std::optional<double> pass;
   double highest = -std::numeric_limits<double>::infinity();
   double highest_at = 0;
@@ -45,7 +45,7 @@ std::optional<double> PassToSecondMode(Iterator it, Iterator end) {
       highest = log10_nfa;
       highest_at = it->log_ratio;
     }
-    if (log10_nfa <= highest - kProminence && log10_nfa < least) {
+    if (log10_nfa <= highest - prominence && log10_nfa < least) {
       least = log10_nfa;
       pass = highest_at;
     }
@@ -61,17 +61,20 @@ std::optional<RatioOptimum> SecondMode(const RatioSupport& support,
       std::find_if(nodes.begin(), nodes.end(), [&](const RatioOptimum& node) {
         return node.log_ratio >= profile.mode.log_ratio;
       });
+  // Single features that come and go do not make a mode.
+  const double prominence =
+      std::max(1.0, 0.1 * std::abs(profile.mode.nfa.log10_nfa));
   std::optional<RatioOptimum> second;
   const auto consider = [&](double low, double high) {
     const RatioOptimum optimum = SweepRatios(support, criterion, low, high);
     if (!second || optimum.nfa.BetterThan(second->nfa)) second = optimum;
   };
-  if (const auto pass = PassToSecondMode(mode, nodes.end())) {
+  if (const auto pass = PassToSecondMode(mode, nodes.end(), prominence)) {
     consider(*pass, nodes.back().log_ratio);
   }
   if (const auto pass = PassToSecondMode(
           std::make_reverse_iterator(mode == nodes.end() ? mode : mode + 1),
-          nodes.rend())) {
+          nodes.rend(), prominence)) {
     consider(nodes.front().log_ratio, *pass);
   }
   return second;

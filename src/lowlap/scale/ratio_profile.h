@@ -25,9 +25,9 @@ struct RatioProfile {
   /// The least NFA of all ratios (SweepRatios).
   RatioOptimum mode;
   /// The next best ratio that is not on a flank of the mode: between the two
-  /// the NFA rises at least tenfold above it (on the grid). How much worse it
-  /// is, second_mode->nfa.log10_nfa - mode.nfa.log10_nfa, says how sure the
-  /// choice is. None if there is none.
+  /// log10 NFA rises above it by a tenth of the mode's, and by 1 at least (on
+  /// the grid). How much worse it is, second_mode->nfa.log10_nfa -
+  /// mode.nfa.log10_nfa, says how sure the choice is. None if there is none.
   std::optional<RatioOptimum> second_mode;
   /// Refined on the inliers; holds the true log ratio with a probability of
   /// 95 % if the mode is right: log_ratio +- 1.96 standard deviations, those of
