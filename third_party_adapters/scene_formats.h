@@ -22,9 +22,9 @@ SceneFormats AllSceneFormats();
 /// One line per format, for help texts and messages.
 std::string DescribeSceneFormats();
 
-/// Reads a scene file or folder. An sfm_data file is told by its first bytes, so that a
-/// wrong extension does no harm; other files by the extension. kUnsupported,
-/// with the list of formats, for anything else.
+/// Reads a scene file or folder. An sfm_data file is told by its first bytes,
+/// so that a wrong extension does no harm; other files by the extension.
+/// kUnsupported, with the list of formats, for anything else.
 Result<Scene> ReadScene(const std::string& path);
 
 /// Writes a scene in the format of the extension, or in the one called `format`

@@ -130,8 +130,9 @@ void AddSolveFlags(CLI::App* command, SolveFlags* flags) {
   AddScaleFlags(command, &flags->scale);
   command
       ->add_option("--strategy", flags->strategy,
-                   "How poses are composed: graph (average over all ratios) or "
-                   "chain (the paper's composition)")
+                   "How poses are composed: graph (average over all ratios), "
+                   "chain (the paper's composition), or another strategy of "
+                   "'lowlap compare', such as lud or 1dsfm+lud")
       ->check(CLI::Validator(
           [](const std::string& name) {
             const auto averager = MakeTranslationAverager(name);

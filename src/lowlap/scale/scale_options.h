@@ -34,7 +34,8 @@ struct ScaleOptions {
   bool use_lines = true;
   bool use_coplanar = true;
   /// With use_coplanar: also points and lines of one pair that lie on a plane
-  /// of the other; see plane_points.h.
+  /// of the other (see plane_points.h), for triplets that nothing else decides
+  /// (a second test, which costs log10 2).
   bool use_coplanar_points = true;
 
   ScaleCriterion criterion = ScaleCriterion::kAContrario;

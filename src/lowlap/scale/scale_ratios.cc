@@ -1,6 +1,7 @@
 #include "lowlap/scale/scale_ratios.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <memory>
 #include <numeric>
@@ -34,6 +35,39 @@ std::vector<std::size_t> LargestFirst(
       order.begin(), order.end(),
       [&](std::size_t a, std::size_t b) { return size[a] > size[b]; });
   return order;
+}
+
+Result<std::vector<ScaleRatio>> EstimateOnce(
+    const Scene& scene, const NormalizedFeaturesByView& features,
+    const std::vector<ViewTriplet>& triplets, const ScaleOptions& options,
+    const PlanesByPair& planes, const RunContext& context) {
+  const std::unique_ptr<ScaleEstimator> estimator = MakeScaleEstimator(options);
+  const std::vector<std::size_t> order = LargestFirst(scene, triplets);
+  std::vector<Result<ScaleRatio>> results(triplets.size());
+  const Status status =
+      ParallelFor(context, "scale ratios", triplets.size(), [&](std::size_t n) {
+        const Result<TripletView> triplet = MakeTripletView(
+            scene, features, triplets[order[n]], options, &planes);
+        results[order[n]] =
+            triplet
+                ? estimator->Estimate(*triplet)
+                : Result<ScaleRatio>(tl::unexpected<Error>(triplet.error()));
+      });
+  if (!status) return tl::unexpected<Error>(status.error());
+  std::vector<ScaleRatio> ratios;
+  ratios.reserve(results.size());
+  for (Result<ScaleRatio>& result : results) {
+    if (!result) return tl::unexpected<Error>(std::move(result.error()));
+    ratios.push_back(std::move(*result));
+  }
+  return ratios;
+}
+
+// Two tests find twice as many false ratios.
+void PayForSecondTest(ScaleRatio* ratio) {
+  if (ratio->verdict == RatioVerdict::kNoCandidates) return;
+  ratio->log10_nfa += std::log10(2.0);
+  if (!(ratio->log10_nfa < 0)) ratio->verdict = RatioVerdict::kNotMeaningful;
 }
 
 }  // namespace
@@ -70,31 +104,33 @@ Result<std::vector<ScaleRatio>> EstimateScaleRatios(
     return tl::unexpected<Error>(status.error());
   }
   const NormalizedFeaturesByView features = NormalizeAllFeatures(scene);
-  PlanesByPair planes;
-  if (options.use_coplanar && options.use_coplanar_points) {
-    Result<PlanesByPair> found =
-        FindPlanesByPair(scene, features, triplets, context);
-    if (!found) return tl::unexpected<Error>(std::move(found.error()));
-    planes = std::move(*found);
+  ScaleOptions of_features = options;
+  of_features.use_coplanar_points = false;
+  auto ratios =
+      EstimateOnce(scene, features, triplets, of_features, {}, context);
+  if (!ratios || !options.use_coplanar || !options.use_coplanar_points) {
+    return ratios;
   }
-  const std::unique_ptr<ScaleEstimator> estimator = MakeScaleEstimator(options);
-  const std::vector<std::size_t> order = LargestFirst(scene, triplets);
-  std::vector<Result<ScaleRatio>> results(triplets.size());
-  const Status status =
-      ParallelFor(context, "scale ratios", triplets.size(), [&](std::size_t n) {
-        const Result<TripletView> triplet = MakeTripletView(
-            scene, features, triplets[order[n]], options, &planes);
-        results[order[n]] =
-            triplet
-                ? estimator->Estimate(*triplet)
-                : Result<ScaleRatio>(tl::unexpected<Error>(triplet.error()));
-      });
-  if (!status) return tl::unexpected<Error>(status.error());
-  std::vector<ScaleRatio> ratios;
-  ratios.reserve(results.size());
-  for (Result<ScaleRatio>& result : results) {
-    if (!result) return tl::unexpected<Error>(std::move(result.error()));
-    ratios.push_back(std::move(*result));
+  std::vector<std::size_t> undecided;
+  std::vector<ViewTriplet> undecided_triplets;
+  for (std::size_t n = 0; n < triplets.size(); ++n) {
+    if ((*ratios)[n].verdict == RatioVerdict::kMeaningful) continue;
+    undecided.push_back(n);
+    undecided_triplets.push_back(triplets[n]);
+  }
+  if (undecided.empty()) return ratios;
+  const auto planes =
+      FindPlanesByPair(scene, features, undecided_triplets, context);
+  if (!planes) return tl::unexpected<Error>(planes.error());
+  auto with_planes = EstimateOnce(scene, features, undecided_triplets, options,
+                                  *planes, context);
+  if (!with_planes) return with_planes;
+  for (std::size_t n = 0; n < undecided.size(); ++n) {
+    ScaleRatio& ratio = (*with_planes)[n];
+    if (options.criterion == ScaleCriterion::kAContrario) {
+      PayForSecondTest(&ratio);
+    }
+    (*ratios)[undecided[n]] = std::move(ratio);
   }
   return ratios;
 }

@@ -14,9 +14,10 @@ namespace lowlap {
 ///
 /// Small systems: Eigen's simplicial LDL^T. Large ones: CHOLMOD (Chen et al.,
 /// ACM TOMS 35(3), 2008), which goes over to dense supernodes where the factor
-/// fills up. Ordered by AMD in both cases, and so the same on every run. Where a
-/// factorisation would take more than 1e10 operations (graphs that join any view
-/// with any other): conjugate gradients, to a tolerance of 1e-6 or 500 steps.
+/// fills up. Ordered by AMD in both cases, and so the same on every run. Where
+/// a factorisation would take more than 1e10 operations (graphs that join any
+/// view with any other): conjugate gradients, to a tolerance of 1e-6 or 500
+/// steps.
 class SparseSolver {
  public:
   SparseSolver();
