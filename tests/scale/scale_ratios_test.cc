@@ -127,6 +127,16 @@ TEST(EstimateScaleRatios, AreTheSameForAnyNumberOfThreads) {
   EXPECT_TRUE(*a == *b);
 }
 
+TEST(EstimateScaleRatios, PlanePointsHaveNoSayWhereOthersDecide) {
+  const RowOfViews row;
+  ScaleOptions without;
+  without.use_coplanar_points = false;
+  const auto a = EstimateScaleRatios(row.scene, {}, {});
+  const auto b = EstimateScaleRatios(row.scene, without, {});
+  ASSERT_TRUE(a.has_value() && b.has_value());
+  EXPECT_TRUE(*a == *b);
+}
+
 TEST(EstimateScaleRatios, DoNotDependOnTheWorldFrame) {
   const RowOfViews row;
   const RowOfViews turned(RotationFromAngleAxis({0.7, -1.1, 0.4}), 250.0);

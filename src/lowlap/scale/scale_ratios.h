@@ -15,7 +15,9 @@ std::vector<ViewTriplet> FindTriplets(const Scene& scene);
 
 /// The ratio of every triplet of the scene, in the order of FindTriplets,
 /// including those that are not meaningful or have no candidates (see their
-/// verdict). The same for any number of threads.
+/// verdict). Triplets that are not meaningful by points, lines and pairs are
+/// tested a second time with plane points (ScaleOptions::use_coplanar_points).
+/// The same for any number of threads.
 ///
 /// Errors: invalid options, those of MakeTripletView, kCancelled.
 Result<std::vector<ScaleRatio>> EstimateScaleRatios(const Scene& scene,
