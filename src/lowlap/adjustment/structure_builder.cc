@@ -12,6 +12,7 @@
 
 #include "lowlap/adjustment/internal/coplanar_pairs.h"
 #include "lowlap/adjustment/internal/structure_state.h"
+#include "lowlap/core/median.h"
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
@@ -39,10 +40,7 @@ double VerificationThresholdPx(const Scene& scene) {
       thresholds.push_back(edge.point_threshold_px);
     }
   }
-  if (thresholds.empty()) return 0;
-  const auto middle = thresholds.begin() + thresholds.size() / 2;
-  std::nth_element(thresholds.begin(), middle, thresholds.end());
-  return *middle;
+  return Median(std::move(thresholds));
 }
 
 // Noise of the images, as far as it is known before the poses are good: a

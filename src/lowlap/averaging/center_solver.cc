@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "lowlap/averaging/internal/sparse_solver.h"
-#include "lowlap/averaging/union_find.h"
 #include "lowlap/core/median.h"
+#include "lowlap/core/union_find.h"
 
 namespace lowlap {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "lowlap/averaging/internal/body_closure.h"
 #include "lowlap/averaging/internal/bounded_directions.h"
-#include "lowlap/averaging/union_find.h"
+#include "lowlap/core/union_find.h"
 
 namespace lowlap {
 namespace {

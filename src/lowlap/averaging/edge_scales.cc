@@ -6,8 +6,8 @@
 
 #include "lowlap/averaging/difference_solver.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
-#include "lowlap/averaging/union_find.h"
 #include "lowlap/core/median.h"
+#include "lowlap/core/union_find.h"
 
 namespace lowlap {
 namespace {

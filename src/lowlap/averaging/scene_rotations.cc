@@ -5,8 +5,8 @@
 #include <set>
 
 #include "lowlap/averaging/bridges.h"
-#include "lowlap/averaging/union_find.h"
 #include "lowlap/core/median.h"
+#include "lowlap/core/union_find.h"
 #include "lowlap/geometry/rotation.h"
 
 namespace lowlap {

@@ -2,37 +2,23 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
+
+#include "lowlap/core/union_find.h"
 
 namespace lowlap {
 namespace {
-
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t size) : parent_(size) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  std::size_t Find(std::size_t n) {
-    while (parent_[n] != n) n = parent_[n] = parent_[parent_[n]];
-    return n;
-  }
-  void Join(std::size_t a, std::size_t b) { parent_[Find(a)] = Find(b); }
-
- private:
-  std::vector<std::size_t> parent_;
-};
 
 // Joins the matches that have a segment in common.
 template <class SegmentOf>
 void JoinMatches(const std::vector<MiddleMatch>& matches, std::size_t offset,
                  const SegmentOf& segment_of,
                  std::map<FeatureIndex, std::size_t>* match_of,
-                 DisjointSets* sets) {
+                 UnionFind* sets) {
   for (std::size_t n = 0; n < matches.size(); ++n) {
     const auto [other, is_new] =
         match_of->emplace(segment_of(matches[n]), offset + n);
-    if (!is_new) sets->Join(offset + n, other->second);
+    if (!is_new) sets->Union(offset + n, other->second);
   }
 }
 
@@ -51,7 +37,7 @@ MatchedEdges GroupMatches(const std::vector<MiddleMatch>& ij,
                           const std::vector<MiddleMatch>& jk) {
   const auto middle = [](const MiddleMatch& match) { return match.middle; };
   const auto neighbor = [](const MiddleMatch& match) { return match.neighbor; };
-  DisjointSets sets(ij.size() + jk.size());
+  UnionFind sets(ij.size() + jk.size());
   std::map<FeatureIndex, std::size_t> of_i, of_j, of_k;
   JoinMatches(ij, 0, neighbor, &of_i, &sets);
   JoinMatches(ij, 0, middle, &of_j, &sets);

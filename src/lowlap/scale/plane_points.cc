@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <utility>
+
+#include "lowlap/core/union_find.h"
 
 namespace lowlap {
 namespace {
@@ -163,29 +164,24 @@ class Surfaces {
  public:
   Surfaces(const PairPlanes& planes_ij, const PairPlanes& planes_jk)
       : num_first_(static_cast<int>(planes_ij.planes.size())),
-        parent_(planes_ij.planes.size() + planes_jk.planes.size()) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
+        sets_(planes_ij.planes.size() + planes_jk.planes.size()) {}
 
   void Unite(const PlanePoint& point) {
     if (point.other_plane == PairPlanes::kNoPlane) return;
-    parent_[Of(point)] = Root(Node(!point.plane_is_first, point.other_plane));
+    sets_.Union(Node(point.plane_is_first, point.plane),
+                Node(!point.plane_is_first, point.other_plane));
   }
-  int Of(const PlanePoint& point) {
-    return Root(Node(point.plane_is_first, point.plane));
+  std::size_t Of(const PlanePoint& point) {
+    return sets_.Find(Node(point.plane_is_first, point.plane));
   }
 
  private:
-  int Node(bool is_first, int plane) const {
-    return is_first ? plane : num_first_ + plane;
-  }
-  int Root(int node) const {
-    while (parent_[node] != node) node = parent_[node];
-    return node;
+  std::size_t Node(bool is_first, int plane) const {
+    return static_cast<std::size_t>(is_first ? plane : num_first_ + plane);
   }
 
   int num_first_;
-  std::vector<int> parent_;
+  UnionFind sets_;
 };
 
 }  // namespace
@@ -198,7 +194,7 @@ std::vector<PlanePoint> FindPlanePoints(const TripletGeometry& geometry,
   AddPlanePoints(geometry, planes_jk, planes_ij, false, &all);
   Surfaces surfaces(planes_ij, planes_jk);
   for (const PlanePoint& point : all) surfaces.Unite(point);
-  std::map<int, std::size_t> surest;  // by surface
+  std::map<std::size_t, std::size_t> surest;  // by surface
   for (std::size_t n = 0; n < all.size(); ++n) {
     const auto [it, is_new] = surest.emplace(surfaces.Of(all[n]), n);
     if (!is_new && all[n].ratio.log_ratio_stddev <

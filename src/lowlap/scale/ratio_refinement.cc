@@ -4,6 +4,9 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <utility>
+
+#include "lowlap/core/median.h"
 
 namespace lowlap {
 namespace {
@@ -25,15 +28,10 @@ std::vector<double> GroupNoise(const std::vector<RatioInlier>& inliers,
   }
   std::vector<double> noise;
   for (std::vector<double>& group : deviations) {
-    double squared = 0;
-    if (!group.empty()) {
-      const auto middle = group.begin() + group.size() / 2;
-      std::nth_element(group.begin(), middle, group.end());
-      const double spread = kStddevOfMedianDeviation * *middle;
-      squared = spread * spread;
-    }
     const double count = static_cast<double>(group.size());
-    noise.push_back((count * squared + kPriorCount) / (count + kPriorCount));
+    const double spread = kStddevOfMedianDeviation * Median(std::move(group));
+    noise.push_back((count * (spread * spread) + kPriorCount) /
+                    (count + kPriorCount));
   }
   return noise;
 }

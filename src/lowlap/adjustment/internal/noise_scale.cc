@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+
+#include "lowlap/core/median.h"
 
 namespace lowlap::internal {
 
@@ -34,9 +37,7 @@ NoiseScale EstimateNoise(const std::vector<double>& errors_px,
     if (error <= score.threshold) inliers.push_back(error);
   }
   if (inliers.empty()) return bounded(bounds.fallback);
-  const auto middle = inliers.begin() + inliers.size() / 2;
-  std::nth_element(inliers.begin(), middle, inliers.end());
-  return bounded({*middle / unit_median, score.threshold});
+  return bounded({Median(std::move(inliers)) / unit_median, score.threshold});
 }
 
 }  // namespace lowlap::internal

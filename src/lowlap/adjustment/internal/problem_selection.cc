@@ -2,30 +2,12 @@
 
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <set>
+
+#include "lowlap/core/union_find.h"
 
 namespace lowlap::internal {
 namespace {
-
-// Disjoint sets of poses.
-class PoseSets {
- public:
-  explicit PoseSets(std::size_t count) : parent_(count) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  int Find(int pose) {
-    while (parent_[pose] != pose) {
-      parent_[pose] = parent_[parent_[pose]];
-      pose = parent_[pose];
-    }
-    return pose;
-  }
-  void Union(int a, int b) { parent_[Find(a)] = Find(b); }
-
- private:
-  std::vector<int> parent_;
-};
 
 template <class Track>
 int FirstPose(const CameraSet& cameras, const Track& track) {
@@ -100,7 +82,13 @@ ProblemSelection SelectForSolve(const CameraSet& cameras,
 std::vector<Component> FindComponents(const CameraSet& cameras,
                                       const StructureState& state,
                                       const ProblemSelection& selection) {
-  PoseSets sets(cameras.poses.size());
+  UnionFind sets(cameras.poses.size());
+  const auto find = [&](int pose) {
+    return sets.Find(static_cast<std::size_t>(pose));
+  };
+  const auto unite = [&](int a, int b) {
+    sets.Union(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+  };
   std::vector<char> observed(cameras.poses.size(), 0);
   std::vector<std::size_t> candidates(cameras.poses.size(), 0);
   const auto join = [&](const auto& track) {
@@ -110,21 +98,22 @@ std::vector<Component> FindComponents(const CameraSet& cameras,
       ++candidates[pose];
       if (!candidate.used) continue;
       observed[pose] = 1;
-      sets.Union(first, pose);
+      unite(first, pose);
     }
   };
   for (const int n : selection.points) join(state.points[n]);
   for (const int n : selection.lines) join(state.lines[n]);
   for (const int n : selection.pairs) {
-    sets.Union(FirstPose(cameras, state.lines[state.pairs[n].first]),
-               FirstPose(cameras, state.lines[state.pairs[n].second]));
+    unite(FirstPose(cameras, state.lines[state.pairs[n].first]),
+          FirstPose(cameras, state.lines[state.pairs[n].second]));
   }
 
-  std::map<int, Component> by_root;  // then ordered by their first pose
-  std::vector<int> roots;
+  std::map<std::size_t, Component> by_root;  // then ordered by their first pose
+  std::vector<std::size_t> roots;
   for (std::size_t n = 0; n < cameras.poses.size(); ++n) {
     if (!observed[n]) continue;
-    const int pose = static_cast<int>(n), root = sets.Find(pose);
+    const int pose = static_cast<int>(n);
+    const std::size_t root = find(pose);
     Component& component = by_root[root];
     if (component.poses.empty()) roots.push_back(root);
     component.poses.push_back(pose);
@@ -134,15 +123,13 @@ std::vector<Component> FindComponents(const CameraSet& cameras,
     }
   }
   for (const int n : selection.points) {
-    by_root.at(sets.Find(FirstPose(cameras, state.points[n])))
-        .points.push_back(n);
+    by_root.at(find(FirstPose(cameras, state.points[n]))).points.push_back(n);
   }
   for (const int n : selection.lines) {
-    by_root.at(sets.Find(FirstPose(cameras, state.lines[n])))
-        .lines.push_back(n);
+    by_root.at(find(FirstPose(cameras, state.lines[n]))).lines.push_back(n);
   }
   std::vector<Component> components;
-  for (const int root : roots) {
+  for (const std::size_t root : roots) {
     Component& component = by_root.at(root);
     const Vec3& origin = cameras.poses[component.reference].center;
     for (const int pose : component.poses) {

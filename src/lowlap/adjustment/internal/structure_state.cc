@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/core/median.h"
 #include "lowlap/core/parallel.h"
 
 namespace lowlap::internal {
@@ -36,9 +37,7 @@ double ReferenceStddevPx(const Scene& scene) {
   for (const auto& [id, track] : scene.line_tracks) add(track);
   for (const auto& [id, line] : scene.line_structure) add(line.observations);
   if (stddevs.empty()) return kDefaultSegmentStddevPx;
-  const auto middle = stddevs.begin() + stddevs.size() / 2;
-  std::nth_element(stddevs.begin(), middle, stddevs.end());
-  return *middle;
+  return Median(std::move(stddevs));
 }
 
 PointShape ShapeOf(const Scene& scene, ViewId view, FeatureIndex point) {

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "lowlap/averaging/union_find.h"
 #include "lowlap/core/ids.h"
+#include "lowlap/core/union_find.h"
 
 namespace lowlap {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "lowlap/averaging/internal/rigid_parts.h"
-#include "lowlap/averaging/union_find.h"
+#include "lowlap/core/union_find.h"
 
 namespace lowlap {
 namespace {

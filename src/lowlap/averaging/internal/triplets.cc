@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/union_find.h"
+#include "lowlap/core/union_find.h"
 #include "lowlap/geometry/rotation.h"
 
 namespace lowlap {

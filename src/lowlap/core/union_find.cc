@@ -1,4 +1,4 @@
-#include "lowlap/averaging/union_find.h"
+#include "lowlap/core/union_find.h"
 
 #include <limits>
 #include <numeric>
