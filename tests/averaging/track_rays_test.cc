@@ -78,11 +78,35 @@ TEST_F(TrackRaysTest, LongTracksComeFirstUpToTheBoundPerView) {
   for (auto& [id, track] : scene_.point_tracks) {
     if (id % 2 == 0) track.resize(2);  // views 0 and 1 alone
   }
-  const auto tracks = MakeTrackRays(scene_, views_, rotations_, 10);
+  const auto tracks = MakeTrackRays(scene_, views_, rotations_, {}, 10);
   EXPECT_EQ(tracks.size(), 10u);
   for (const TrackRays& track : tracks) {
     EXPECT_EQ(track.observations.size(), 6u);
   }
+}
+
+TEST_F(TrackRaysTest, MatchesJoinTracksAndContradictoryOnesAreLeftOut) {
+  for (ViewId id = 0; id + 1 < 6; ++id) {
+    RelativePose& pose = scene_.relative_poses[{id, id + 1}];
+    for (FeatureIndex k = 0; k < 30; ++k) pose.point_inliers.push_back({k, k});
+  }
+  EXPECT_EQ(MakeTrackRays(scene_, views_, rotations_).size(), 30u);
+  // A wrong match ties two tracks together: each view sees both points.
+  scene_.relative_poses[{1, 4}].point_inliers = {{7, 8}};
+  EXPECT_EQ(MakeTrackRays(scene_, views_, rotations_).size(), 28u);
+  const std::vector<ViewPair> excluded = {{1, 4}};
+  EXPECT_EQ(MakeTrackRays(scene_, views_, rotations_, excluded).size(), 30u);
+  // Through view 2 alone.
+  const auto cut = MakeTrackRays(scene_, views_, rotations_, {{1, 4}, {2, 3}});
+  EXPECT_EQ(cut.size(), 60u);
+  for (const TrackRays& track : cut) {
+    EXPECT_EQ(track.observations.size(), 3u);
+  }
+  // Two points of one view that are almost one.
+  auto& points_px = scene_.features[4].points_px;
+  points_px.push_back(points_px[9] + Vec2(3, 0));
+  scene_.relative_poses[{1, 4}].point_inliers = {{9, 30}};
+  EXPECT_EQ(MakeTrackRays(scene_, views_, rotations_).size(), 30u);
 }
 
 TEST_F(TrackRaysTest, OnlyTheProblemThatAsksForTracksHasThem) {

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "lowlap/averaging/internal/positioning_solver.h"
 #include "lowlap/averaging/internal/track_groups.h"
@@ -11,24 +12,12 @@
 namespace lowlap {
 namespace {
 
-/// The tracks of one group of views, with the views' indices in the group.
-std::vector<TrackRays> TracksOfGroup(const TranslationProblem& problem,
-                                     const std::vector<std::size_t>& views,
-                                     std::size_t min_views) {
-  constexpr std::size_t kOutside = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> index(problem.views.size(), kOutside);
-  for (std::size_t n = 0; n < views.size(); ++n) index[views[n]] = n;
-  std::vector<TrackRays> tracks;
-  for (const TrackRays& track : problem.tracks) {
-    TrackRays kept;
-    for (const RayObservation& seen : track.observations) {
-      if (index[seen.view] == kOutside) continue;
-      kept.observations.push_back({index[seen.view], seen.ray_in_world});
-    }
-    if (kept.observations.size() >= min_views) tracks.push_back(kept);
-  }
-  return tracks;
-}
+/// Views whose tracks fix one scale, and what is known of them.
+struct Part {
+  std::vector<std::size_t> views;  // indices into the problem's views
+  std::vector<TrackRays> tracks;   // of these views, by their index in `views`
+  PositioningState state;
+};
 
 Vec3 RandomPosition(Random* random) {
   Vec3 position;
@@ -79,6 +68,116 @@ PositioningState StartState(const GlobalPositioningOptions& options,
   return state;
 }
 
+constexpr std::size_t kOutside = static_cast<std::size_t>(-1);
+
+/// Per view, its index in `views`, or kOutside.
+std::vector<std::size_t> IndicesOf(const std::vector<std::size_t>& views,
+                                   std::size_t num_views) {
+  std::vector<std::size_t> index(num_views, kOutside);
+  for (std::size_t n = 0; n < views.size(); ++n) index[views[n]] = n;
+  return index;
+}
+
+/// A group of views with a start.
+Part StartPart(const TranslationProblem& problem,
+               const GlobalPositioningOptions& options,
+               std::vector<std::size_t> views, std::uint64_t seed) {
+  Part part;
+  const auto index = IndicesOf(views, problem.views.size());
+  for (const TrackRays& track : problem.tracks) {
+    TrackRays kept;
+    for (const RayObservation& seen : track.observations) {
+      if (index[seen.view] == kOutside) continue;
+      kept.observations.push_back({index[seen.view], seen.ray_in_world});
+    }
+    if (kept.observations.size() >= options.min_views_per_track) {
+      part.tracks.push_back(std::move(kept));
+    }
+  }
+  part.state = StartState(options, views, part.tracks, seed);
+  part.views = std::move(views);
+  return part;
+}
+
+/// What `keep(track, observation)` accepts of some views of a part.
+template <class Keep>
+Part Restrict(const Part& part, const std::vector<std::size_t>& views,
+              std::size_t min_views_per_track, const Keep& keep) {
+  Part kept;
+  for (const std::size_t view : views) {
+    kept.views.push_back(part.views[view]);
+    kept.state.centers.push_back(part.state.centers[view]);
+  }
+  const auto index = IndicesOf(views, part.views.size());
+  for (std::size_t k = 0; k < part.tracks.size(); ++k) {
+    TrackRays track;
+    std::vector<double> scales;
+    for (std::size_t n = 0; n < part.tracks[k].observations.size(); ++n) {
+      const RayObservation& seen = part.tracks[k].observations[n];
+      if (index[seen.view] == kOutside || !keep(k, n)) continue;
+      track.observations.push_back({index[seen.view], seen.ray_in_world});
+      scales.push_back(part.state.scales[k][n]);
+    }
+    if (track.observations.size() < min_views_per_track) continue;
+    kept.tracks.push_back(std::move(track));
+    kept.state.points.push_back(part.state.points[k]);
+    kept.state.scales.push_back(std::move(scales));
+  }
+  return kept;
+}
+
+/// The part without the rays that miss their points by more than `max_angle`.
+Part WithoutWrongRays(const Part& part,
+                      const GlobalPositioningOptions& options) {
+  const double least_cosine = std::cos(options.max_angle_deg * kPi / 180);
+  std::vector<std::size_t> views(part.views.size());
+  std::iota(views.begin(), views.end(), std::size_t{0});
+  return Restrict(part, views, options.min_views_per_track,
+                  [&](std::size_t k, std::size_t n) {
+                    const RayObservation& seen = part.tracks[k].observations[n];
+                    const Vec3 offset =
+                        part.state.points[k] - part.state.centers[seen.view];
+                    return seen.ray_in_world.dot(offset) >=
+                           least_cosine * offset.norm();
+                  });
+}
+
+/// Solves a group, and what hangs together of it once more without wrong rays.
+Result<std::vector<Part>> SolveGroup(Part group,
+                                     const GlobalPositioningOptions& options,
+                                     const RunContext& context,
+                                     int* num_iterations) {
+  const PositioningOptions solver = {options.huber_reach,
+                                     options.max_iterations};
+  const auto solve = [&](Part* part) -> Status {
+    const auto iterations =
+        SolvePositions(part->tracks, solver, context, &part->state);
+    if (!iterations) return tl::unexpected<Error>(iterations.error());
+    *num_iterations += *iterations;
+    return {};
+  };
+  if (const Status solved = solve(&group); !solved) {
+    return tl::unexpected<Error>(solved.error());
+  }
+  std::vector<Part> parts;
+  if (options.max_angle_deg >= 180) {
+    parts.push_back(std::move(group));
+    return parts;
+  }
+  const Part cleaned = WithoutWrongRays(group, options);
+  for (const std::vector<std::size_t>& views : GroupViewsByTracks(
+           cleaned.views.size(), cleaned.tracks, options.min_views_per_track,
+           options.min_shared_points)) {
+    Part part = Restrict(cleaned, views, options.min_views_per_track,
+                         [](std::size_t, std::size_t) { return true; });
+    if (const Status solved = solve(&part); !solved) {
+      return tl::unexpected<Error>(solved.error());
+    }
+    parts.push_back(std::move(part));
+  }
+  return parts;
+}
+
 }  // namespace
 
 Status GlobalPositioningOptions::Validate(std::size_t num_views) const {
@@ -93,6 +192,8 @@ Status GlobalPositioningOptions::Validate(std::size_t num_views) const {
   if (!(huber_reach > 0) || max_iterations < 1) {
     return invalid("the reach and the number of iterations must be positive");
   }
+  if (!(max_angle_deg > 0))
+    return invalid("the largest angle must be positive");
   if (!start.empty() && start.size() != num_views) {
     return invalid("the start needs one centre per view");
   }
@@ -110,27 +211,38 @@ Result<TranslationSolution> GlobalPositioningAverager::Solve(
   TranslationSolution solution;
   solution.component.assign(problem.views.size(), -1);
   solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
-  for (const std::vector<std::size_t>& views : GroupViewsByTracks(
+  std::vector<Part> parts;
+  std::vector<bool> is_covered(problem.views.size(), false);
+  for (std::vector<std::size_t>& views : GroupViewsByTracks(
            problem.views.size(), problem.tracks, options_.min_views_per_track,
            options_.min_shared_points)) {
-    const bool adds_views = std::any_of(
-        views.begin(), views.end(),
-        [&](std::size_t view) { return solution.component[view] < 0; });
-    if (!adds_views) continue;
-    const std::vector<TrackRays> tracks =
-        TracksOfGroup(problem, views, options_.min_views_per_track);
-    PositioningState state = StartState(options_, views, tracks, context.seed);
-    const auto iterations =
-        SolvePositions(tracks, {options_.huber_reach, options_.max_iterations},
-                       context, &state);
-    if (!iterations) return tl::unexpected<Error>(iterations.error());
-    solution.num_iterations += *iterations;
-    for (std::size_t n = 0; n < views.size(); ++n) {
-      if (solution.component[views[n]] >= 0) continue;
-      solution.component[views[n]] = solution.num_components;
-      solution.center_in_world[views[n]] = state.centers[n];
+    if (std::all_of(views.begin(), views.end(),
+                    [&](std::size_t view) { return is_covered[view]; })) {
+      continue;
     }
-    ++solution.num_components;
+    auto solved =
+        SolveGroup(StartPart(problem, options_, std::move(views), context.seed),
+                   options_, context, &solution.num_iterations);
+    if (!solved) return tl::unexpected<Error>(solved.error());
+    for (Part& part : *solved) {
+      for (const std::size_t view : part.views) is_covered[view] = true;
+      parts.push_back(std::move(part));
+    }
+  }
+  std::stable_sort(parts.begin(), parts.end(),
+                   [](const Part& a, const Part& b) {
+                     return a.views.size() > b.views.size();
+                   });
+  for (const Part& part : parts) {
+    bool adds_views = false;
+    for (std::size_t n = 0; n < part.views.size(); ++n) {
+      const std::size_t view = part.views[n];
+      if (solution.component[view] >= 0) continue;
+      solution.component[view] = solution.num_components;
+      solution.center_in_world[view] = part.state.centers[n];
+      adds_views = true;
+    }
+    if (adds_views) ++solution.num_components;
   }
   return solution;
 }

@@ -5,6 +5,8 @@
 #include <optional>
 #include <utility>
 
+#include "lowlap/averaging/internal/matched_tracks.h"
+
 namespace lowlap {
 namespace {
 
@@ -32,6 +34,7 @@ SceneViews UsableViews(const Scene& scene, const std::vector<ViewId>& views) {
 std::vector<TrackRays> MakeTrackRays(const Scene& scene,
                                      const std::vector<ViewId>& views,
                                      const std::vector<Mat3>& cam_from_world,
+                                     const std::vector<ViewPair>& excluded,
                                      std::size_t max_per_view) {
   const SceneViews usable = UsableViews(scene, views);
   struct Candidate {
@@ -40,7 +43,9 @@ std::vector<TrackRays> MakeTrackRays(const Scene& scene,
     std::size_t length;
   };
   std::vector<Candidate> candidates;
-  for (const auto& [id, track] : scene.point_tracks) {
+  const std::map<PointTrackId, Track> all_tracks =
+      MatchedTracks(scene, views, {excluded.begin(), excluded.end()});
+  for (const auto& [id, track] : all_tracks) {
     const auto length = static_cast<std::size_t>(std::count_if(
         track.begin(), track.end(),
         [&](const FeatureRef& ref) { return usable.count(ref.view) > 0; }));

@@ -78,8 +78,8 @@ TranslationProblem MakeTranslationProblem(
     problem.ratios.push_back(measurement);
   }
   if (with_tracks) {
-    problem.tracks =
-        MakeTrackRays(scene, problem.views, problem.cam_from_world);
+    problem.tracks = MakeTrackRays(scene, problem.views, problem.cam_from_world,
+                                   excluded_edges);
   }
   return problem;
 }

@@ -1,16 +1,30 @@
 #include "lowlap/averaging/internal/positioning_solver.h"
 
 #include <Eigen/LU>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <utility>
+
+#include "lowlap/averaging/internal/block_matrix.h"
+#include "lowlap/averaging/internal/sparse_solver.h"
 
 namespace lowlap {
 namespace {
 
 constexpr double kLeastScale = 1e-6;
+
+std::vector<BlockMatrix::Place> PairsOfCenters(
+    const std::vector<TrackRays>& tracks) {
+  std::vector<BlockMatrix::Place> places;
+  for (const TrackRays& track : tracks) {
+    for (const RayObservation& a : track.observations) {
+      for (const RayObservation& b : track.observations) {
+        if (a.view > b.view) places.push_back({a.view, b.view});
+      }
+    }
+  }
+  return places;
+}
 
 /// The equations of one step for all centres, points and scales. With
 /// e = X - C, r = ray - s e and weight w, each observation has
@@ -20,20 +34,21 @@ constexpr double kLeastScale = 1e-6;
 class StepEquations {
  public:
   StepEquations(const std::vector<TrackRays>& tracks, std::size_t num_centers)
-      : tracks_(tracks), num_centers_(num_centers) {
-    for (const TrackRays& track : tracks) {
-      for (const RayObservation& a : track.observations) {
-        for (const RayObservation& b : track.observations) {
-          if (a.view >= b.view) block_index_.insert({{a.view, b.view}, 0});
+      : tracks_(tracks),
+        num_centers_(num_centers),
+        matrix_(num_centers, PairsOfCenters(tracks)) {
+    terms_.resize(tracks.size());
+    blocks_.resize(tracks.size());
+    for (std::size_t k = 0; k < tracks.size(); ++k) {
+      const std::vector<RayObservation>& seen = tracks[k].observations;
+      terms_[k].resize(seen.size());
+      for (const RayObservation& a : seen) {
+        for (const RayObservation& b : seen) {
+          if (a.view >= b.view) {
+            blocks_[k].push_back(matrix_.FindBlock(a.view, b.view));
+          }
         }
       }
-    }
-    std::size_t next = 0;
-    for (auto& entry : block_index_) entry.second = next++;
-    blocks_.resize(next);
-    terms_.resize(tracks.size());
-    for (std::size_t k = 0; k < tracks.size(); ++k) {
-      terms_[k].resize(tracks[k].observations.size());
     }
     inverses_.resize(tracks.size());
     pulls_.resize(tracks.size());
@@ -42,33 +57,15 @@ class StepEquations {
   /// False if the centres' system cannot be factored.
   bool Solve(const PositioningState& state, double reach, double damping,
              PositioningState* next) {
-    std::fill(blocks_.begin(), blocks_.end(), Mat3::Zero());
+    matrix_.SetZero();
     Eigen::VectorXd rhs =
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * num_centers_));
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
       AddTrack(state, k, reach, damping, &rhs);
     }
-    std::vector<Eigen::Triplet<double>> entries;
-    entries.reserve(9 * blocks_.size());
-    for (const auto& [views, index] : block_index_) {
-      const int row = static_cast<int>(3 * views.first);
-      const int column = static_cast<int>(3 * views.second);
-      for (int r = 0; r < 3; ++r) {
-        for (int c = 0; c < 3; ++c) {
-          if (row + r >= column + c) {
-            entries.emplace_back(row + r, column + c, blocks_[index](r, c));
-          }
-        }
-      }
-    }
-    Eigen::SparseMatrix<double> matrix(rhs.size(), rhs.size());
-    matrix.setFromTriplets(entries.begin(), entries.end());
-    if (!is_analyzed_) solver_.analyzePattern(matrix);
-    is_analyzed_ = true;
-    solver_.factorize(matrix);
-    if (solver_.info() != Eigen::Success) return false;
-    const Eigen::VectorXd step = solver_.solve(rhs);
-    if (!step.allFinite()) return false;
+    const auto solved = solver_.Solve(matrix_.lower(), rhs);
+    if (!solved) return false;
+    const Eigen::VectorXd step = solved->col(0);
 
     for (std::size_t n = 0; n < num_centers_; ++n) {
       next->centers[n] = state.centers[n] + step.segment<3>(3 * n);
@@ -94,6 +91,7 @@ class StepEquations {
     Mat3 point_information = Mat3::Zero();
     Vec3 point_pull = Vec3::Zero();
     std::vector<Vec3> pulls(seen.size());
+    diagonal_.resize(seen.size());
     for (std::size_t n = 0; n < seen.size(); ++n) {
       Term& term = terms[n];
       const double s = state.scales[k][n];
@@ -113,18 +111,20 @@ class StepEquations {
       const double damped = damping * w * s * s;
       point_information += term.information + damped * Mat3::Identity();
       point_pull += pulls[n];
-      Block(seen[n].view, seen[n].view) +=
-          term.information + damped * Mat3::Identity();
+      diagonal_[n] = term.information + damped * Mat3::Identity();
     }
     inverses_[k] = point_information.inverse();
     pulls_[k] = point_pull;
+    std::size_t next_block = 0;
     for (std::size_t a = 0; a < seen.size(); ++a) {
       const Mat3 through = terms[a].information * inverses_[k];
       rhs->segment<3>(static_cast<Eigen::Index>(3 * seen[a].view)) +=
           through * point_pull - pulls[a];
       for (std::size_t b = 0; b < seen.size(); ++b) {
         if (seen[a].view < seen[b].view) continue;
-        Block(seen[a].view, seen[b].view) -= through * terms[b].information;
+        Mat3 block = -through * terms[b].information;
+        if (a == b) block += diagonal_[a];
+        matrix_.Add(blocks_[k][next_block++], block);
       }
     }
   }
@@ -151,19 +151,16 @@ class StepEquations {
     }
   }
 
-  Mat3& Block(std::size_t row, std::size_t column) {
-    return blocks_[block_index_.find({row, column})->second];
-  }
-
   const std::vector<TrackRays>& tracks_;
   std::size_t num_centers_;
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> block_index_;
-  std::vector<Mat3> blocks_;
+  BlockMatrix matrix_;  // of the centres
+  /// Per track, the blocks of its pairs of views, in the order of AddTrack.
+  std::vector<std::vector<std::size_t>> blocks_;
   std::vector<std::vector<Term>> terms_;
   std::vector<Mat3> inverses_;  // of the points' information
   std::vector<Vec3> pulls_;     // on the points
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver_;
-  bool is_analyzed_ = false;
+  std::vector<Mat3> diagonal_;
+  SparseSolver solver_;
 };
 
 }  // namespace
@@ -189,7 +186,7 @@ Result<int> SolvePositions(const std::vector<TrackRays>& tracks,
                            const PositioningOptions& options,
                            const RunContext& context, PositioningState* state) {
   constexpr double kLeastDamping = 1e-10, kGreatestDamping = 1e10;
-  constexpr double kTolerance = 1e-10;
+  constexpr double kTolerance = 1e-7;
   constexpr double kNoCost = 1e-24;  // per observation: rounding is left
   StepEquations equations(tracks, state->centers.size());
   double cost = PositioningCost(tracks, *state, options.huber_reach);
