@@ -20,6 +20,7 @@ struct Flags {
   std::vector<std::string> features = {"points", "lines", "coplanar"};
   bool retriangulate = false;
   std::string refine_intrinsics;
+  double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;
   std::string ground_truth;
 };
 
@@ -28,6 +29,10 @@ int Adjust(const Flags& flags) {
   AdjustmentOptions options;
   if (const Status set = SetAdjustedFeatures(flags.features, &options); !set) {
     return Fail(set.error());
+  }
+  options.principal_point_stddev = flags.principal_point_stddev;
+  if (const Status valid = options.Validate(); !valid) {
+    return Fail(valid.error());
   }
   auto scene = ReadScene(flags.scene);
   if (!scene) return Fail(scene.error());
@@ -113,6 +118,7 @@ void AddAdjust(CLI::App* program, Action* action) {
   command->add_flag("--retriangulate", flags->retriangulate,
                     "Build the structure anew from the tracks first");
   AddRefinementFlag(command, &flags->refine_intrinsics);
+  AddPrincipalPointFlag(command, &flags->principal_point_stddev);
   command->add_option(
       "--gt", flags->ground_truth,
       "True cameras to evaluate against (folder or scene file)");

@@ -149,8 +149,17 @@ void AddAdjustFlags(CLI::App* command, SolveFlags* flags) {
       ->add_option("--adjust-features", flags->adjust_features,
                    "Kinds in the bundle adjustment, separated by commas")
       ->delimiter(',');
+  AddPrincipalPointFlag(command, &flags->principal_point_stddev);
   command->add_flag("--no-adjust", flags->no_adjust,
                     "Stop before the bundle adjustment");
+}
+
+void AddPrincipalPointFlag(CLI::App* command, double* stddev) {
+  command->add_option("--principal-point-stddev", *stddev,
+                      "How well the given principal points are known, as a "
+                      "share of the image diagonal: the bundle adjustment "
+                      "moves them within this (0: exactly; not for intrinsics "
+                      "that --refine-intrinsics names)");
 }
 
 CLI::Option* AddTruthFlag(CLI::App* command, std::string* path) {
@@ -231,6 +240,7 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
       !set) {
     return tl::unexpected<Error>(set.error());
   }
+  options.adjustment.principal_point_stddev = flags.principal_point_stddev;
   options.adjust = !flags.no_adjust;
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());

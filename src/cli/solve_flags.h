@@ -32,14 +32,17 @@ struct SolveFlags {
   std::vector<std::string> adjust_features = {"points", "lines", "coplanar"};
   bool no_adjust = false;
   std::string refine_intrinsics;
+  double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;
   std::string ground_truth;
 };
 
 void AddSolveFlags(CLI::App* command, SolveFlags* flags);
 Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
 
-/// --adjust-features and --no-adjust.
+/// --adjust-features, --principal-point-stddev and --no-adjust.
 void AddAdjustFlags(CLI::App* command, SolveFlags* flags);
+/// --principal-point-stddev
+void AddPrincipalPointFlag(CLI::App* command, double* stddev);
 /// --gt
 CLI::Option* AddTruthFlag(CLI::App* command, std::string* path);
 

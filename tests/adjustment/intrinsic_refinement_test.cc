@@ -112,9 +112,12 @@ TEST(RefineAllIntrinsicsTest, WithoutItNothingChanges) {
   TestScene plain = MakeTestScene(scene_options);
   TestScene named = MakeTestScene(scene_options);
   const auto intrinsics = plain.scene.intrinsics;
-  Adjust({}, &plain.scene);
-  // Named, with nothing to refine.
   AdjustmentOptions options;
+  options.principal_point_stddev = 0;
+  ASSERT_THAT(BuildStructure(&plain.scene, {}, {}), IsOk());
+  ASSERT_THAT(AdjustScene(&plain.scene, options, {}), IsOk());
+  // Named, with nothing to refine.
+  options = {};
   options.refine_intrinsics[7] = {};
   ASSERT_THAT(BuildStructure(&named.scene, {}, {}), IsOk());
   ASSERT_THAT(AdjustScene(&named.scene, options, {}), IsOk());

@@ -26,6 +26,7 @@ Status AdjustmentOptions::Validate() const {
         std::pair(max_relative_line_depth_stddev,
                   "max_relative_line_depth_stddev"),
         std::pair(min_two_view_line_overlap, "min_two_view_line_overlap"),
+        std::pair(principal_point_stddev, "principal_point_stddev"),
         std::pair(function_tolerance, "function_tolerance")}) {
     if (!(value >= 0) || !std::isfinite(value)) {
       return invalid(std::string(name) + " must be finite and not negative");

@@ -46,8 +46,19 @@ struct AdjustmentOptions {
   /// same again, and each costs the solver time.
   int max_pairs_per_line = 3;
 
-  /// The intrinsics to refine; those not named stay fixed.
+  /// The intrinsics to refine. Of those not named only the principal point
+  /// moves, as far as principal_point_stddev lets it.
   std::map<IntrinsicId, IntrinsicRefinement> refine_intrinsics;
+  /// How well a given principal point is known: the standard deviation of each
+  /// coordinate as a share of the image diagonal. The default, one pixel of six
+  /// megapixels, is what a careful calibration leaves; the images decide where
+  /// they know better, and hardly move it where structure is thin. 0: exactly.
+  double principal_point_stddev = 0.0003;
+
+  /// True if an intrinsic may move.
+  bool MovesIntrinsics() const {
+    return principal_point_stddev > 0 || !refine_intrinsics.empty();
+  }
 
   /// First adjust centres and structure with the rotations held. Off where the
   /// rotations are worse than the centres.

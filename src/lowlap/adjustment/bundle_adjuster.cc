@@ -275,7 +275,7 @@ class Adjuster {
 
   // The share of the observations whose use changed.
   Result<double> Update(bool take_new_pairs) {
-    if (!options_.refine_intrinsics.empty()) RefreshRays();
+    if (options_.MovesIntrinsics()) RefreshRays();
     if (Status status =
             FollowPoses(options_, noise_.lines, context_, *cameras_, state_);
         !status) {
@@ -340,7 +340,7 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
   CameraSet cameras(*scene);
   StructureState state;
   state.points = LoadPoints(*scene, cameras);
-  state.lines = LoadLines(*scene, cameras, !options.refine_intrinsics.empty());
+  state.lines = LoadLines(*scene, cameras, options.MovesIntrinsics());
   state.pairs = LoadPairs(*scene, state.lines);
   if (options.use_relative_poses) {
     state.priors = internal::LoadRelativePosePriors(*scene, cameras);

@@ -39,7 +39,8 @@ CameraSet::CameraSet(const Scene& scene) {
     const auto [intrinsic_at, new_intrinsic] = intrinsic_index.emplace(
         view.intrinsic_id, static_cast<int>(intrinsics.size()));
     if (new_intrinsic) {
-      intrinsics.push_back({view.intrinsic_id, *intrinsic, {}});
+      intrinsics.push_back(
+          {view.intrinsic_id, *intrinsic, intrinsic->principal_point_px, {}});
       intrinsics.back().ParametersFromValue();
     }
     view_index.emplace(id, static_cast<int>(views.size()));

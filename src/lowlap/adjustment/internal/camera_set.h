@@ -27,7 +27,8 @@ struct PoseState {
 struct IntrinsicState {
   IntrinsicId id = kInvalidId;
   Intrinsic value;
-  IntrinsicParameters parameters{};  // the solver's copy of `value`
+  Vec2 given_principal_point_px = Vec2::Zero();  // that of the scene
+  IntrinsicParameters parameters{};              // the solver's copy of `value`
 
   int ParameterCount() const {
     return 4 + static_cast<int>(value.distortion.size());

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lowlap/adjustment/internal/coplanar_costs.h"
+#include "lowlap/adjustment/internal/intrinsic_freedom.h"
 #include "lowlap/adjustment/internal/pair_terms.h"
 #include "lowlap/adjustment/internal/point_reprojection_cost.h"
 #include "lowlap/adjustment/internal/subspace_manifold.h"
@@ -14,41 +15,6 @@ namespace {
 constexpr int kPoseSize = 4 + 3;
 constexpr int kPointSize = 3;
 constexpr int kLineSize = 6;
-
-IntrinsicRefinement RefinementOf(const AdjustmentOptions& options,
-                                 const IntrinsicState& intrinsic) {
-  const auto found = options.refine_intrinsics.find(intrinsic.id);
-  if (found == options.refine_intrinsics.end() ||
-      intrinsic.value.model == CameraModel::kSpherical) {
-    return {};
-  }
-  return found->second;
-}
-
-// The ways in which the parameters of an intrinsic may move, as columns.
-Eigen::MatrixXd FreeDirections(const IntrinsicRefinement& refinement,
-                               const IntrinsicState& intrinsic) {
-  const int count = intrinsic.ParameterCount();
-  std::vector<Eigen::VectorXd> directions;
-  const auto add_axis = [&](int n) {
-    directions.push_back(Eigen::VectorXd::Unit(count, n));
-  };
-  if (refinement.focal) {
-    const Vec2 focals(intrinsic.parameters[0], intrinsic.parameters[1]);
-    directions.push_back(Eigen::VectorXd::Zero(count));
-    directions.back().head<2>() = focals.normalized();
-  }
-  if (refinement.aspect_ratio) add_axis(1);
-  if (refinement.principal_point) add_axis(2), add_axis(3);
-  if (refinement.distortion) {
-    for (int n = 4; n < count; ++n) add_axis(n);
-  }
-  Eigen::MatrixXd basis(count, directions.size());
-  for (std::size_t n = 0; n < directions.size(); ++n) {
-    basis.col(static_cast<int>(n)) = directions[n];
-  }
-  return basis;
-}
 
 }  // namespace
 
@@ -70,7 +36,8 @@ ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
   AddPoints();
   AddLines();
   AddPairs();
-  AddPriors();
+  AddRelativePoses();
+  AddPrincipalPoints();
   SetManifolds();
 }
 
@@ -211,7 +178,19 @@ void ProblemBuilder::AddPairs() {
   }
 }
 
-void ProblemBuilder::AddPriors() {
+void ProblemBuilder::AddPrincipalPoints() {
+  for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
+    const IntrinsicState& intrinsic = cameras_->intrinsics[n];
+    double* parameters = IntrinsicBlock(static_cast<int>(n));
+    const double stddev_px = PrincipalPointStddevPx(options_, intrinsic);
+    if (stddev_px > 0 && problem_->HasParameterBlock(parameters)) {
+      problem_->AddResidualBlock(new PrincipalPointCost(intrinsic, stddev_px),
+                                 nullptr, parameters);
+    }
+  }
+}
+
+void ProblemBuilder::AddRelativePoses() {
   // In standard deviations; a false relative pose loses its hold.
   constexpr double kLossScale = 3;
   losses_.push_back(std::make_unique<ceres::CauchyLoss>(kLossScale));

@@ -38,7 +38,8 @@ class ProblemBuilder {
   void AddPoints();
   void AddLines();
   void AddPairs();
-  void AddPriors();
+  void AddRelativePoses();
+  void AddPrincipalPoints();
   void SetManifolds();
   bool IsRefined(int intrinsic) const;
   double* RotationBlock(int pose);
