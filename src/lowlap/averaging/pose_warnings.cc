@@ -5,6 +5,12 @@
 namespace lowlap {
 namespace {
 
+std::string Degrees(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.2f", value);
+  return text;
+}
+
 class Writer {
  public:
   explicit Writer(const Scene& scene) : scene_(scene) {}
@@ -26,6 +32,35 @@ class Writer {
     return list;
   }
 
+  std::string Triplets(const std::vector<ViewTriplet>& triplets) const {
+    std::string list;
+    for (const ViewTriplet& views : triplets) {
+      list += (list.empty() ? "" : "; ") +
+              Names({views.first, views.middle, views.last});
+    }
+    return list;
+  }
+
+  std::string Why(const ViewDoubt& doubt) const {
+    switch (doubt.reason) {
+      case DoubtReason::kContradictedPoses:
+        return "more of the evidence of its relative poses contradicts its "
+               "place than agrees with it; they contradict: " +
+               Pairs(doubt.against);
+      case DoubtReason::kWeakScale:
+        return "only weak scale ratios join them to the others: " +
+               Triplets(doubt.ratios);
+      case DoubtReason::kContradictedRatios:
+        return "one camera's scale ratios are all that gives them their "
+               "scale, and these disagree; rejected were: " +
+               Triplets(doubt.ratios);
+      case DoubtReason::kLostFeatures:
+        return "only " + std::to_string(static_cast<int>(100 * doubt.share)) +
+               " % of what was matched in it fits its place";
+    }
+    return "";
+  }
+
  private:
   std::string Name(ViewId view) const {
     const auto found = scene_.views.find(view);
@@ -35,12 +70,6 @@ class Writer {
 
   const Scene& scene_;
 };
-
-std::string Degrees(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.2f", value);
-  return text;
-}
 
 }  // namespace
 
@@ -72,15 +101,14 @@ std::vector<std::string> PoseWarnings(const PoseSummary& summary,
         writer.Pairs(loop.edges) + ".");
   }
   if (!summary.weak_ratios.empty()) {
-    std::string triplets;
-    for (const ViewTriplet& views : summary.weak_ratios) {
-      triplets += (triplets.empty() ? "" : "; ") +
-                  writer.Names({views.first, views.middle, views.last});
-    }
     warnings.push_back(
         "Doubtful: scale ratios in use that chance explains as well, since "
         "nothing else places one of their views: " +
-        triplets + ".");
+        writer.Triplets(summary.weak_ratios) + ".");
+  }
+  for (const ViewDoubt& doubt : summary.doubts) {
+    warnings.push_back("Doubtful: " + writer.Names(doubt.views) + ": " +
+                       writer.Why(doubt) + ".");
   }
   if (!summary.unchecked.empty()) {
     warnings.push_back(

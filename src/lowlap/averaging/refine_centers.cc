@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lowlap/averaging/internal/sparse_solver.h"
+#include "lowlap/core/median.h"
 
 namespace lowlap {
 namespace {
@@ -27,7 +28,8 @@ double GemanMcClureWeight(double squared) {
 
 class Refiner {
  public:
-  Refiner(const TranslationProblem& problem, const std::vector<bool>& placed)
+  Refiner(const TranslationProblem& problem, const std::vector<bool>& placed,
+          const std::vector<Vec3>& start)
       : problem_(problem), row_(problem.views.size(), -1) {
     for (std::size_t n = 0; n < placed.size(); ++n) {
       if (placed[n]) row_[n] = num_rows_, num_rows_ += 3;
@@ -43,6 +45,7 @@ class Refiner {
         ratios_.push_back(&ratio);
       }
     }
+    SetDeviations(start);
   }
 
   int num_rows() const { return num_rows_; }
@@ -82,7 +85,7 @@ class Refiner {
       const Vec3 error = DirectionError(e, s);
       const double weight = GemanMcClureWeight(error.squaredNorm());
       const Mat3 jacobian = (Mat3::Identity() - s.unit * s.unit.transpose()) /
-                            (s.length * edge.stddev_rad);
+                            (s.length * Deviation(edge));
       const Mat3 block = weight * jacobian.transpose() * jacobian;
       const Vec3 pull = weight * jacobian.transpose() * error;
       const int a = row_[edge.first], b = row_[edge.second];
@@ -99,9 +102,9 @@ class Refiner {
       const DirectionEdge& target = problem_.edges[ratio->target];
       const DirectionEdge& reference = problem_.edges[ratio->reference];
       const Vec3 gt = states[ratio->target].unit /
-                      (states[ratio->target].length * ratio->stddev);
+                      (states[ratio->target].length * Deviation(*ratio));
       const Vec3 gr = states[ratio->reference].unit /
-                      (states[ratio->reference].length * ratio->stddev);
+                      (states[ratio->reference].length * Deviation(*ratio));
       const std::array<std::pair<int, Vec3>, 4> slopes = {{
           {row_[target.second], gt},
           {row_[target.first], -gt},
@@ -120,6 +123,30 @@ class Refiner {
   }
 
  private:
+  void SetDeviations(const std::vector<Vec3>& start) {
+    // Medians, in deviations: of the length of a 2-vector of normal errors, and
+    // of the size of a normal error.
+    constexpr double kMedianOfLength = 1.1774, kMedianOfSize = 0.6745;
+    const std::vector<EdgeState> states = States(start);
+    std::vector<double> directions, ratios;
+    for (const std::size_t e : edges_) {
+      directions.push_back(DirectionError(e, states[e]).norm());
+    }
+    for (const RatioMeasurement* ratio : ratios_) {
+      ratios.push_back(std::abs(RatioError(*ratio, states)));
+    }
+    direction_scale_ =
+        std::max(1.0, Median(std::move(directions)) / kMedianOfLength);
+    ratio_scale_ = std::max(1.0, Median(std::move(ratios)) / kMedianOfSize);
+  }
+
+  double Deviation(const DirectionEdge& edge) const {
+    return direction_scale_ * edge.stddev_rad;
+  }
+  double Deviation(const RatioMeasurement& ratio) const {
+    return ratio_scale_ * ratio.stddev;
+  }
+
   std::vector<EdgeState> States(const std::vector<Vec3>& centers) const {
     std::vector<EdgeState> states(problem_.edges.size());
     for (const std::size_t e : edges_) {
@@ -133,14 +160,14 @@ class Refiner {
 
   Vec3 DirectionError(std::size_t e, const EdgeState& state) const {
     return (state.unit - problem_.edges[e].direction_in_world) /
-           problem_.edges[e].stddev_rad;
+           Deviation(problem_.edges[e]);
   }
 
-  static double RatioError(const RatioMeasurement& ratio,
-                           const std::vector<EdgeState>& states) {
+  double RatioError(const RatioMeasurement& ratio,
+                    const std::vector<EdgeState>& states) const {
     return (std::log(states[ratio.target].length) -
             std::log(states[ratio.reference].length) - ratio.log_ratio) /
-           ratio.stddev;
+           Deviation(ratio);
   }
 
   const TranslationProblem& problem_;
@@ -148,6 +175,7 @@ class Refiner {
   int num_rows_ = 0;
   std::vector<std::size_t> edges_;
   std::vector<const RatioMeasurement*> ratios_;
+  double direction_scale_ = 1, ratio_scale_ = 1;
 };
 
 }  // namespace
@@ -155,7 +183,7 @@ class Refiner {
 Status RefineCenters(const TranslationProblem& problem,
                      const std::vector<bool>& placed,
                      std::vector<Vec3>* centers, int max_iterations) {
-  const Refiner refiner(problem, placed);
+  const Refiner refiner(problem, placed, *centers);
   if (refiner.num_rows() == 0) return {};
   SparseSolver solver;
   double damping = 1e-4;

@@ -14,6 +14,13 @@ namespace lowlap {
 /// Levenberg-Marquardt with Geman-McClure weights; the gauge (translation and
 /// scale) stays where the start has it. Only edges and ratios whose views are
 /// all marked in `placed` take part.
+///
+/// sigma is the stated deviation times a factor for each of the two kinds, at
+/// least 1, which the median residual of the start asks for (MAD; Huber, Robust
+/// Statistics, 1981). Stated deviations do not cover what errors share; with
+/// them alone the bounded loss can gain by giving up all directions of a view
+/// to please its ratios, which say little across a plane of centres. The factor
+/// is not estimated again: it would shrink with what is given up.
 Status RefineCenters(const TranslationProblem& problem,
                      const std::vector<bool>& placed,
                      std::vector<Vec3>* centers, int max_iterations = 50);

@@ -213,6 +213,8 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
       summary.weak_ratios.push_back(views);
     }
   }
+  summary.doubts = FindViewDoubts(*scene, problem, *solution,
+                                  {options.outlier_reach, sigma_rad});
   summary.num_edges = static_cast<int>(problem.edges.size());
   summary.num_ratios = static_cast<int>(problem.ratios.size());
   summary.median_rotation_residual_deg =

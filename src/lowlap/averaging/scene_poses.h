@@ -7,6 +7,7 @@
 #include "lowlap/averaging/rotation_averaging.h"
 #include "lowlap/averaging/scene_rotations.h"
 #include "lowlap/averaging/translation_problem.h"
+#include "lowlap/averaging/view_doubts.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/scene/scene.h"
@@ -44,14 +45,18 @@ struct PoseSummary {
   /// Triplets whose ratio chance explains as well, used since nothing else
   /// joins one of their views.
   std::vector<ViewTriplet> weak_ratios;
+  /// Views whose place the evidence does not bear out: FindViewDoubts.
+  std::vector<ViewDoubt> doubts;
   int num_edges = 0;
   int num_ratios = 0;
   double median_rotation_residual_deg = 0;
 
   /// Something contradicts what is placed, and nothing decides between them (a
-  /// loop that does not close, a contested link), or a weak ratio places it.
+  /// loop that does not close, a contested link), a weak ratio places it, or
+  /// views are doubtful for a reason of their own.
   bool IsDoubtful() const {
-    return !loops.empty() || !contested.empty() || !weak_ratios.empty();
+    return !loops.empty() || !contested.empty() || !weak_ratios.empty() ||
+           !doubts.empty();
   }
 };
 

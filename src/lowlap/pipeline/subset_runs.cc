@@ -114,6 +114,14 @@ std::vector<std::string> DoubtCodes(const PoseSummary& summary) {
   if (!summary.loops.empty()) codes.push_back("open_loop");
   if (!summary.contested.empty()) codes.push_back("contested_link");
   if (!summary.weak_ratios.empty()) codes.push_back("weak_ratio");
+  for (const DoubtReason reason :
+       {DoubtReason::kContradictedPoses, DoubtReason::kWeakScale,
+        DoubtReason::kContradictedRatios, DoubtReason::kLostFeatures}) {
+    const bool present = std::any_of(
+        summary.doubts.begin(), summary.doubts.end(),
+        [&](const ViewDoubt& doubt) { return doubt.reason == reason; });
+    if (present) codes.push_back(DoubtReasonName(reason));
+  }
   return codes;
 }
 

@@ -33,7 +33,8 @@ struct SubsetOutcome {
 };
 
 /// What makes a solution doubtful, as words: "open_loop", "contested_link",
-/// "weak_ratio"; empty if it is not (PoseSummary::IsDoubtful).
+/// "weak_ratio" and those of DoubtReasonName; empty if it is not
+/// (PoseSummary::IsDoubtful).
 std::vector<std::string> DoubtCodes(const PoseSummary& summary);
 
 /// Every way to leave out `num_dropped` of the scene's views, in lexicographic

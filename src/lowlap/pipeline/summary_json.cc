@@ -89,6 +89,22 @@ void AddDoubts(const PoseSummary& summary, Json* poses) {
     weak.push_back({views.first, views.middle, views.last});
   }
   (*poses)["weak_ratios"] = std::move(weak);
+  Json doubts = Json::array();
+  for (const ViewDoubt& doubt : summary.doubts) {
+    Json entry = {{"views", ViewList(doubt.views)},
+                  {"reason", DoubtReasonName(doubt.reason)}};
+    if (doubt.reason == DoubtReason::kLostFeatures) {
+      entry["fitting_share"] = doubt.share;
+    }
+    for (const ViewPair& edge : doubt.against) {
+      entry["contradicted_by"].push_back(PairJson(edge));
+    }
+    for (const ViewTriplet& views : doubt.ratios) {
+      entry["ratios"].push_back({views.first, views.middle, views.last});
+    }
+    doubts.push_back(std::move(entry));
+  }
+  (*poses)["doubtful_views"] = std::move(doubts);
 }
 
 // Pairs whose matches allow several motions.
