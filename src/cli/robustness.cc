@@ -1,10 +1,17 @@
+#include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 
 #include "cli/command.h"
+#include "cli/result_file.h"
 #include "lowlap/pipeline/output_folder.h"
 #include "lowlap/pipeline/robustness_output.h"
 #include "lowlap/pipeline/robustness_study.h"
+#include "lowlap/pipeline/robustness_summary.h"
+#include "lowlap/pipeline/robustness_table.h"
+#include "lowlap/report/table_text.h"
 
 namespace lowlap::cli {
 namespace {
@@ -22,23 +29,72 @@ std::string Joined(const std::vector<std::string>& names) {
   return text;
 }
 
+// What the trials depend on.
+std::string SettingsText(const RobustnessOptions& options, std::uint64_t seed) {
+  return "version " LOWLAP_VERSION "\nscenarios " + Joined(options.scenarios) +
+         (options.quick ? ", quick" : "") + "\nstrategies " +
+         Joined(options.strategies) + "\nseeds " +
+         std::to_string(options.num_seeds) + " from " + std::to_string(seed) +
+         "\ntolerance " + NumberText(options.tolerance, 9) + "\ntime limit " +
+         NumberText(options.time_limit_s, 9) + "\n";
+}
+
+Status Complete(const Flags& flags, const RunContext& context,
+                RobustnessStudy* study) {
+  const std::string path =
+      (std::filesystem::path(flags.output) / "trials.csv").string();
+  const auto known =
+      TakeUpTable(flags.output, "trials.csv",
+                  SettingsText(study->options, flags.common.seed));
+  if (!known) return tl::unexpected<Error>(known.error());
+  if (Status parsed = ParseTrialsCsv(*known, study); !parsed) {
+    parsed.error().file = path;
+    return parsed;
+  }
+  if (!study->outcomes.empty()) {
+    context.Log(LogLevel::kInfo, std::to_string(study->outcomes.size()) +
+                                     " trials are in trials.csv already");
+  }
+  Status status = WriteText(path, TrialsCsv(*study));
+  ResultFile file(path);
+  if (status) status = file.Open();
+  if (!status) return status;
+  const auto start = std::chrono::steady_clock::now();
+  RobustnessSinks sinks;
+  sinks.cell = [&](const RobustnessKey& key, const RobustnessOutcome& outcome) {
+    return file.Append(ToCsvLine(*study, key, outcome));
+  };
+  sinks.scenario = [&](const RobustnessStudy& so_far,
+                       std::size_t scenario) -> Status {
+    const auto plots = DrawScenario(so_far, scenario);
+    if (!plots) return tl::unexpected<Error>(plots.error());
+    const std::chrono::duration<double> elapsed =
+        std::chrono::steady_clock::now() - start;
+    context.Log(LogLevel::kInfo,
+                so_far.scenarios[scenario].Id() + " is complete (" +
+                    std::to_string(scenario + 1) + " of " +
+                    std::to_string(so_far.scenarios.size()) + ", " +
+                    NumberText(std::round(elapsed.count()), 6) + " s)");
+    return WriteTextFiles(*plots, flags.output);
+  };
+  return RunRobustnessStudy(context, sinks, study);
+}
+
 int StudyAndWrite(const Flags& flags) {
-  if (const Status valid = flags.options.Validate(); !valid) {
-    return Fail(valid.error());
-  }
-  if (const Status made = PrepareOutputFolder(flags.output); !made) {
-    return Fail(made.error());
-  }
-  const auto study = StudyRobustness(flags.options, MakeContext(flags.common));
+  auto study = PlanRobustnessStudy(flags.options);
   if (!study) return Fail(study.error());
+  const Status done = Complete(flags, MakeContext(flags.common), &*study);
+  if (!done) return Fail(done.error());
   if (const Status written = WriteRobustness(*study, flags.output); !written) {
     return Fail(written.error());
   }
   std::printf(
-      "%zu scenarios, %zu simulations, %zu strategies\n"
-      "written to %s: curves.csv trials.csv and plots (.svg)\n",
-      study->scenarios.size(), study->trials.size(),
-      study->options.strategies.size(), flags.output.c_str());
+      "%s\n%zu scenarios, %zu trials, %zu strategies\n"
+      "written to %s: index.html summary.txt curves.csv trials.csv and plots "
+      "(.svg)\n",
+      SummaryText(*study).c_str(), study->scenarios.size(),
+      study->outcomes.size(), study->options.strategies.size(),
+      flags.output.c_str());
   return 0;
 }
 
@@ -52,7 +108,9 @@ void AddRobustness(CLI::App* program, Action* action) {
       "Breakdown curves of every strategy on simulated rooms, corridors and "
       "rings");
   command
-      ->add_option("-o,--output", flags->output, "Folder for tables and plots")
+      ->add_option("-o,--output", flags->output,
+                   "Folder for tables and plots. A study that was stopped goes "
+                   "on from the trials there")
       ->required();
   command
       ->add_option("--scenario", o.scenarios,
@@ -66,9 +124,11 @@ void AddRobustness(CLI::App* program, Action* action) {
   command->add_option("--seeds", o.num_seeds, "Simulations per value");
   command->add_option("--tolerance", o.tolerance,
                       "A centre is right within this share of the spread");
-  command->add_option("--max-views-of-others", o.max_views_of_others,
-                      "Larger graphs are left to the strategies graph and "
-                      "chain");
+  command
+      ->add_option("--time-limit", o.time_limit_s,
+                   "Seconds of processor time that a strategy has for one "
+                   "problem; beyond, it is not asked for larger ones")
+      ->capture_default_str();
   command->add_flag("--quick", o.quick,
                     "The room alone, few values, small graphs: a minute");
   AddCommonFlags(command, &flags->common);

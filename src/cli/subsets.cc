@@ -1,20 +1,15 @@
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <ostream>
 #include <utility>
 
 #include "cli/command.h"
+#include "cli/result_file.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
-#include "lowlap/core/atomic_file.h"
 #include "lowlap/core/hash.h"
 #include "lowlap/io/scene_binary.h"
-#include "lowlap/pipeline/output_folder.h"
 #include "lowlap/pipeline/scene_reduction.h"
 #include "lowlap/pipeline/subset_runs.h"
 #include "lowlap/pipeline/subset_table.h"
@@ -33,13 +28,6 @@ struct Flags {
   int max_point_matches = 150;
   SubsetBounds bounds;
 };
-
-Status WriteText(const std::string& path, const std::string& text) {
-  return WriteFileAtomically(path, [&](std::ostream& out) -> Status {
-    out << text;
-    return {};
-  });
-}
 
 // What results.csv depends on, apart from the choice of the subsets.
 Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
@@ -67,37 +55,6 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
   return text + "\nrefine " + flags.solve.refine_intrinsics + "\n";
 }
 
-/// The table on disk: every line is appended by one write and flushed to the
-/// disk, so that a run that is killed loses what it had not finished.
-class ResultFile {
- public:
-  explicit ResultFile(std::string path) : path_(std::move(path)) {}
-  ~ResultFile() {
-    if (file_ >= 0) ::close(file_);
-  }
-  ResultFile(const ResultFile&) = delete;
-  ResultFile& operator=(const ResultFile&) = delete;
-
-  Status Open() {
-    file_ = ::open(path_.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
-    return file_ >= 0 ? Status() : Failure("cannot be opened");
-  }
-  Status Append(const std::string& line) const {
-    const ssize_t written = ::write(file_, line.data(), line.size());
-    const bool whole = written == static_cast<ssize_t>(line.size());
-    return whole && ::fdatasync(file_) == 0 ? Status()
-                                            : Failure("cannot be written to");
-  }
-
- private:
-  Status Failure(const std::string& what) const {
-    return MakeError(ErrorCode::kIo, what, path_);
-  }
-
-  std::string path_;
-  int file_ = -1;
-};
-
 std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
                   const Scene& scene) {
   std::string text = SubsetCsvHeader();
@@ -111,33 +68,20 @@ std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
 Result<std::vector<SubsetOutcome>> Resume(const std::string& folder,
                                           const std::string& settings,
                                           const Scene& scene) {
-  namespace fs = std::filesystem;
-  const std::string settings_path =
-      (fs::path(folder) / "settings.txt").string();
-  const std::string table_path = (fs::path(folder) / "results.csv").string();
-  if (const Status made = PrepareOutputFolder(folder); !made) {
-    return tl::unexpected<Error>(made.error());
-  }
+  const std::string path =
+      (std::filesystem::path(folder) / "results.csv").string();
+  const auto text = TakeUpTable(folder, "results.csv", settings);
+  if (!text) return tl::unexpected<Error>(text.error());
   std::vector<SubsetOutcome> outcomes;
-  if (fs::exists(table_path)) {
-    const auto before = ReadWholeFile(settings_path);
-    if (!before || *before != settings) {
-      return MakeError(ErrorCode::kInvalidArgument,
-                       "holds results of another scene or of other options; "
-                       "take another folder, or remove them",
-                       folder);
-    }
-    const auto text = ReadWholeFile(table_path);
-    if (!text) return tl::unexpected<Error>(text.error());
+  if (!text->empty()) {
     auto parsed = ParseSubsetCsv(*text, scene);
     if (!parsed) {
-      parsed.error().file = table_path;
+      parsed.error().file = path;
       return parsed;
     }
     outcomes = std::move(*parsed);
   }
-  Status written = WriteText(settings_path, settings);
-  if (written) written = WriteText(table_path, ToCsv(outcomes, scene));
+  const Status written = WriteText(path, ToCsv(outcomes, scene));
   if (!written) return tl::unexpected<Error>(written.error());
   return outcomes;
 }

@@ -3,10 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
+#include <string>
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/pipeline/robustness_output.h"
+#include "lowlap/pipeline/robustness_summary.h"
+#include "lowlap/pipeline/robustness_table.h"
 #include "pipeline/read_csv.h"
 
 namespace lowlap {
@@ -87,23 +91,173 @@ RobustnessOptions Small() {
   return options;
 }
 
+RobustnessStudy Completed(const RobustnessOptions& options,
+                          int num_threads = 0) {
+  auto study = PlanRobustnessStudy(options);
+  EXPECT_TRUE(study);
+  RunContext context;
+  context.num_threads = num_threads;
+  EXPECT_TRUE(RunRobustnessStudy(context, {}, &*study));
+  return *study;
+}
+
+// Without what differs from run to run.
+std::string WithoutSeconds(RobustnessStudy study) {
+  for (auto& entry : study.outcomes) entry.second.seconds = 0;
+  return TrialsCsv(study);
+}
+
 TEST(Robustness, TheSameForAnyNumberOfThreads) {
-  RunContext one, three;
-  one.num_threads = 1;
-  three.num_threads = 3;
-  const auto first = StudyRobustness(Small(), one);
-  const auto second = StudyRobustness(Small(), three);
-  ASSERT_TRUE(first);
-  ASSERT_TRUE(second);
-  EXPECT_EQ(TrialsCsv(*first), TrialsCsv(*second));
-  EXPECT_EQ(CurvesCsv(*first), CurvesCsv(*second));
+  EXPECT_EQ(WithoutSeconds(Completed(Small(), 1)),
+            WithoutSeconds(Completed(Small(), 3)));
+}
+
+TEST(Robustness, AStudyGoesOnWhereItWasStopped) {
+  const RobustnessStudy whole = Completed(Small());
+  auto study = PlanRobustnessStudy(Small());
+  ASSERT_TRUE(study);
+  std::string table = TrialsCsvHeader();
+  std::size_t num_told = 0;
+  RunContext context;
+  context.num_threads = 2;
+  context.progress = [&](const std::string&, std::size_t, std::size_t) {
+    return num_told < 20;
+  };
+  RobustnessSinks sinks;
+  sinks.cell = [&](const RobustnessKey& key, const RobustnessOutcome& outcome) {
+    ++num_told;
+    table += ToCsvLine(*study, key, outcome);
+    return Status();
+  };
+  const Status stopped = RunRobustnessStudy(context, sinks, &*study);
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::kCancelled);
+
+  // Killed in the middle of a line.
+  const std::string last = ToCsvLine(*study, study->outcomes.begin()->first,
+                                     study->outcomes.begin()->second);
+  auto resumed = PlanRobustnessStudy(Small());
+  ASSERT_TRUE(
+      ParseTrialsCsv(table + last.substr(0, last.size() / 2), &*resumed));
+  EXPECT_EQ(TrialsCsv(*resumed), TrialsCsv(*study));
+  EXPECT_EQ(resumed->outcomes.size(), num_told);
+
+  context.progress = nullptr;
+  std::set<std::size_t> scenarios;
+  std::size_t num_new = 0;
+  sinks.cell = [&](const RobustnessKey&, const RobustnessOutcome&) {
+    ++num_new;
+    return Status();
+  };
+  sinks.scenario = [&](const RobustnessStudy&, std::size_t scenario) {
+    scenarios.insert(scenario);
+    return Status();
+  };
+  ASSERT_TRUE(RunRobustnessStudy(context, sinks, &*resumed));
+  EXPECT_EQ(num_told + num_new, whole.outcomes.size());
+  EXPECT_EQ(scenarios.size(), whole.scenarios.size());
+  EXPECT_EQ(WithoutSeconds(*resumed), WithoutSeconds(whole));
+}
+
+TEST(Robustness, AnErrorOfASinkEndsTheStudy) {
+  auto study = PlanRobustnessStudy(Small());
+  RobustnessSinks sinks;
+  sinks.cell = [](const RobustnessKey&, const RobustnessOutcome&) -> Status {
+    return MakeError(ErrorCode::kIo, "the disk is full");
+  };
+  const Status failed = RunRobustnessStudy(RunContext(), sinks, &*study);
+  ASSERT_FALSE(failed);
+  EXPECT_EQ(failed.error().code, ErrorCode::kIo);
+}
+
+TEST(Robustness, LinesOfAnotherStudyAreRefused) {
+  auto study = PlanRobustnessStudy(Small());
+  const auto line_of = [&](const std::string& text) {
+    const Status parsed = ParseTrialsCsv(text, &*study);
+    return parsed ? "" : parsed.error().place;
+  };
+  const std::string header = TrialsCsvHeader();
+  const std::string good = "wrong_ratios,room,0.3,1,lud,solved,50,50,9,0.1,1,";
+  EXPECT_EQ(line_of(header + good + "\"\"\n"), "");
+  EXPECT_EQ(line_of("scenario\n"), "line 1");
+  EXPECT_EQ(line_of(header + good + "\"\",1\n"), "line 2");
+  for (const char* bad : {"rain,room,0.3,1,lud,solved,50,50,9,0.1,1,",
+                          "wrong_ratios,room,0.31,1,lud,solved,50,50,9,0.1,1,",
+                          "wrong_ratios,room,0.3,1,bata,solved,50,50,9,0.1,1,",
+                          "wrong_ratios,room,0.3,1,lud,lost,50,50,9,0.1,1,",
+                          "wrong_ratios,room,0.3,1,lud,solved,50,,9,0.1,1,"}) {
+    EXPECT_EQ(line_of(header + bad + "\n"), "line 2") << bad;
+  }
+}
+
+// A limit that nothing keeps: the smallest graph is reported as over time, the
+// larger ones are not asked for.
+TEST(Robustness, StrategiesOverTimeAreNotAskedForMore) {
+  RobustnessOptions options;
+  options.scenarios = {"views"};
+  options.strategies = {"lud"};
+  options.quick = true;
+  options.time_limit_s = 1e-9;
+  const RobustnessStudy study = Completed(options);
+  ASSERT_TRUE(study.scenarios.front().levels_grow);
+  for (const auto& [key, outcome] : study.outcomes) {
+    EXPECT_EQ(outcome.status, key.level == 0 ? RobustnessStatus::kOverTime
+                                             : RobustnessStatus::kNotAsked);
+    EXPECT_NE(outcome.note, "");
+    EXPECT_TRUE(std::isinf(outcome.median_error));
+  }
+  EXPECT_FALSE(PointOf(study, 0, 0, 0).is_known);
+  EXPECT_TRUE(DrawScenario(study, 0));
+}
+
+// Shares of right views of two strategies, at three levels.
+RobustnessStudy Invented(bool hard_when_small) {
+  RobustnessStudy study;
+  study.options.strategies = {"graph", "lud"};
+  study.scenarios.resize(1);
+  study.scenarios[0].name = "invented";
+  study.scenarios[0].world = "room";
+  study.scenarios[0].hard_when_small = hard_when_small;
+  const int right[3][2] = {{100, 80}, {90, 96}, {40, 70}};
+  for (std::size_t level = 0; level < 3; ++level) {
+    study.scenarios[0].levels.emplace_back();
+    study.scenarios[0].levels.back().value = 0.1 * static_cast<double>(level);
+    for (std::size_t strategy = 0; strategy < 2; ++strategy) {
+      RobustnessOutcome outcome;
+      outcome.status = RobustnessStatus::kSolved;
+      outcome.num_views = outcome.num_placed = 100;
+      outcome.num_right = right[hard_when_small ? 2 - level : level][strategy];
+      study.outcomes[{0, level, 0, strategy}] = outcome;
+    }
+  }
+  return study;
+}
+
+TEST(RobustnessSummary, BreakdownEndsAtTheFirstFailure) {
+  EXPECT_DOUBLE_EQ(HoldsUpTo(Invented(false), 0, 0).value(), 0.1);
+  EXPECT_FALSE(HoldsUpTo(Invented(false), 0, 1));
+  EXPECT_DOUBLE_EQ(HoldsUpTo(Invented(true), 0, 0).value(), 0.1);
+  const TextTable table = BreakdownTable(Invented(false));
+  ASSERT_EQ(table.rows.size(), 1u);
+  EXPECT_EQ(table.rows[0][1], "0.1");
+  EXPECT_EQ(table.rows[0][2], "-");
+}
+
+TEST(RobustnessSummary, LevelsWhereTheFirstIsWorseAreListed) {
+  const auto worse = WhereFirstIsWorse(Invented(false));
+  ASSERT_EQ(worse.size(), 2u);
+  EXPECT_EQ(worse[0].level, 2u);
+  EXPECT_EQ(worse[0].strategy, 1u);
+  EXPECT_DOUBLE_EQ(worse[0].right_share, 0.7);
+  EXPECT_DOUBLE_EQ(worse[0].right_share_of_first, 0.4);
+  EXPECT_EQ(worse[1].level, 1u);
+  EXPECT_EQ(WhereFirstIsWorse(Invented(false), 0.1).size(), 1u);
 }
 
 TEST(Robustness, CurvesSummariseTheTrials) {
-  const auto study = StudyRobustness(Small(), RunContext());
-  ASSERT_TRUE(study);
-  const auto trials = ReadCsv(TrialsCsv(*study));
-  const auto curves = ReadCsv(CurvesCsv(*study));
+  const RobustnessStudy study = Completed(Small());
+  const auto trials = ReadCsv(TrialsCsv(study));
+  const auto curves = ReadCsv(CurvesCsv(study));
   EXPECT_EQ(trials.size(), 2 * curves.size());
   for (auto curve : curves) {
     double share = 0;
@@ -141,7 +295,7 @@ TEST(Robustness, OptionsAreChecked) {
   const auto check = [](auto change, const std::string& name) {
     RobustnessOptions options;
     change(&options);
-    const auto study = StudyRobustness(options, RunContext());
+    const auto study = PlanRobustnessStudy(options);
     ASSERT_FALSE(study);
     EXPECT_EQ(study.error().code, ErrorCode::kInvalidArgument);
     EXPECT_NE(study.error().message.find(name), std::string::npos);
@@ -151,6 +305,7 @@ TEST(Robustness, OptionsAreChecked) {
   check([](Options* o) { o->strategies = {"magic"}; }, "graph");
   check([](Options* o) { o->num_seeds = 0; }, "seeds");
   check([](Options* o) { o->tolerance = 0; }, "tolerance");
+  check([](Options* o) { o->time_limit_s = 0; }, "time limit");
 }
 
 TEST(Robustness, EveryScenarioCanBeSimulated) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -90,6 +91,38 @@ TEST(SimulateGraph, WrongDirectionsAreAsManyAsAskedFor) {
     if (edge.direction != before.direction) ++count;
   }
   EXPECT_NEAR(count, 600, 70);
+}
+
+TEST(SimulateGraph, WrongPosesAreAsManyAsAskedForAndSpoilTheirRatios) {
+  SyntheticOptions options = GraphOnly(500, "loop:4");
+  const SyntheticScene right = *Simulate(options);
+  options.wrong_pose_share = 0.3;
+  SyntheticScene wrong = *Simulate(options);
+  std::set<ViewPair> changed;
+  for (const auto& [pair, edge] : wrong.scene.relative_poses) {
+    const RelativePose& before = right.scene.relative_poses.at(pair);
+    EXPECT_TRUE(edge.rotation.isUnitary(1e-9));
+    // Rotations of less than the bound of SimulatedRatioOptions are rare.
+    if (RotationAngleBetween(edge.rotation, before.rotation) > RadFromDeg(10)) {
+      EXPECT_NE(edge.direction, before.direction);
+      changed.insert(pair);
+    }
+  }
+  EXPECT_NEAR(static_cast<double>(changed.size()), 600, 70);
+
+  SimulatedRatioOptions ratios;
+  ratios.wrong_beside_wrong_poses = true;
+  ASSERT_TRUE(SimulateRatios(ratios, &wrong));
+  const auto is_changed = [&](ViewId a, ViewId b) {
+    return changed.count({std::min(a, b), std::max(a, b)}) > 0;
+  };
+  for (const ScaleRatio& ratio : wrong.scene.scale_ratios) {
+    const double error =
+        std::abs(ratio.log_ratio - *wrong.TrueLogRatio(ratio.views));
+    EXPECT_EQ(error > 0.09,
+              is_changed(ratio.views.first, ratio.views.middle) ||
+                  is_changed(ratio.views.middle, ratio.views.last));
+  }
 }
 
 // The error over its covariance is a chi-square of five degrees of freedom,

@@ -47,6 +47,8 @@ TEST(SyntheticOptions, EveryBadValueIsNamed) {
   });
   expect_named("pose_noise_factor",
                [](Options* o) { o->pose_noise_factor = -1; });
+  expect_named("wrong_pose_share",
+               [](Options* o) { o->wrong_pose_share = -0.1; });
   expect_named("wrong_direction_share",
                [](Options* o) { o->wrong_direction_share = 1.1; });
   expect_named("off_line_m", [=](Options* o) { o->off_line_m = nan; });

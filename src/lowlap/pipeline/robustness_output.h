@@ -1,24 +1,26 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "lowlap/core/result.h"
 #include "lowlap/pipeline/robustness_study.h"
 
 namespace lowlap {
 
-/// One line per trial and strategy: scenario, world, value, seed, strategy,
-/// views, placed, right, median_error (empty if infinite), note.
-std::string TrialsCsv(const RobustnessStudy& study);
+/// The plots of a scenario as (file name, SVG): ID_right.svg (share of views
+/// placed right against the value), ID_error.svg (median error) and, where the
+/// value is the number of views, ID_time.svg.
+Result<std::vector<std::pair<std::string, std::string>>> DrawScenario(
+    const RobustnessStudy& study, std::size_t scenario);
 
-/// One line per scenario, value and strategy: the mean share of views that are
-/// placed, and placed right, over the seeds, the median of the median errors
-/// (empty if infinite), and the note of the first trial that has one.
-std::string CurvesCsv(const RobustnessStudy& study);
+/// A page with all plots, which lie beside it, and the breakdown table.
+std::string IndexHtml(const RobustnessStudy& study);
 
-/// Writes trials.csv, curves.csv, and for each scenario NAME_WORLD_right.svg
-/// (share of views placed right against the value) and NAME_WORLD_error.svg
-/// (median error) into the folder, which must exist.
+/// Writes what a study that is complete leaves: trials.csv, curves.csv,
+/// summary.txt, index.html and all plots.
 Status WriteRobustness(const RobustnessStudy& study, const std::string& folder);
 
 }  // namespace lowlap

@@ -43,6 +43,7 @@ RobustnessLevel FeatureLevel(SyntheticKind world, Kinds kinds) {
 RobustnessLevel GraphLevel(SyntheticKind world, int num_views) {
   RobustnessLevel level;
   level.has_features = false;
+  level.averages_rotations = false;
   level.scene.kind = world;
   level.scene.num_views = num_views;
   level.scene.pairs = "window:4";
@@ -110,6 +111,15 @@ const std::vector<Definition>& Definitions() {
        [](SyntheticKind world, double value) {
          RobustnessLevel level = GraphLevel(world, 50);
          level.scene.wrong_direction_share = value;
+         return level;
+       }},
+      {"wrong_poses", "share of wrong relative poses", false, true,
+       SyntheticKind::kRoom, Shares(),
+       [](SyntheticKind world, double value) {
+         RobustnessLevel level = GraphLevel(world, 50);
+         level.averages_rotations = true;
+         level.scene.wrong_pose_share = value;
+         level.ratios.wrong_beside_wrong_poses = true;
          return level;
        }},
       {"views",
@@ -195,6 +205,11 @@ Result<std::vector<RobustnessScenario>> MakeRobustnessScenarios(
         level.value = definition.values[n];
         scenario.levels.push_back(std::move(level));
       }
+      scenario.hard_when_small =
+          definition.world == SyntheticKind::kCollinear ||
+          definition.world == SyntheticKind::kTwins;
+      scenario.levels_grow = scenario.levels.front().scene.num_views !=
+                             scenario.levels.back().scene.num_views;
       scenarios.push_back(std::move(scenario));
     }
     return scenarios;

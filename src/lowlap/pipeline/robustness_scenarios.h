@@ -14,10 +14,12 @@ namespace lowlap {
 struct RobustnessLevel {
   double value = 0;
   SyntheticOptions scene;
-  /// Ratios are estimated from the scene's features with `scale`, rotations
-  /// averaged. Otherwise the scene has no features: ratios are drawn, and the
-  /// rotations are the true ones.
+  /// Ratios are estimated from the scene's features with `scale`. Otherwise the
+  /// scene has no features, and ratios are drawn.
   bool has_features = true;
+  /// Rotations are averaged, and relative poses that contradict them left out;
+  /// otherwise the rotations are the true ones.
+  bool averages_rotations = true;
   ScaleOptions scale;
   SimulatedRatioOptions ratios;
 };
@@ -28,6 +30,8 @@ struct RobustnessScenario {
   std::string world;  // "room", "corridor", "ring"
   std::string axis;   // what the value is, with its unit
   bool is_logarithmic = false;
+  bool levels_grow = false;             // the value is the number of views
+  bool hard_when_small = false;         // the smaller the value
   std::vector<RobustnessLevel> levels;  // by value
 
   std::string Id() const { return name + "_" + world; }
@@ -40,6 +44,8 @@ struct RobustnessScenario {
 ///   noise           of all features, in pixels, relative poses as good as they
 ///                   can be with it
 ///   wrong_ratios, wrong_directions   share of the ratios (directions), drawn
+///   wrong_poses     share of the relative poses that are anything, and the
+///                   ratios beside them as well
 ///   views           number of views, a tenth of the ratios wrong
 ///   line            centres almost on a line: how far they are off it
 ///   twins           tiny baselines, almost pure rotations: their length

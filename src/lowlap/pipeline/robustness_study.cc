@@ -1,187 +1,278 @@
 #include "lowlap/pipeline/robustness_study.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
-#include <memory>
+#include <cstdio>
+#include <ctime>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <tuple>
 #include <utility>
 
-#include "lowlap/averaging/scene_poses.h"
 #include "lowlap/averaging/strategies.h"
-#include "lowlap/core/median.h"
 #include "lowlap/core/parallel.h"
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/scale_ratios.h"
+#include "lowlap/pipeline/robustness_problem.h"
 
 namespace lowlap {
 namespace {
 
-struct Placement {
-  double scale = 1;
-  Vec3 translation = Vec3::Zero();
-};
+using Clock = std::chrono::steady_clock;
 
-Placement WeightedFit(const std::vector<Vec3>& from,
-                      const std::vector<Vec3>& to,
-                      const std::vector<double>& weights) {
-  Vec3 from_mean = Vec3::Zero(), to_mean = Vec3::Zero();
-  double total = 0;
-  for (std::size_t n = 0; n < from.size(); ++n) {
-    from_mean += weights[n] * from[n];
-    to_mean += weights[n] * to[n];
-    total += weights[n];
-  }
-  from_mean /= total;
-  to_mean /= total;
-  double dot = 0, square = 0;
-  for (std::size_t n = 0; n < from.size(); ++n) {
-    dot += weights[n] * (from[n] - from_mean).dot(to[n] - to_mean);
-    square += weights[n] * (from[n] - from_mean).squaredNorm();
-  }
-  Placement fit;
-  fit.scale = square > 0 ? std::max(dot / square, 0.0) : 0.0;
-  fit.translation = to_mean - fit.scale * from_mean;
-  return fit;
+// Of the calling thread, so that a busy machine makes nothing slower.
+double ThreadCpuSeconds() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) +
+         1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-std::vector<double> Distances(const std::vector<Vec3>& from,
-                              const std::vector<Vec3>& to,
-                              const Placement& fit) {
-  std::vector<double> distances;
-  distances.reserve(from.size());
-  for (std::size_t n = 0; n < from.size(); ++n) {
-    distances.push_back((to[n] - fit.scale * from[n] - fit.translation).norm());
-  }
-  return distances;
+std::string Decimals(double value, int count) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.*f", count, value);
+  return text;
 }
 
-// Of the placements that two centres fix, the one of least median distance;
-// then reweighted (Geman-McClure) least squares.
-Placement RobustFit(const std::vector<Vec3>& from,
-                    const std::vector<Vec3>& to) {
-  constexpr int kDraws = 200, kPolish = 20;
-  std::vector<double> weights(from.size(), 1.0);
-  Placement best = WeightedFit(from, to, weights);
-  double least = Median(Distances(from, to, best));
-  Random random(0);
-  const auto count = static_cast<std::uint32_t>(from.size());
-  for (int draw = 0; draw < kDraws; ++draw) {
-    const std::uint32_t a = random.Index(count), b = random.Index(count);
-    if (a == b) continue;
-    const Placement fit =
-        WeightedFit({from[a], from[b]}, {to[a], to[b]}, {1.0, 1.0});
-    const double median = Median(Distances(from, to, fit));
-    if (median < least) {
-      least = median;
-      best = fit;
-    }
-  }
-  for (int step = 0; step < kPolish; ++step) {
-    const std::vector<double> distances = Distances(from, to, best);
-    const double scale = 3 * Median(distances);
-    if (!(scale > 0)) break;
-    for (std::size_t n = 0; n < from.size(); ++n) {
-      weights[n] = 1 / std::pow(1 + std::pow(distances[n] / scale, 2), 2);
-    }
-    best = WeightedFit(from, to, weights);
-  }
-  return best;
-}
-
-double Spread(const std::vector<Vec3>& centers) {
-  Vec3 mean = Vec3::Zero();
-  for (const Vec3& center : centers) mean += center;
-  mean /= static_cast<double>(centers.size());
-  double squares = 0;
-  for (const Vec3& center : centers) squares += (center - mean).squaredNorm();
-  return std::sqrt(squares / static_cast<double>(centers.size()));
-}
-
-/// A problem with its truth.
-struct SimulatedProblem {
-  TranslationProblem problem;
-  std::vector<Vec3> true_centers;
-  Mat3 truth_from_solved = Mat3::Identity();
-};
-
-Result<SimulatedProblem> MakeProblem(const RobustnessLevel& level,
-                                     std::uint64_t seed,
-                                     const RunContext& context) {
-  SyntheticOptions options = level.scene;
-  options.seed = seed;
-  auto synthetic = Simulate(options);
-  if (!synthetic) return tl::unexpected<Error>(synthetic.error());
-  Scene& scene = synthetic->scene;
-  std::map<ViewId, Mat3> rotations;
-  std::vector<ViewPair> excluded;
-  if (level.has_features) {
-    const auto averaged = AverageSceneRotations(scene, PoseOptions(), context);
-    if (!averaged) return tl::unexpected<Error>(averaged.error());
-    auto ratios = EstimateScaleRatios(scene, level.scale, context);
-    if (!ratios) return tl::unexpected<Error>(ratios.error());
-    scene.scale_ratios = std::move(*ratios);
-    rotations = averaged->cam_from_world;
-    for (const OutlierEdge& edge : averaged->outliers) {
-      excluded.push_back(edge.views);
-    }
-  } else {
-    SimulatedRatioOptions ratios = level.ratios;
-    ratios.seed = seed;
-    const Status drawn = SimulateRatios(ratios, &*synthetic);
-    if (!drawn) return tl::unexpected<Error>(drawn.error());
-    for (const auto& [view, pose] : synthetic->true_poses) {
-      rotations[view] = pose.rotation;
-    }
-  }
-  SimulatedProblem made;
-  made.problem = MakeTranslationProblem(scene, rotations, excluded, {},
-                                        /*with_tracks=*/level.has_features);
-  Mat3 sum = Mat3::Zero();
-  for (const auto& [view, rotation] : rotations) {
-    sum += synthetic->true_poses.at(view).rotation.transpose() * rotation;
-    made.true_centers.push_back(synthetic->true_poses.at(view).center);
-  }
-  made.truth_from_solved = NearestRotation(sum);
-  return made;
-}
-
-bool TakesAnySize(const std::string& strategy) {
-  return strategy == "graph" || strategy == "chain";
-}
-
-RobustnessOutcome Try(const std::string& name, const SimulatedProblem& made,
-                      const RobustnessLevel& level,
-                      const RobustnessOptions& options,
-                      const RunContext& context) {
+RobustnessOutcome Missing(RobustnessStatus status, int num_views,
+                          std::string note) {
   RobustnessOutcome outcome;
-  const auto finish = [&](const std::string& note) {
-    outcome.strategy = name;
-    outcome.num_views = level.scene.num_views;
-    outcome.note = note;
-    return outcome;
-  };
+  outcome.status = status;
+  outcome.num_views = num_views;
   outcome.median_error = HUGE_VAL;
-  const auto averager = MakeTranslationAverager(name);
-  if (!averager) return finish(averager.error().message);
-  if ((*averager)->NeedsTracks() && !level.has_features) {
-    return finish("not asked: it needs point tracks");
-  }
-  if (!TakesAnySize(name) &&
-      level.scene.num_views > options.max_views_of_others) {
-    return finish("not asked: too many views");
-  }
-  outcome.was_asked = true;
-  const auto solution = (*averager)->Solve(made.problem, context);
-  if (!solution) return finish(solution.error().message);
-  outcome = JudgeCenters(made.true_centers, level.scene.num_views, *solution,
-                         made.truth_from_solved, options.tolerance);
-  outcome.was_asked = true;
-  return finish(outcome.num_placed < level.scene.num_views
-                    ? "a view needs " + std::string((*averager)->Needs())
-                    : "");
+  outcome.note = std::move(note);
+  return outcome;
 }
+
+void DropRepetitions(std::vector<std::string>* names) {
+  std::vector<std::string> kept;
+  for (const std::string& name : *names) {
+    if (std::find(kept.begin(), kept.end(), name) == kept.end()) {
+      kept.push_back(name);
+    }
+  }
+  *names = std::move(kept);
+}
+
+/// The work of one start: what is missing, and how much of it is done.
+class StudyRun {
+ public:
+  StudyRun(const RunContext& context, const RobustnessSinks& sinks,
+           RobustnessStudy* study)
+      : context_(context), sinks_(sinks), study_(study) {
+    for (std::size_t s = 0; s < study_->scenarios.size(); ++s) {
+      for (const RobustnessKey& key : MissingCells(s)) {
+        ++num_cells_;
+        work_left_ += WorkOf(key);
+      }
+    }
+    work_ = work_left_;
+  }
+
+  Status RunScenario(std::size_t scenario) {
+    const std::vector<RobustnessKey> missing = MissingCells(scenario);
+    if (!missing.empty()) {
+      const Status simulated = SimulateProblems(missing);
+      if (!simulated) return simulated;
+    }
+    // Where levels differ in size, what a level shows decides who is asked for
+    // the next.
+    const RobustnessScenario& info = study_->scenarios[scenario];
+    for (auto begin = missing.begin(); begin != missing.end();) {
+      const std::size_t level = begin->level;
+      const auto end =
+          !info.levels_grow
+              ? missing.end()
+              : std::find_if(begin, missing.end(), [&](const auto& key) {
+                  return key.level != level;
+                });
+      const Status tried = TryCells({begin, end});
+      if (!tried) return tried;
+      begin = end;
+    }
+    problems_.clear();
+    return sinks_.scenario ? sinks_.scenario(*study_, scenario) : Status();
+  }
+
+ private:
+  using Trial = std::tuple<std::size_t, std::size_t, std::uint64_t>;
+
+  const RobustnessLevel& LevelOf(const RobustnessKey& key) const {
+    return study_->scenarios[key.scenario].levels[key.level];
+  }
+  // About how long a cell takes, in no unit.
+  double WorkOf(const RobustnessKey& key) const {
+    const RobustnessLevel& level = LevelOf(key);
+    return level.scene.num_views * (level.has_features ? 5.0 : 1.0);
+  }
+
+  std::vector<RobustnessKey> MissingCells(std::size_t scenario) const {
+    std::vector<RobustnessKey> cells;
+    RobustnessKey key;
+    key.scenario = scenario;
+    const std::size_t num_levels = study_->scenarios[scenario].levels.size();
+    for (key.level = 0; key.level < num_levels; ++key.level) {
+      for (int n = 0; n < study_->options.num_seeds; ++n) {
+        key.seed = context_.seed + static_cast<std::uint64_t>(n);
+        for (key.strategy = 0; key.strategy < study_->options.strategies.size();
+             ++key.strategy) {
+          if (study_->outcomes.count(key) == 0) cells.push_back(key);
+        }
+      }
+    }
+    return cells;
+  }
+
+  // Progress under another name, in cells of the whole study.
+  RunContext Watched(const std::string& what) {
+    RunContext watched = context_;
+    watched.progress = [this, what](const std::string&, std::size_t,
+                                    std::size_t) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      stopped_ = stopped_ ||
+                 !context_.Progress(what + TimeLeft(), num_done_, num_cells_);
+      return !stopped_ && failed_.has_value();
+    };
+    return watched;
+  }
+
+  std::string TimeLeft() const {
+    const double seconds =
+        std::chrono::duration<double>(Clock::now() - start_).count();
+    if (seconds < 5 || work_left_ >= work_) return ":";
+    const double left = seconds * work_left_ / (work_ - work_left_);
+    if (left < 90) return ", about " + Decimals(left, 0) + " s left:";
+    return ", about " + Decimals(left / 60, 0) + " min left:";
+  }
+
+  Status SimulateProblems(const std::vector<RobustnessKey>& missing) {
+    std::set<Trial> wanted;
+    for (const RobustnessKey& key : missing) {
+      wanted.emplace(key.scenario, key.level, key.seed);
+    }
+    for (const Trial& trial : wanted) problems_.emplace(trial, std::nullopt);
+    std::vector<std::pair<const Trial, Problem>*> slots;
+    for (auto& entry : problems_) slots.push_back(&entry);
+    const std::string& name = study_->scenarios[missing.front().scenario].Id();
+    // The largest come last: begin with them.
+    return ParallelFor(Watched("simulating " + name), "simulating",
+                       slots.size(), [&](std::size_t n) {
+                         auto& [trial, problem] = *slots[slots.size() - 1 - n];
+                         const auto& [scenario, level, seed] = trial;
+                         RunContext alone;
+                         alone.num_threads = 1;
+                         alone.seed = seed;
+                         problem = SimulateProblem(
+                             study_->scenarios[scenario].levels[level], seed,
+                             alone);
+                       });
+  }
+
+  Status TryCells(const std::vector<RobustnessKey>& cells) {
+    const Status tried = ParallelFor(
+        Watched(study_->scenarios[cells.front().scenario].Id()), "trying",
+        cells.size(), [&](std::size_t n) {
+          const std::optional<RobustnessOutcome> outcome = Try(cells[n]);
+          const std::lock_guard<std::mutex> lock(mutex_);
+          if (!outcome || !failed_) return;
+          study_->outcomes[cells[n]] = *outcome;
+          ++num_done_;
+          work_left_ -= WorkOf(cells[n]);
+          if (sinks_.cell) failed_ = sinks_.cell(cells[n], *outcome);
+        });
+    return failed_ ? tried : failed_;
+  }
+
+  // A smaller problem of the scenario that took the strategy too long.
+  bool WasOverTime(const RobustnessKey& key) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return study_->scenarios[key.scenario].levels_grow &&
+           std::any_of(study_->outcomes.begin(), study_->outcomes.end(),
+                       [&](const auto& entry) {
+                         return entry.first.scenario == key.scenario &&
+                                entry.first.level < key.level &&
+                                entry.first.strategy == key.strategy &&
+                                entry.second.status ==
+                                    RobustnessStatus::kOverTime;
+                       });
+  }
+
+  // Nothing if the study is to stop.
+  std::optional<RobustnessOutcome> Try(const RobustnessKey& key) {
+    const RobustnessOptions& options = study_->options;
+    const RobustnessLevel& level = LevelOf(key);
+    const int num_views = level.scene.num_views;
+    const auto averager =
+        MakeTranslationAverager(options.strategies[key.strategy]);
+    if (!averager) {
+      return Missing(RobustnessStatus::kFailed, num_views,
+                     averager.error().message);
+    }
+    if ((*averager)->NeedsTracks() && !level.has_features) {
+      return Missing(RobustnessStatus::kNotAsked, num_views,
+                     "needs point tracks");
+    }
+    if (WasOverTime(key)) {
+      return Missing(RobustnessStatus::kNotAsked, num_views,
+                     "a smaller problem took it too long");
+    }
+    const Problem& problem = problems_.at({key.scenario, key.level, key.seed});
+    if (!*problem) {
+      return Missing(RobustnessStatus::kFailed, num_views,
+                     problem->error().message);
+    }
+    const SimulatedProblem& made = **problem;
+    const double start = ThreadCpuSeconds();
+    RunContext alone;
+    alone.num_threads = 1;
+    alone.seed = key.seed;
+    alone.progress = [&](const std::string&, std::size_t, std::size_t) {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      return !stopped_ && ThreadCpuSeconds() - start < options.time_limit_s;
+    };
+    const auto solution = (*averager)->Solve(made.problem, alone);
+    const double seconds = ThreadCpuSeconds() - start;
+    RobustnessOutcome outcome;
+    if (seconds >= options.time_limit_s) {
+      outcome =
+          Missing(RobustnessStatus::kOverTime, num_views,
+                  "took more than " + Decimals(options.time_limit_s, 1) + " s");
+    } else if (!solution) {
+      if (solution.error().code == ErrorCode::kCancelled) return std::nullopt;
+      outcome = Missing(RobustnessStatus::kFailed, num_views,
+                        solution.error().message);
+    } else {
+      outcome = JudgeCenters(made.true_centers, num_views, *solution,
+                             made.truth_from_solved, options.tolerance);
+      if (outcome.num_placed < num_views) {
+        outcome.note = "a view needs " + (*averager)->Needs();
+      }
+    }
+    outcome.seconds = seconds;
+    return outcome;
+  }
+
+  using Problem = std::optional<Result<SimulatedProblem>>;
+
+  const RunContext& context_;
+  const RobustnessSinks& sinks_;
+  RobustnessStudy* study_;
+  std::map<Trial, Problem> problems_;
+  const Clock::time_point start_ = Clock::now();
+
+  std::mutex mutex_;  // of what follows, and of study_->outcomes
+  Status failed_;
+  bool stopped_ = false;
+  std::size_t num_cells_ = 0, num_done_ = 0;
+  double work_ = 0, work_left_ = 0;
+};
 
 }  // namespace
+
+bool operator<(const RobustnessKey& a, const RobustnessKey& b) {
+  return std::tie(a.scenario, a.level, a.seed, a.strategy) <
+         std::tie(b.scenario, b.level, b.seed, b.strategy);
+}
 
 Status RobustnessOptions::Validate() const {
   const auto invalid = [](const std::string& message) {
@@ -189,6 +280,7 @@ Status RobustnessOptions::Validate() const {
   };
   if (num_seeds < 1) return invalid("the number of seeds must be positive");
   if (!(tolerance > 0)) return invalid("the tolerance must be positive");
+  if (!(time_limit_s > 0)) return invalid("the time limit must be positive");
   for (const std::string& name : scenarios) {
     const auto made = MakeRobustnessScenarios(name, quick);
     if (!made) return tl::unexpected<Error>(made.error());
@@ -200,35 +292,7 @@ Status RobustnessOptions::Validate() const {
   return {};
 }
 
-RobustnessOutcome JudgeCenters(const std::vector<Vec3>& truth, int num_views,
-                               const TranslationSolution& solution,
-                               const Mat3& truth_from_solved,
-                               double tolerance) {
-  RobustnessOutcome outcome;
-  outcome.num_views = num_views;
-  outcome.median_error = HUGE_VAL;
-  std::vector<Vec3> from, to;
-  for (std::size_t n = 0; n < truth.size(); ++n) {
-    if (solution.component[n] != 0) continue;
-    from.push_back(truth_from_solved * solution.center_in_world[n]);
-    to.push_back(truth[n]);
-  }
-  outcome.num_placed = static_cast<int>(from.size());
-  if (from.size() < 2) return outcome;
-  const double spread = Spread(truth);
-  const Placement fit = RobustFit(from, to);
-  std::vector<double> errors = Distances(from, to, fit);
-  for (double& error : errors) error /= spread;
-  errors.resize(static_cast<std::size_t>(num_views), HUGE_VAL);
-  outcome.num_right = static_cast<int>(
-      std::count_if(errors.begin(), errors.end(),
-                    [&](double error) { return error <= tolerance; }));
-  outcome.median_error = Median(std::move(errors));
-  return outcome;
-}
-
-Result<RobustnessStudy> StudyRobustness(const RobustnessOptions& options,
-                                        const RunContext& context) {
+Result<RobustnessStudy> PlanRobustnessStudy(const RobustnessOptions& options) {
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
@@ -240,6 +304,8 @@ Result<RobustnessStudy> StudyRobustness(const RobustnessOptions& options,
   if (options.strategies.empty()) {
     study.options.strategies = TranslationAveragerNames();
   }
+  DropRepetitions(&study.options.scenarios);
+  DropRepetitions(&study.options.strategies);
   for (const std::string& name : study.options.scenarios) {
     auto scenarios = MakeRobustnessScenarios(name, options.quick);
     if (!scenarios) return tl::unexpected<Error>(scenarios.error());
@@ -247,41 +313,18 @@ Result<RobustnessStudy> StudyRobustness(const RobustnessOptions& options,
       study.scenarios.push_back(std::move(each));
     }
   }
-  for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
-    for (std::size_t l = 0; l < study.scenarios[s].levels.size(); ++l) {
-      for (int n = 0; n < options.num_seeds; ++n) {
-        RobustnessTrial trial;
-        trial.scenario = s;
-        trial.level = l;
-        trial.seed = context.seed + static_cast<std::uint64_t>(n);
-        study.trials.push_back(std::move(trial));
-      }
-    }
-  }
-  std::vector<Status> failures(study.trials.size());
-  const Status done =
-      ParallelFor(context, "trials", study.trials.size(), [&](std::size_t t) {
-        RobustnessTrial& trial = study.trials[t];
-        const RobustnessLevel& level =
-            study.scenarios[trial.scenario].levels[trial.level];
-        RunContext alone;
-        alone.num_threads = 1;
-        alone.seed = trial.seed;
-        const auto made = MakeProblem(level, trial.seed, alone);
-        if (!made) {
-          failures[t] = tl::unexpected<Error>(made.error());
-          return;
-        }
-        for (const std::string& name : study.options.strategies) {
-          trial.outcomes.push_back(
-              Try(name, *made, level, study.options, alone));
-        }
-      });
-  if (!done) return tl::unexpected<Error>(done.error());
-  for (const Status& failure : failures) {
-    if (!failure) return tl::unexpected<Error>(failure.error());
-  }
   return study;
+}
+
+Status RunRobustnessStudy(const RunContext& context,
+                          const RobustnessSinks& sinks,
+                          RobustnessStudy* study) {
+  StudyRun run(context, sinks, study);
+  for (std::size_t s = 0; s < study->scenarios.size(); ++s) {
+    const Status done = run.RunScenario(s);
+    if (!done) return done;
+  }
+  return {};
 }
 
 }  // namespace lowlap

@@ -1,12 +1,15 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
-#include "lowlap/averaging/translation_problem.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
+#include "lowlap/pipeline/robustness_outcome.h"
 #include "lowlap/pipeline/robustness_scenarios.h"
 
 namespace lowlap {
@@ -16,59 +19,49 @@ struct RobustnessOptions {
   std::vector<std::string> strategies;  // empty: all
   int num_seeds = 3;                    // simulations per level
   bool quick = false;
-  /// A centre is right within this share of the spread of the true centres
-  /// (the root of their mean squared distance from their mean).
+  /// A centre is right within this share of the spread of the true centres.
   double tolerance = 0.05;
-  /// Strategies that solve a program over all edges are not asked for graphs
-  /// with more views; ours and the plain chain always are.
-  int max_views_of_others = 300;
+  /// Processor time that a strategy has for one problem. One that takes longer
+  /// is stopped if it asks for leave to go on, else when it is done; it is
+  /// reported as over time, and not asked for larger problems of the scenario.
+  double time_limit_s = 20;
 
   Status Validate() const;
 };
 
-/// What a strategy made of one simulated problem. Views that are not in its
-/// largest component count as not placed.
-struct RobustnessOutcome {
-  std::string strategy;
-  int num_views = 0;
-  int num_placed = 0;
-  int num_right = 0;  // placed within the tolerance
-  /// Of all views, in shares of the spread; infinite if less than half of the
-  /// views are placed.
-  double median_error = 0;
-  /// Why it was not asked, what its error message was, or what it lacks to
-  /// place every view; else empty.
-  std::string note;
-  bool was_asked = false;
-};
-
-/// One simulation: a level of a scenario and a seed.
-struct RobustnessTrial {
+/// One strategy on one simulated problem.
+struct RobustnessKey {
   std::size_t scenario = 0;  // index into RobustnessStudy::scenarios
   std::size_t level = 0;
   std::uint64_t seed = 0;
-  std::vector<RobustnessOutcome> outcomes;  // in the order of the strategies
+  std::size_t strategy = 0;  // index into RobustnessOptions::strategies
 };
+bool operator<(const RobustnessKey& a, const RobustnessKey& b);
 
 struct RobustnessStudy {
   RobustnessOptions options;  // with the lists filled in
   std::vector<RobustnessScenario> scenarios;
-  std::vector<RobustnessTrial> trials;  // by scenario, level, seed
+  std::map<RobustnessKey, RobustnessOutcome> outcomes;
 };
 
-/// Centres of component 0 against the truth, after the scale and translation
-/// of the least median distance, polished: false centres do not move the right
-/// ones.
-/// `truth` has the views of the problem; of the `num_views` in all, those the
-/// problem has not are not placed either. Fills everything but strategy and
-/// note.
-RobustnessOutcome JudgeCenters(const std::vector<Vec3>& truth, int num_views,
-                               const TranslationSolution& solution,
-                               const Mat3& truth_from_solved, double tolerance);
+/// The study before anything was tried. Errors: invalid options.
+Result<RobustnessStudy> PlanRobustnessStudy(const RobustnessOptions& options);
 
-/// Every strategy on every trial, each on the same problem. The same for any
-/// number of threads. Errors: invalid options, kCancelled.
-Result<RobustnessStudy> StudyRobustness(const RobustnessOptions& options,
-                                        const RunContext& context);
+/// Told what is there, from one thread at a time; an error ends the study.
+struct RobustnessSinks {
+  /// In no fixed order.
+  std::function<Status(const RobustnessKey&, const RobustnessOutcome&)> cell;
+  /// All cells of the scenario of that index are there; in their order.
+  std::function<Status(const RobustnessStudy&, std::size_t)> scenario;
+};
+
+/// Fills the outcomes that are missing: every strategy on every level, with the
+/// seeds context.seed, context.seed + 1, ... All strategies get the same
+/// problem. Cells are shared out over the context's threads; the result is the
+/// same for any number of them, but for the seconds and what is over time.
+/// Progress is told in cells, with the time left. Errors: those of the sinks,
+/// kCancelled; then study->outcomes holds what was done.
+Status RunRobustnessStudy(const RunContext& context,
+                          const RobustnessSinks& sinks, RobustnessStudy* study);
 
 }  // namespace lowlap

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lowlap/core/median.h"
+#include "lowlap/pipeline/internal/csv_line.h"
 #include "lowlap/report/svg_plot.h"
 
 namespace lowlap {
@@ -31,15 +32,6 @@ std::string Number(double value, const char* format) {
   return text;
 }
 
-std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    if (c == '"') quoted += '"';
-    quoted += c == '\n' || c == '\r' ? ' ' : c;
-  }
-  return quoted + "\"";
-}
-
 std::string Joined(const std::vector<std::string>& words, char separator) {
   std::string text;
   for (const std::string& word : words) {
@@ -57,23 +49,6 @@ std::vector<std::string> Split(const std::string& text, char separator) {
     at = end + 1;
   }
   return words;
-}
-
-std::vector<std::string> SplitCsvLine(const std::string& line) {
-  std::vector<std::string> fields(1);
-  bool quoted = false;
-  for (std::size_t n = 0; n < line.size(); ++n) {
-    if (quoted && line[n] == '"' && n + 1 < line.size() && line[n + 1] == '"') {
-      fields.back() += line[n++];
-    } else if (line[n] == '"') {
-      quoted = !quoted;
-    } else if (line[n] == ',' && !quoted) {
-      fields.emplace_back();
-    } else {
-      fields.back() += line[n];
-    }
-  }
-  return fields;
 }
 
 template <class T, class Convert>
@@ -207,12 +182,13 @@ std::string ToCsvLine(const SubsetOutcome& outcome, const Scene& scene) {
   for (const std::string& field :
        {std::to_string(outcome.num_views), std::to_string(outcome.num_placed),
         error(outcome.mean_error), error(outcome.max_error),
-        known ? Quoted(scene.views.at(outcome.worst_view).filename)
+        known ? QuotedCsvField(scene.views.at(outcome.worst_view).filename)
               : std::string(),
         error(outcome.mean_error_before_adjustment),
         std::string(outcome.doubts.empty() ? "0" : "1"),
         Joined(outcome.doubts, ';'),
-        outcome.failure.empty() ? std::string() : Quoted(outcome.failure),
+        outcome.failure.empty() ? std::string()
+                                : QuotedCsvField(outcome.failure),
         Number(outcome.seconds, "%.2f")}) {
     line += "," + field;
   }

@@ -18,6 +18,7 @@ using Vec5 = Eigen::Matrix<double, 5, 1>;
 
 constexpr std::uint64_t kNoiseStream = 7'000'000'000;
 constexpr std::uint64_t kDirectionStream = 8'000'000'000;
+constexpr std::uint64_t kWrongPoseStream = 10'000'000'000;
 constexpr double kPriorRad = 0.3;
 
 std::uint64_t Stream(std::uint64_t base, const ViewPair& pair) {
@@ -108,6 +109,16 @@ void DrawWrongDirections(const SyntheticOptions& options, Scene* scene) {
   for (auto& [pair, edge] : scene->relative_poses) {
     Random random(options.seed, Stream(kDirectionStream, pair));
     if (random.Uniform() >= options.wrong_direction_share) continue;
+    edge.direction = DrawDirection(&random);
+  }
+}
+
+void DrawWrongPoses(const SyntheticOptions& options, Scene* scene) {
+  for (auto& [pair, edge] : scene->relative_poses) {
+    Random random(options.seed, Stream(kWrongPoseStream, pair));
+    if (random.Uniform() >= options.wrong_pose_share) continue;
+    const double angle = random.Uniform(0, kPi);
+    edge.rotation = RotationFromAngleAxis(angle * DrawDirection(&random));
     edge.direction = DrawDirection(&random);
   }
 }

@@ -155,6 +155,9 @@ SyntheticScene Build(const SyntheticOptions& options, double off_wall) {
   if (options.wrong_direction_share > 0) {
     internal::DrawWrongDirections(options, &synthetic.scene);
   }
+  if (options.wrong_pose_share > 0) {
+    internal::DrawWrongPoses(options, &synthetic.scene);
+  }
   return synthetic;
 }
 

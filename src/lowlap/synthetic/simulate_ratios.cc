@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "lowlap/core/random.h"
+#include "lowlap/geometry/rotation.h"
 #include "lowlap/synthetic/coplanar_truth.h"
 
 namespace lowlap {
@@ -17,6 +19,21 @@ std::uint64_t Stream(const ViewTriplet& views) {
   return kRatioStream + views.first * 1'000'000'000'039ull +
          views.middle * 1'000'003ull + views.last;
 }
+
+// Of the relative poses whose rotation is not the true one.
+std::set<ViewPair> WrongPoses(const SyntheticScene& synthetic) {
+  std::set<ViewPair> wrong;
+  for (const auto& [pair, edge] : synthetic.scene.relative_poses) {
+    const Mat3 truth = synthetic.true_poses.at(pair.second).rotation *
+                       synthetic.true_poses.at(pair.first).rotation.transpose();
+    if (RotationAngleBetween(edge.rotation, truth) > RadFromDeg(10)) {
+      wrong.insert(pair);
+    }
+  }
+  return wrong;
+}
+
+ViewPair PairOf(ViewId a, ViewId b) { return {std::min(a, b), std::max(a, b)}; }
 
 }  // namespace
 
@@ -40,6 +57,8 @@ Status SimulatedRatioOptions::Validate() const {
 Status SimulateRatios(const SimulatedRatioOptions& options,
                       SyntheticScene* synthetic) {
   if (const Status valid = options.Validate(); !valid) return valid;
+  std::set<ViewPair> wrong_poses;
+  if (options.wrong_beside_wrong_poses) wrong_poses = WrongPoses(*synthetic);
   std::vector<std::pair<std::uint64_t, ScaleRatio>> drawn;
   for (const ViewTriplet& views : TripletsOf(synthetic->scene)) {
     const std::optional<double> truth = synthetic->TrueLogRatio(views);
@@ -52,7 +71,10 @@ Status SimulateRatios(const SimulatedRatioOptions& options,
     ratio.log_ratio_stddev = options.log_stddev;
     ratio.log_ratio = *truth + random.Gaussian(options.log_stddev);
     ratio.log10_nfa = random.Uniform(-30, -5);
-    const bool is_wrong = random.Uniform() < options.wrong_share;
+    const bool is_wrong =
+        random.Uniform() < options.wrong_share ||
+        wrong_poses.count(PairOf(views.first, views.middle)) > 0 ||
+        wrong_poses.count(PairOf(views.middle, views.last)) > 0;
     const double size = random.Uniform(std::log(options.min_factor),
                                        std::log(options.max_factor));
     const double sign = random.Uniform() < 0.5 ? -1 : 1;

@@ -15,6 +15,9 @@ struct SimulatedRatioOptions {
   /// Share of the ratios that are wrong: off by a factor between min_factor and
   /// max_factor, up or down. They are as meaningful as the others.
   double wrong_share = 0.0;
+  /// So is every ratio of a relative pose whose rotation is more than 10
+  /// degrees off the true one.
+  bool wrong_beside_wrong_poses = false;
   double min_factor = 1.2;
   double max_factor = 7.0;
   /// An even random choice of so many triplets; 0: all.

@@ -69,6 +69,7 @@ Status SyntheticOptions::Validate() const {
       {"wrong_point_share", wrong_point_share},
       {"wrong_line_share", wrong_line_share},
       {"wrong_direction_share", wrong_direction_share},
+      {"wrong_pose_share", wrong_pose_share},
       {"wrong_candidate_share", wrong_candidate_share}};
   for (const auto& [name, value] : shares) {
     if (!(value >= 0 && value <= 1)) {

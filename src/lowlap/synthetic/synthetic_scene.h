@@ -87,6 +87,8 @@ struct SyntheticOptions {
   double pose_noise_factor = 0.0;
   /// Share of the relative poses whose direction is any direction.
   double wrong_direction_share = 0.0;
+  /// Share of the relative poses that are any rotation and any direction.
+  double wrong_pose_share = 0.0;
 
   int width_px = 1200;
   int height_px = 900;

@@ -19,5 +19,7 @@ void AddPoseNoiseOfPoints(const SyntheticOptions& options,
 /// SyntheticOptions::wrong_direction_share. A greater share replaces the same
 /// directions, and more.
 void DrawWrongDirections(const SyntheticOptions& options, Scene* scene);
+/// The same for SyntheticOptions::wrong_pose_share.
+void DrawWrongPoses(const SyntheticOptions& options, Scene* scene);
 
 }  // namespace lowlap::internal
