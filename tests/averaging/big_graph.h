@@ -17,6 +17,7 @@ namespace lowlap {
 enum class GraphShape {
   kStreet,  // every view with the four next ones: errors add up on the way
   kTown,    // views in a square, each with its nearest
+  kRandom,  // views in a box, each with any other: no order keeps it sparse
 };
 
 struct BigGraphOptions {
@@ -46,6 +47,15 @@ inline std::vector<std::pair<std::size_t, std::size_t>> PairsOfShape(
       for (std::size_t a = 0; a + step < n; ++a) {
         if (pairs.size() < options.num_edges) pairs.insert({a, a + step});
       }
+    }
+  } else if (options.shape == GraphShape::kRandom) {
+    Random random(options.seed + 1);
+    const auto any = [&]() -> std::size_t {
+      return random.Index(static_cast<std::uint32_t>(n));
+    };
+    while (pairs.size() < options.num_edges) {
+      const std::size_t a = any(), b = any();
+      if (a != b) pairs.insert({std::min(a, b), std::max(a, b)});
     }
   } else {
     // All pairs of a town, nearest first.
@@ -77,6 +87,9 @@ inline std::vector<Vec3> CentersOfShape(const BigGraphOptions& options,
     Vec3 center = RandomVector(random, 0.4);
     if (options.shape == GraphShape::kStreet) {
       center.x() += static_cast<double>(i);
+    } else if (options.shape == GraphShape::kRandom) {
+      const double extent = std::cbrt(static_cast<double>(n));
+      center = RandomVector(random, extent / 2);
     } else {
       const std::size_t row = i / side, place = i % side;
       center.x() += static_cast<double>(row % 2 ? side - 1 - place : place);
@@ -147,33 +160,39 @@ inline BigGraph MakeBigGraph(const BigGraphOptions& options) {
   return graph;
 }
 
-/// Median distance to the true centres after scale and translation are
-/// removed; views that are not in component 0 count as infinitely far.
-inline double MedianCenterError(const std::vector<Vec3>& truth,
+/// Median distance to the true centres after scale (the median over the edges)
+/// and translation (the median over the views) are removed, so that a few views
+/// far off have no say in it; views that are not in component 0 count as
+/// infinitely far.
+inline double MedianCenterError(const RandomProblem& made,
                                 const TranslationSolution& solution) {
-  Vec3 truth_mean = Vec3::Zero(), solved_mean = Vec3::Zero();
-  double count = 0;
-  for (std::size_t n = 0; n < truth.size(); ++n) {
-    if (solution.component[n] != 0) continue;
-    truth_mean += truth[n];
-    solved_mean += solution.center_in_world[n];
-    ++count;
+  const auto is_placed = [&](std::size_t n) {
+    return solution.component[n] == 0;
+  };
+  std::vector<double> scales;
+  for (const DirectionEdge& edge : made.problem.edges) {
+    if (!is_placed(edge.first) || !is_placed(edge.second)) continue;
+    scales.push_back(
+        (made.centers[edge.second] - made.centers[edge.first]).norm() /
+        (solution.center_in_world[edge.second] -
+         solution.center_in_world[edge.first])
+            .norm());
   }
-  truth_mean /= count;
-  solved_mean /= count;
-  double dot = 0, square = 0;
-  for (std::size_t n = 0; n < truth.size(); ++n) {
-    if (solution.component[n] != 0) continue;
-    const Vec3 offset = solution.center_in_world[n] - solved_mean;
-    dot += offset.dot(truth[n] - truth_mean);
-    square += offset.squaredNorm();
+  const double scale = Median(std::move(scales));
+  const auto offset = [&](std::size_t n) -> Vec3 {
+    return made.centers[n] - scale * solution.center_in_world[n];
+  };
+  Vec3 shift;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> offsets;
+    for (std::size_t n = 0; n < made.centers.size(); ++n) {
+      if (is_placed(n)) offsets.push_back(offset(n)(axis));
+    }
+    shift(axis) = Median(std::move(offsets));
   }
   std::vector<double> errors;
-  for (std::size_t n = 0; n < truth.size(); ++n) {
-    const Vec3 fitted =
-        truth_mean + dot / square * (solution.center_in_world[n] - solved_mean);
-    errors.push_back(solution.component[n] == 0 ? (truth[n] - fitted).norm()
-                                                : HUGE_VAL);
+  for (std::size_t n = 0; n < made.centers.size(); ++n) {
+    errors.push_back(is_placed(n) ? (offset(n) - shift).norm() : HUGE_VAL);
   }
   return Median(std::move(errors));
 }

@@ -43,8 +43,8 @@ TEST_P(BigGraphs, WrongRatiosHardlyCostAccuracy) {
 
   const auto oracle = averager.Solve(graph.oracle, RunContext());
   ASSERT_TRUE(oracle);
-  const double error = MedianCenterError(graph.made.centers, *solution);
-  const double best = MedianCenterError(graph.made.centers, *oracle);
+  const double error = MedianCenterError(graph.made, *solution);
+  const double best = MedianCenterError(graph.made, *oracle);
   RecordProperty("seconds", std::to_string(seconds));
   RecordProperty("error", std::to_string(error));
   RecordProperty("oracle_error", std::to_string(best));
@@ -53,7 +53,8 @@ TEST_P(BigGraphs, WrongRatiosHardlyCostAccuracy) {
 
 INSTANTIATE_TEST_SUITE_P(Shapes, BigGraphs,
                          ::testing::Values(GraphShape::kStreet,
-                                           GraphShape::kTown));
+                                           GraphShape::kTown,
+                                           GraphShape::kRandom));
 
 }  // namespace
 }  // namespace lowlap

@@ -51,8 +51,8 @@ class Writer {
         return "only weak scale ratios join them to the others: " +
                Triplets(doubt.ratios);
       case DoubtReason::kContradictedRatios:
-        return "one camera's scale ratios are all that gives them their "
-               "scale, and these disagree; rejected were: " +
+        return "the scale ratios that join them to the others disagree; "
+               "rejected were: " +
                Triplets(doubt.ratios);
       case DoubtReason::kLostFeatures:
         return "only " + std::to_string(static_cast<int>(100 * doubt.share)) +

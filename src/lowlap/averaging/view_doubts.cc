@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -81,6 +82,21 @@ class Agreement {
                         held.views.end(), std::back_inserter(weak.views));
     for (const std::size_t r : diagnosis->weak_ratios) {
       weak.ratios.push_back(graph.scale_ratios[r].views);
+    }
+    if (weak.ratios.empty()) {
+      // No ratio that agrees joins them; are there any that do not?
+      weak.reason = DoubtReason::kContradictedRatios;
+      for (const ScaleRatio& ratio : rejected_ratios_) {
+        const ViewTriplet& v = ratio.views;
+        for (const ViewId outer : {v.first, v.last}) {
+          if (!std::binary_search(weak.views.begin(), weak.views.end(),
+                                  outer)) {
+            continue;
+          }
+          weak.ratios.push_back(v);
+          break;
+        }
+      }
     }
     if (!weak.views.empty() && !weak.ratios.empty()) {
       doubts.push_back(std::move(weak));

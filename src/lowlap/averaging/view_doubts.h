@@ -15,8 +15,8 @@ enum class DoubtReason {
   /// Only ratios that are too weak to rely on alone (IsWeak) give the views the
   /// scale of the others.
   kWeakScale,
-  /// The views have their scale from the ratios across one camera, and these
-  /// disagree with one another.
+  /// The ratios that give the views the scale of the others, across one camera
+  /// or all of them, disagree with one another.
   kContradictedRatios,
   /// Most of what was matched in a view does not fit its pose.
   kLostFeatures,
