@@ -120,13 +120,16 @@ std::vector<FloatingPart> FindFloating(const Scene& scene,
     const RigidGroup& group = report.groups[g];
     FloatingPart part;
     part.views = group.views;
-    std::size_t meets = g;
+    // The largest group that it shares a camera with, a larger one if it can
+    // be.
+    std::size_t meets = report.groups.size();
     for (const Hinge& hinge : report.hinges) {
       if (!Holds(group, hinge.view)) continue;
-      const std::size_t largest = hinge.groups.front();
-      if (largest >= meets) continue;
-      meets = largest;
-      part.meets_in = hinge.view;
+      for (const std::size_t other : hinge.groups) {
+        if (other == g || other >= meets) continue;
+        meets = other;
+        part.meets_in = hinge.view;
+      }
     }
     if (part.meets_in == kInvalidId) {
       FindNearest(report.groups[0].views, group.views, &part);

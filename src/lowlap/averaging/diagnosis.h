@@ -38,11 +38,11 @@ struct ScaleHinge {
 /// Views that share no scale with the largest group.
 struct FloatingPart {
   std::vector<ViewId> views;  // sorted
-  /// A camera that it shares with a larger group, the largest if there is a
-  /// choice. kInvalidId: it shares none.
+  /// A camera that it shares with another group, the largest if there is a
+  /// choice (which may float too). kInvalidId: it shares none.
   ViewId meets_in = kInvalidId;
-  /// What lies on either side of the gap. With `meets_in`: the views of the
-  /// larger group and of the part that have the most matches with it. Without:
+  /// What lies on either side of the gap. With `meets_in`: the views of that
+  /// other group and of the part that have the most matches with it. Without:
   /// the view of the largest group and that of the part whose ids are nearest.
   ViewId near_group = kInvalidId;
   ViewId near_part = kInvalidId;

@@ -72,9 +72,9 @@ class Writer {
     std::string text = "  " + Names(part.views) + ": ";
     if (part.meets_in == kInvalidId) {
       return text + "no relative pose joins " +
-             (part.views.size() == 1 ? "it" : "them") + " to the largest group";
+             (part.views.size() == 1 ? "it" : "them") + " to any other view";
     }
-    text += "joined to other views only in " + Name(part.meets_in) +
+    text += "joined to other views in " + Name(part.meets_in) +
             ", and no ratio across it is meaningful";
     if (part.rejected_ratio) {
       text += "; the best: " + Ratio(*part.rejected_ratio);
@@ -180,12 +180,15 @@ std::string ToText(const Diagnosis& diagnosis, const Scene& scene) {
   const Writer writer(diagnosis, scene);
   std::string text = writer.Verdict() + "\n";
   if (diagnosis.by_ratios.groups.empty()) return text;
+  const std::size_t by_directions = diagnosis.by_directions.groups.size();
   text +=
-      "\nviews that share a scale, by directions and ratios (directions "
-      "alone: " +
-      std::to_string(diagnosis.by_directions.groups.size()) +
-      (diagnosis.by_directions.groups.size() == 1 ? " group):\n"
-                                                  : " groups):\n");
+      by_directions == 1
+          ? "\nviews that share a scale, by the directions of their relative "
+            "poses alone:\n"
+          : "\nviews that share a scale, by directions and ratios (directions "
+            "alone leave " +
+                std::to_string(by_directions) +
+                " groups); where groups meet, a view is in each:\n";
   AddGroups(writer, diagnosis.by_ratios, &text);
   const auto section = [&](const std::string& title,
                            const std::vector<std::string>& lines) {
@@ -205,6 +208,14 @@ std::string ToText(const Diagnosis& diagnosis, const Scene& scene) {
   }
   for (const std::string& sentence : writer.Advice()) {
     advice.push_back("  " + sentence);
+  }
+  if (!diagnosis.hinges.empty() || !diagnosis.weak_ratios.empty() ||
+      !diagnosis.floating.empty()) {
+    text +=
+        "\nA ratio a - b - c says how long b to c is, measured by a to b. "
+        "Inliers are the\npoints, lines and pairs of lines that agree on it, "
+        "+- is its deviation, and log10\nNFA how often chance does as well: "
+        "0 once, -3 in one of a thousand cases.\n";
   }
   section("floating, with a scale of their own", floating);
   section("hinges: one camera is all that holds these views", hinges);
