@@ -1,7 +1,12 @@
+#include <unistd.h>
+
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "cli/command.h"
@@ -48,6 +53,7 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
   for (const std::string& kind : flags.solve.scale.features) {
     text += " " + kind;
   }
+  text += flags.solve.scale.coplanar_points ? " plane-points" : "";
   text += flags.solve.no_adjust ? "\nno adjustment" : "\nadjustment";
   for (const std::string& kind : flags.solve.adjust_features) {
     text += " " + kind;
@@ -119,8 +125,48 @@ int Finish(std::vector<SubsetOutcome> outcomes, const Scene& scene,
   return 0;
 }
 
+// How long `left` more take if each takes as long as those before.
+std::string TimeLeft(double seconds, std::size_t done, std::size_t left) {
+  if (done == 0) return "";
+  const double minutes =
+      seconds / 60 * static_cast<double>(left) / static_cast<double>(done);
+  char text[48];
+  if (minutes < 1.5) return " (a minute left)";
+  std::snprintf(text, sizeof text,
+                minutes < 90 ? " (%.0f minutes left)" : " (%.1f hours left)",
+                minutes < 90 ? minutes : minutes / 60);
+  return text;
+}
+
+// Adds the time left to the progress of the subsets; where no one watches it, a
+// note after each tenth.
+void EstimateTimeLeft(RunContext* context) {
+  using Clock = std::chrono::steady_clock;
+  struct State {
+    std::optional<Clock::time_point> start;
+    std::size_t noted = 0;
+  };
+  const auto state = std::make_shared<State>();
+  context->progress =
+      [state, plain = *context, watched = ::isatty(STDERR_FILENO) != 0](
+          const std::string& stage, std::size_t done, std::size_t total) {
+        if (stage != "subsets") return plain.Progress(stage, done, total);
+        if (!state->start) state->start = Clock::now();
+        const double seconds =
+            std::chrono::duration<double>(Clock::now() - *state->start).count();
+        const std::string left = TimeLeft(seconds, done, total - done);
+        if (!watched && done < total && 10 * done / total > state->noted) {
+          state->noted = 10 * done / total;
+          plain.Log(LogLevel::kInfo, "subsets: " + std::to_string(done) +
+                                         " of " + std::to_string(total) + left);
+        }
+        return plain.Progress(stage + left, done, total);
+      };
+}
+
 int Subsets(const Flags& flags) {
   RunContext context = MakeContext(flags.common);
+  EstimateTimeLeft(&context);
   if (flags.jobs > 0) context.num_threads = flags.jobs;
   auto options = MakeSolveOptions(flags.solve);
   if (!options) return Fail(options.error());
