@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <memory>
 #include <ostream>
+#include <string>
 
 #include "cli/command.h"
 #include "cli/scene_input.h"
@@ -32,35 +33,59 @@ Status WriteProfiles(const std::string& path,
     out << "first,middle,last,what,log_ratio,log10_nfa,points,lines,coplanar\n";
     for (const RatioProfile& profile : profiles) {
       const auto start = [&](const char* what, double log_ratio) {
-        out << profile.views.first << ',' << profile.views.middle << ','
-            << profile.views.last << ',' << what << ',' << log_ratio;
+        const ViewTriplet& views = profile.ratio.views;
+        out << views.first << ',' << views.middle << ',' << views.last << ','
+            << what << ',' << log_ratio;
       };
       const auto write = [&](const char* what, const RatioOptimum& optimum) {
         start(what, optimum.log_ratio);
         const RatioNfa& nfa = optimum.nfa;
         out << ',' << nfa.log10_nfa << ',' << nfa.points.log10_nfa << ','
-            << nfa.lines.log10_nfa << ',' << nfa.coplanar.log10_nfa << '\n';
+            << nfa.lines.log10_nfa << ','
+            << nfa.coplanar.log10_nfa + nfa.plane_points.log10_nfa << '\n';
       };
       if (profile.nodes.empty()) continue;
       write("mode", profile.mode);
       if (profile.second_mode) write("second mode", *profile.second_mode);
-      start("interval low", profile.interval_low);
+      start("interval low", profile.ratio.IntervalLow());
       out << ",,,,\n";
-      start("interval high", profile.interval_high);
+      start("interval high", profile.ratio.IntervalHigh());
       out << ",,,,\n";
       // Shares of the information in the columns of the kinds.
-      start("information", profile.log_ratio);
-      const auto& share = profile.information_share;
-      out << ",," << share[0] << ',' << share[1] << ',' << share[2] << '\n';
+      const ScaleRatio& ratio = profile.ratio;
+      start("information", ratio.log_ratio);
+      out << ",," << ratio.points.information_share << ','
+          << ratio.lines.information_share << ','
+          << ratio.coplanar.information_share << '\n';
       for (const RatioOptimum& node : profile.nodes) write("node", node);
     }
     return {};
   });
 }
 
+// "60/30/10": percent of the information of points, lines and coplanar pairs.
+std::string InformationText(const ScaleRatio& ratio) {
+  const auto percent = [](const KindSupport& kind) {
+    return std::to_string(std::lround(100 * kind.information_share));
+  };
+  return percent(ratio.points) + '/' + percent(ratio.lines) + '/' +
+         percent(ratio.coplanar);
+}
+
+// "ratio (log10 NFA)".
+std::string SecondModeText(const ScaleRatio& ratio) {
+  if (!ratio.second_mode) return "-";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.4f (%.1f)",
+                std::exp(ratio.second_mode->log_ratio),
+                ratio.second_mode->log10_nfa);
+  return text;
+}
+
 void PrintTable(const std::vector<ScaleRatio>& ratios) {
-  std::printf("%-17s %9s %9s %9s %13s %13s %13s  %s\n", "views", "ratio",
-              "+- log", "log10 NFA", "points", "lines", "coplanar", "verdict");
+  std::printf("%-12s %9s %9s %9s %9s %11s %11s %11s %10s %16s  %s\n", "views",
+              "ratio", "95% from", "to", "log10 NFA", "points", "lines",
+              "coplanar", "info %", "second mode", "verdict");
   for (const ScaleRatio& r : ratios) {
     const auto support = [](const KindSupport& kind) {
       return std::to_string(kind.inliers) + "/" +
@@ -69,10 +94,12 @@ void PrintTable(const std::vector<ScaleRatio>& ratios) {
     const std::string views = std::to_string(r.views.first) + "-" +
                               std::to_string(r.views.middle) + "-" +
                               std::to_string(r.views.last);
-    std::printf("%-17s %9.4f %9.4f %9.1f %13s %13s %13s  %s\n", views.c_str(),
-                std::exp(r.log_ratio), r.log_ratio_stddev, r.log10_nfa,
+    std::printf("%-12s %9.4f %9.4f %9.4f %9.1f %11s %11s %11s %10s %16s  %s\n",
+                views.c_str(), std::exp(r.log_ratio), std::exp(r.IntervalLow()),
+                std::exp(r.IntervalHigh()), r.log10_nfa,
                 support(r.points).c_str(), support(r.lines).c_str(),
-                support(r.coplanar).c_str(), RatioVerdictName(r.verdict));
+                support(r.coplanar).c_str(), InformationText(r).c_str(),
+                SecondModeText(r).c_str(), RatioVerdictName(r.verdict));
   }
 }
 

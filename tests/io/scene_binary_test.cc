@@ -67,8 +67,8 @@ TEST(Crc32, AgreesWithThePublishedCheckValues) {
 TEST(SceneBinary, LayoutOfTheHeader) {
   const std::string bytes = FullSceneBytes();
   EXPECT_EQ(bytes.substr(0, 8), "\x89LOWLAP\n");
-  EXPECT_EQ(LittleEndian(bytes, 8, 4), 2u);
-  EXPECT_EQ(LittleEndian(bytes, 12, 4), 13u);
+  EXPECT_EQ(LittleEndian(bytes, 8, 4), 3u);
+  EXPECT_EQ(LittleEndian(bytes, 12, 4), 14u);
   EXPECT_EQ(bytes.substr(16, 4), "ROOT");
   const std::string root = Payload(bytes, "ROOT");
   EXPECT_EQ(LittleEndian(root, 0, 8), FullScene().root_path.size());
@@ -149,10 +149,28 @@ TEST(SceneBinary, ForeignAndNewerFiles) {
               IsError(ErrorCode::kParse, "not a .lowlap file"));
   EXPECT_THAT(ParseSceneBinary(bytes + "x"),
               IsError(ErrorCode::kParse, "follows the last section"));
-  bytes[8] = 3;
+  bytes[8] = 4;
   EXPECT_THAT(ParseSceneBinary(bytes, "new.lowlap"),
               IsError(ErrorCode::kUnsupported,
-                      "new.lowlap: byte 8: version 3 is not 2"));
+                      "new.lowlap: byte 8: version 4 is not 2 or 3"));
+}
+
+// Version 2 ends before the details of the scale ratios.
+TEST(SceneBinary, OlderFilesHaveNoDetailsOfTheRatios) {
+  std::string bytes = FullSceneBytes();
+  bytes.resize(SectionOffset(bytes, "RATD"));
+  bytes[8] = 2;
+  bytes[12] = 13;
+  const Result<Scene> scene = ParseSceneBinary(bytes);
+  ASSERT_TRUE(scene.has_value());
+  Scene expected = FullScene();
+  for (ScaleRatio& ratio : expected.scale_ratios) {
+    ratio.second_mode.reset();
+    for (KindSupport* kind : {&ratio.points, &ratio.lines, &ratio.coplanar}) {
+      kind->information_share = 0;
+    }
+  }
+  EXPECT_EQ(*scene, expected);
 }
 
 TEST(SceneBinary, DamageIsLocated) {

@@ -35,6 +35,34 @@ TEST(SceneFiles, FullSceneSurvivesBothForms) {
   EXPECT_EQ(*FormatSceneJson(*from_bytes), *text);
 }
 
+// Version 2 had neither second modes nor shares of information.
+TEST(SceneFiles, OlderTextIsReadWithoutDetailsOfTheRatios) {
+  Scene scene = FullScene();
+  for (ScaleRatio& ratio : scene.scale_ratios) {
+    ratio.second_mode.reset();
+    for (KindSupport* kind : {&ratio.points, &ratio.lines, &ratio.coplanar}) {
+      kind->information_share = 0;
+    }
+  }
+  std::string text = *FormatSceneJson(scene);
+  const auto replace_all = [&](const std::string& from, const std::string& to) {
+    int count = 0;
+    for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos;
+         ++count) {
+      text.replace(at, from.size(), to);
+    }
+    return count;
+  };
+  EXPECT_EQ(replace_all("\"version\": 3", "\"version\": 2"), 1);
+  EXPECT_EQ(replace_all(",\"information_share\":0", "") +
+                replace_all(", \"information_share\": 0", "") +
+                replace_all(",\"information_share\": 0", ""),
+            3 * static_cast<int>(scene.scale_ratios.size()));
+  const Result<Scene> read = ParseSceneJson(text);
+  ASSERT_THAT(read, IsOk());
+  EXPECT_EQ(*read, scene);
+}
+
 TEST(SceneFiles, EmptySceneSurvivesBothForms) {
   const Result<Scene> from_text = ParseSceneJson(*FormatSceneJson(Scene()));
   const Result<Scene> from_bytes =

@@ -1,15 +1,19 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
+#include <string>
 
-#include "lowlap/core/random.h"
-#include "lowlap/scale/scale_estimator.h"
-#include "scale/synthetic_triplet.h"
+#include "scale/interval_classes.h"
 
 namespace lowlap {
 namespace {
 
+using testing::AllIntervalClasses;
+using testing::IntervalClass;
+using testing::IntervalCoverage;
 using testing::MakeSyntheticTriplet;
+using testing::MeasureCoverage;
 using testing::SyntheticTriplet;
 using testing::SyntheticTripletOptions;
 
@@ -56,6 +60,27 @@ TEST(RatioInterval, HoldsTheTruthAsOftenAsItSays) {
   EXPECT_LE(inside, 0.97 * meaningful);
   RecordProperty("meaningful", meaningful);
   RecordProperty("inside", inside);
+}
+
+// By kind, noise, share of wrong features and poses, one at a time; the table
+// of all combinations is in interval_classes_slow_test.cc.
+TEST(RatioInterval, HoldsTheTruthWhateverTheClass) {
+  std::map<std::string, IntervalCoverage> groups;
+  std::uint64_t class_seed = 1;
+  for (const IntervalClass& of : AllIntervalClasses()) {
+    const IntervalCoverage coverage =
+        MeasureCoverage(of, 60, 120, class_seed++);
+    groups[of.Kinds()].Add(coverage);
+    groups["noise of " + std::to_string(of.noise_px)].Add(coverage);
+    groups["share " + std::to_string(of.wrong_share)].Add(coverage);
+    groups[of.noisy_poses ? "noisy poses" : "true poses"].Add(coverage);
+  }
+  ASSERT_EQ(groups.size(), 12u);
+  for (const auto& [name, coverage] : groups) {
+    EXPECT_GE(coverage.right, 700) << name;
+    EXPECT_GE(coverage.Share(), 0.93) << name;
+    EXPECT_LE(coverage.Share(), 0.97) << name;
+  }
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "scale/synthetic_triplet.h"
 
@@ -42,8 +41,8 @@ TEST(RatioProfile, TheModeIsTheLeastOfTheNodes) {
                 profile.mode.nfa.log10_nfa - 0.01);
     }
     EXPECT_NEAR(profile.mode.log_ratio, triplet.true_log_ratio, 0.02);
-    EXPECT_LT(profile.interval_low, profile.log_ratio);
-    EXPECT_GT(profile.interval_high, profile.log_ratio);
+    EXPECT_LT(profile.ratio.IntervalLow(), profile.ratio.log_ratio);
+    EXPECT_GT(profile.ratio.IntervalHigh(), profile.ratio.log_ratio);
     if (!profile.second_mode) continue;
     // There is a pass between the two.
     const auto [low, high] =
@@ -60,17 +59,19 @@ TEST(RatioProfile, TheModeIsTheLeastOfTheNodes) {
 
 TEST(RatioProfile, SharesOfInformationAreThoseOfTheKindsThatThereAre) {
   const SyntheticTriplet triplet = MakeSyntheticTriplet(Mixed(), 1);
-  const auto& share = Profile(triplet.view).information_share;
-  EXPECT_NEAR(std::accumulate(share.begin(), share.end(), 0.0), 1, 1e-12);
-  for (const FeatureKind kind :
-       {FeatureKind::kPoint, FeatureKind::kLine, FeatureKind::kCoplanar}) {
-    EXPECT_GT(share[static_cast<std::size_t>(kind)], 0);
+  const ScaleRatio ratio = Profile(triplet.view).ratio;
+  EXPECT_NEAR(ratio.points.information_share + ratio.lines.information_share +
+                  ratio.coplanar.information_share,
+              1, 1e-12);
+  for (const KindSupport* kind :
+       {&ratio.points, &ratio.lines, &ratio.coplanar}) {
+    EXPECT_GT(kind->information_share, 0);
   }
   SyntheticTripletOptions points;
   points.num_points = 20;
   points.noise_px = 0.5;
   const RatioProfile only = Profile(MakeSyntheticTriplet(points, 1).view);
-  EXPECT_EQ(only.information_share[0], 1);
+  EXPECT_EQ(only.ratio.points.information_share, 1);
 }
 
 // Two groups of points, each right about a ratio of its own.
@@ -101,6 +102,22 @@ TEST(RatioProfile, TheSecondModeIsTheRatioOfTheSmallerGroup) {
   EXPECT_NEAR(profile.second_mode->log_ratio, triplet.true_log_ratio + kShift,
               0.02);
   EXPECT_LT(profile.second_mode->nfa.log10_nfa, -5);
+  // The estimator finds it too.
+  ASSERT_TRUE(profile.ratio.second_mode.has_value());
+  EXPECT_NEAR(profile.ratio.second_mode->log_ratio,
+              triplet.true_log_ratio + kShift, 0.02);
+  EXPECT_LT(profile.ratio.second_mode->log10_nfa, -5);
+}
+
+TEST(RatioProfile, FeaturesThatAgreeHaveNoSecondMode) {
+  SyntheticTripletOptions options = Mixed();
+  options.wrong_share = 0;
+  options.num_lines_ij = options.num_lines_jk = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const RatioProfile profile =
+        Profile(MakeSyntheticTriplet(options, seed).view);
+    EXPECT_FALSE(profile.ratio.second_mode.has_value());
+  }
 }
 
 TEST(RatioProfile, IsEmptyWithoutCandidates) {

@@ -8,6 +8,7 @@
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/scale/pose_uncertainty.h"
 #include "lowlap/scale/triplet_view.h"
+#include "scale/synthetic_room.h"
 
 namespace lowlap::testing {
 
@@ -44,27 +45,13 @@ struct SyntheticTriplet {
   }
 };
 
-inline NormalizedSegment MakeSegment(const Vec3& start, const Vec3& end) {
-  NormalizedSegment segment;
-  segment.start = start / start.z();
-  segment.end = end / end.z();
-  segment.normal = segment.start.cross(segment.end).normalized();
-  return segment;
-}
-
-/// A bland room of 6 x 3 x 6 m around the middle camera, which looks along +z;
-/// the others stand 0.4 to 1.2 m beside it. 1200 x 800 pixels, f = 900.
-class SyntheticRoom {
+/// What three cameras in a SyntheticRoom see of it, with noise, wrong matches
+/// and errors of the relative poses.
+class SyntheticTripletMaker {
  public:
-  static constexpr double kFocalPx = 900;
-  static constexpr double kWidthPx = 1200;
-  static constexpr double kHeightPx = 800;
-
-  SyntheticRoom(const SyntheticTripletOptions& options, std::uint64_t seed)
-      : options_(options), random_(seed) {
-    i_from_j_ = RandomNeighbor(-1);
-    k_from_j_ = RandomNeighbor(1);
-  }
+  SyntheticTripletMaker(const SyntheticTripletOptions& options,
+                        std::uint64_t seed)
+      : options_(options), random_(seed), room_(&random_) {}
 
   SyntheticTriplet Make() {
     SyntheticTriplet triplet;
@@ -91,24 +78,11 @@ class SyntheticRoom {
     return triplet;
   }
 
-  const RigidTransform& i_from_j() const { return i_from_j_; }
-  const RigidTransform& k_from_j() const { return k_from_j_; }
-
  private:
-  struct Segment3 {
-    Vec3 start, end;
-    int wall = -1;
-  };
-
-  RigidTransform RandomNeighbor(int side) {
-    const Vec3 center(side * random_.Uniform(0.4, 1.2),
-                      random_.Uniform(-0.2, 0.2), random_.Uniform(-0.4, 0.4));
-    const Vec3 turn(random_.Uniform(-0.05, 0.05),
-                    -side * random_.Uniform(-0.1, 0.2),
-                    random_.Uniform(-0.05, 0.05));
-    return RigidTransform::FromRotationAndCenter(RotationFromAngleAxis(turn),
-                                                 center);
-  }
+  using Segment3 = SyntheticRoom::Segment3;
+  static constexpr double kFocalPx = SyntheticRoom::kFocalPx;
+  static constexpr double kWidthPx = SyntheticRoom::kWidthPx;
+  static constexpr double kHeightPx = SyntheticRoom::kHeightPx;
 
   Vec3 RandomAngles(double stddev_deg) {
     const double s = RadFromDeg(stddev_deg);
@@ -158,93 +132,18 @@ class SyntheticRoom {
     return point_in_cam / point_in_cam.z() + Vec3(x, y, 0);
   }
 
-  static bool IsVisible(const Vec3& point_in_cam) {
-    return point_in_cam.z() > 0.2 &&
-           std::abs(point_in_cam.x() / point_in_cam.z()) <
-               0.5 * kWidthPx / kFocalPx &&
-           std::abs(point_in_cam.y() / point_in_cam.z()) <
-               0.5 * kHeightPx / kFocalPx;
-  }
-
-  // A random point of a random wall: back, left, right, floor, ceiling.
-  Vec3 OnWall(int* wall) {
-    *wall = static_cast<int>(random_.Index(5));
-    const double u = random_.Uniform(-1, 1), v = random_.Uniform(-1, 1);
-    switch (*wall) {
-      case 0:
-        return {3 * u, 1.5 * v, 4};
-      case 1:
-        return {-3, 1.5 * u, 1 + 3 * std::abs(v)};
-      case 2:
-        return {3, 1.5 * u, 1 + 3 * std::abs(v)};
-      case 3:
-        return {3 * u, -1.5, 1 + 3 * std::abs(v)};
-      default:
-        return {3 * u, 1.5, 1 + 3 * std::abs(v)};
-    }
-  }
-
-  Vec3 InSpace() {
-    const double z = random_.Uniform(1.5, 6);
-    const double x = random_.Uniform(-0.6, 0.6);
-    return {x * z, random_.Uniform(-0.4, 0.4) * z, z};
-  }
-
-  bool InBoth(const Vec3& x, const RigidTransform& camn_from_camj) const {
-    return IsVisible(x) && IsVisible(camn_from_camj * x);
-  }
-
-  Vec3 VisiblePoint(const RigidTransform& camn_from_camj, bool on_wall) {
-    while (true) {
-      int wall = 0;
-      const Vec3 x = on_wall ? OnWall(&wall) : InSpace();
-      if (InBoth(x, i_from_j_) && InBoth(x, k_from_j_) &&
-          IsVisible(camn_from_camj * x)) {
-        return x;
-      }
-    }
-  }
-
-  // x at another depth on its ray in camera j, visible in the neighbour.
-  Vec3 OtherDepth(const Vec3& x, const RigidTransform& camn_from_camj) {
-    while (true) {
-      const Vec3 y = x * (random_.Uniform(1.2, 6) / x.z());
-      if (IsVisible(camn_from_camj * y)) return y;
-    }
-  }
-
   bool IsWrong(int n, int count) const {
     return options_.pure_noise || n < options_.wrong_share * count;
   }
 
   void AddPoint(int n, TripletView* view) {
-    const Vec3 x = VisiblePoint(k_from_j_, true);
+    const Vec3 x = room_.VisiblePoint(k_from_j_, true);
     const bool wrong = IsWrong(n, options_.num_points);
-    const Vec3 x_i = options_.pure_noise ? OtherDepth(x, i_from_j_) : x;
-    const Vec3 x_k = wrong ? OtherDepth(x, k_from_j_) : x;
+    const Vec3 x_i = options_.pure_noise ? room_.OtherDepth(x, i_from_j_) : x;
+    const Vec3 x_k = wrong ? room_.OtherDepth(x, k_from_j_) : x;
     view->points.push_back({static_cast<FeatureIndex>(n),
                             Noisy(i_from_j_ * x_i), Noisy(x),
                             Noisy(k_from_j_ * x_k)});
-  }
-
-  Segment3 RandomSegment(const RigidTransform& camn_from_camj, bool on_wall) {
-    while (true) {
-      Segment3 segment;
-      Vec3 direction(random_.Uniform(-1, 1), random_.Uniform(-1, 1),
-                     random_.Uniform(-1, 1));
-      segment.start = on_wall ? OnWall(&segment.wall) : InSpace();
-      if (on_wall) {
-        const int normal_axis =
-            segment.wall == 0 ? 2 : (segment.wall <= 2 ? 0 : 1);
-        direction(normal_axis) = 0;
-      }
-      segment.end =
-          segment.start + random_.Uniform(0.4, 1.2) * direction.normalized();
-      if (InBoth(segment.start, camn_from_camj) &&
-          InBoth(segment.end, camn_from_camj)) {
-        return segment;
-      }
-    }
   }
 
   // As one view sees it; the ends are broken off at random.
@@ -261,14 +160,14 @@ class SyntheticRoom {
   void AddLine(int n, TripletView* view) {
     const bool wrong = IsWrong(n, options_.num_lines);
     while (true) {
-      const Segment3 segment = RandomSegment(i_from_j_, true);
-      if (!IsVisible(k_from_j_ * segment.start) ||
-          !IsVisible(k_from_j_ * segment.end)) {
+      const Segment3 segment = room_.RandomSegment(i_from_j_, true);
+      if (!room_.IsVisible(k_from_j_ * segment.start) ||
+          !room_.IsVisible(k_from_j_ * segment.end)) {
         continue;
       }
       const auto moved = [&](const RigidTransform& camn_from_camj) {
-        return Segment3{OtherDepth(segment.start, camn_from_camj),
-                        OtherDepth(segment.end, camn_from_camj), -1};
+        return Segment3{room_.OtherDepth(segment.start, camn_from_camj),
+                        room_.OtherDepth(segment.end, camn_from_camj), -1};
       };
       const Segment3 in_i = options_.pure_noise ? moved(i_from_j_) : segment;
       const Segment3 in_k = wrong ? moved(k_from_j_) : segment;
@@ -288,7 +187,7 @@ class SyntheticRoom {
                        std::vector<int>* walls) {
     for (int n = 0; n < count; ++n) {
       const Segment3 segment =
-          RandomSegment(camn_from_camj, !IsWrong(n, count));
+          room_.RandomSegment(camn_from_camj, !IsWrong(n, count));
       MatchedLine line;
       line.segment_in_middle = (*next_segment)++;
       line.in_middle = Observe(RigidTransform(), segment);
@@ -300,13 +199,14 @@ class SyntheticRoom {
 
   SyntheticTripletOptions options_;
   Random random_;
-  RigidTransform i_from_j_;  // true, in metres
-  RigidTransform k_from_j_;
+  SyntheticRoom room_;
+  const RigidTransform& i_from_j_ = room_.i_from_j();
+  const RigidTransform& k_from_j_ = room_.k_from_j();
 };
 
 inline SyntheticTriplet MakeSyntheticTriplet(
     const SyntheticTripletOptions& options, std::uint64_t seed) {
-  return SyntheticRoom(options, seed).Make();
+  return SyntheticTripletMaker(options, seed).Make();
 }
 
 /// The same triplet read from the other end.

@@ -20,12 +20,14 @@ using internal::ByteWriter;
 // Like PNG's, the first byte is not text and the last ones show a file that was
 // sent as text.
 constexpr std::string_view kMagic("\x89LOWLAP\n", 8);
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
+// Ends before the section "RATD".
+constexpr std::uint32_t kOldestVersion = 2;
 
 // In the order of the file; all are always there.
-constexpr std::array<std::string_view, 13> kSections = {
+constexpr std::array<std::string_view, 14> kSections = {
     "ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT",
-    "RELP", "PTRK", "LTRK", "RATI", "LINE", "COPL"};
+    "RELP", "PTRK", "LTRK", "RATI", "LINE", "COPL", "RATD"};
 
 template <class Archive, class SceneType>
 void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
@@ -56,6 +58,8 @@ void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
     TransferMap(archive, scene.line_structure, internal::kTransferLine);
   } else if (tag == "COPL") {
     TransferVector(archive, scene.coplanar_pairs, 8, internal::kTransferMatch);
+  } else if (tag == "RATD") {
+    TransferRatioDetails(archive, scene.scale_ratios);
   }
 }
 
@@ -88,20 +92,22 @@ Scene ReadSections(const std::string& bytes) {
   }
   std::uint32_t version = 0, section_count = 0;
   file.Integer(version);
-  if (version != kVersion) {
-    throw internal::Failure{Error{ErrorCode::kUnsupported,
-                                  "version " + std::to_string(version) +
-                                      " is not " + std::to_string(kVersion),
-                                  {},
-                                  "byte " + std::to_string(kMagic.size())}};
+  if (version < kOldestVersion || version > kVersion) {
+    throw internal::Failure{Error{
+        ErrorCode::kUnsupported,
+        "version " + std::to_string(version) + " is not " +
+            std::to_string(kOldestVersion) + " or " + std::to_string(kVersion),
+        {},
+        "byte " + std::to_string(kMagic.size())}};
   }
   file.Integer(section_count);
-  if (section_count != kSections.size()) {
+  const std::size_t num_sections = kSections.size() - (version < kVersion);
+  if (section_count != num_sections) {
     file.Fail("the number of sections is wrong");
   }
   Scene scene;
-  for (const std::string_view tag : kSections) {
-    ReadSection(tag, file, bytes.size(), scene);
+  for (std::size_t n = 0; n < num_sections; ++n) {
+    ReadSection(kSections[n], file, bytes.size(), scene);
   }
   if (file.BytesLeft() > 0) file.Fail("something follows the last section");
   return scene;

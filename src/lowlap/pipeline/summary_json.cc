@@ -18,20 +18,30 @@ Json KindJson(const KindSupport& kind) {
   return {{"candidates", kind.candidates},
           {"inliers", kind.inliers},
           {"log10_nfa", kind.log10_nfa},
-          {"threshold_px", kind.threshold_px}};
+          {"threshold_px", kind.threshold_px},
+          {"information_share", kind.information_share}};
 }
 
 Json RatioJson(const ScaleRatio& ratio) {
-  return {{"views", {ratio.views.first, ratio.views.middle, ratio.views.last}},
-          {"verdict", RatioVerdictName(ratio.verdict)},
-          {"log_ratio", ratio.log_ratio},
-          {"ratio", std::exp(ratio.log_ratio)},
-          {"log_ratio_stddev", ratio.log_ratio_stddev},
-          {"log10_nfa", ratio.log10_nfa},
-          {"points", KindJson(ratio.points)},
-          {"lines", KindJson(ratio.lines)},
-          {"coplanar", KindJson(ratio.coplanar)},
-          {"rejected_negative", ratio.num_rejected_negative}};
+  Json json = {
+      {"views", {ratio.views.first, ratio.views.middle, ratio.views.last}},
+      {"verdict", RatioVerdictName(ratio.verdict)},
+      {"log_ratio", ratio.log_ratio},
+      {"ratio", std::exp(ratio.log_ratio)},
+      {"log_ratio_stddev", ratio.log_ratio_stddev},
+      {"log_ratio_interval_95", {ratio.IntervalLow(), ratio.IntervalHigh()}},
+      {"log10_nfa", ratio.log10_nfa},
+      {"points", KindJson(ratio.points)},
+      {"lines", KindJson(ratio.lines)},
+      {"coplanar", KindJson(ratio.coplanar)},
+      {"rejected_negative", ratio.num_rejected_negative}};
+  json["second_mode"] = nullptr;
+  if (ratio.second_mode) {
+    json["second_mode"] = {{"log_ratio", ratio.second_mode->log_ratio},
+                           {"ratio", std::exp(ratio.second_mode->log_ratio)},
+                           {"log10_nfa", ratio.second_mode->log10_nfa}};
+  }
+  return json;
 }
 
 Json AdjustedKindJson(const KindAdjustment& kind) {

@@ -7,6 +7,7 @@
 #include "lowlap/scale/ratio_search.h"
 #include "lowlap/scale/ratio_support.h"
 #include "lowlap/scale/ratio_sweep.h"
+#include "lowlap/scale/second_mode.h"
 
 namespace lowlap {
 namespace {
@@ -67,6 +68,11 @@ Result<ScaleRatio> AContrarioScaleEstimator::Estimate(
       threshold_px(nfa.plane_points, support.num_plane_points()),
       support.Tier(nfa.coplanar_tier).num_pairs};
   RefineOnInliers(triplet, support, thresholds, optimum.log_ratio, &ratio);
+  if (meaningful && options_.nfa_form == NfaForm::kCalibrated) {
+    if (const auto second = FindSecondMode(support, criterion, optimum)) {
+      ratio.second_mode = RatioMode{second->log_ratio, second->nfa.log10_nfa};
+    }
+  }
   return ratio;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "lowlap/scale/triplet_geometry.h"
@@ -36,5 +37,18 @@ std::optional<Vec3> CrossingInMiddle(const NormalizedSegment& a,
 /// camera j themselves, which LineInMiddle checks.
 RatioCandidate CoplanarRatio(const TripletGeometry& geometry,
                              const MatchedLine& a, const MatchedLine& b);
+
+/// How the log ratio of a pair moves when an end point of a line moves across
+/// its segment by one standard deviation: start and end in the neighbour, start
+/// and end in the middle view. Pairs that share a line share its noise. The sum
+/// of the squares of both lines is log_ratio_stddev^2.
+struct CoplanarNoise {
+  std::array<double, 4> by_first{};
+  std::array<double, 4> by_last{};
+};
+
+/// Of a pair whose CoplanarRatio is valid.
+CoplanarNoise NoiseOfCoplanarRatio(const TripletGeometry& geometry,
+                                   const MatchedLine& a, const MatchedLine& b);
 
 }  // namespace lowlap

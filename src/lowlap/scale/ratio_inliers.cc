@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/core/median.h"
 #include "lowlap/scale/coplanar_ratio.h"
 #include "lowlap/scale/pose_uncertainty.h"
 #include "lowlap/scale/ratio_refinement.h"
@@ -19,11 +20,6 @@ struct Inliers {
   Indices lines;
   Indices pairs;
   Indices plane_points;
-
-  bool operator==(const Inliers& other) const {
-    return points == other.points && lines == other.lines &&
-           pairs == other.pairs && plane_points == other.plane_points;
-  }
 };
 
 // The features of a kind that are considered.
@@ -56,37 +52,6 @@ Inliers FindInliers(const RatioSupport& support,
           below(FeatureKind::kPlanePoint, thresholds.plane_points_px)};
 }
 
-Indices Within3Stddev(const RatioSupport& support, FeatureKind kind,
-                      double threshold_px, const InlierThresholds& thresholds,
-                      const RefinedRatio& refined) {
-  Indices indices;
-  if (!(threshold_px > 0)) return indices;
-  const std::size_t group = static_cast<std::size_t>(kind);
-  const double noise = group < refined.group_noise.size()
-                           ? std::max(1.0, refined.group_noise[group])
-                           : 1.0;
-  for (std::size_t n = 0; n < NumOf(support, kind, thresholds); ++n) {
-    const RatioCandidate& ratio = support.Ratios(kind)[n];
-    if (std::abs(ratio.log_ratio - refined.log_ratio) <=
-        3.0 * noise * ratio.log_ratio_stddev) {
-      indices.push_back(static_cast<int>(n));
-    }
-  }
-  return indices;
-}
-
-Inliers FindConsistent(const RatioSupport& support,
-                       const InlierThresholds& thresholds,
-                       const RefinedRatio& refined) {
-  const auto within = [&](FeatureKind kind, double threshold_px) {
-    return Within3Stddev(support, kind, threshold_px, thresholds, refined);
-  };
-  return {within(FeatureKind::kPoint, thresholds.points_px),
-          within(FeatureKind::kLine, thresholds.lines_px),
-          within(FeatureKind::kCoplanar, thresholds.coplanar_px),
-          within(FeatureKind::kPlanePoint, thresholds.plane_points_px)};
-}
-
 // A cell of the middle view, an eighth of its diagonal wide: of a point, of the
 // middle of a segment, of the crossing of a pair.
 int CellOf(const RatioSupport& support, const TripletView& triplet,
@@ -117,41 +82,80 @@ int CellOf(const RatioSupport& support, const TripletView& triplet,
   return 100 * cell(at.x()) + cell(at.y());
 }
 
-// The inliers as measurements of the ratio, and as features with the weights
-// they have among each other.
-std::vector<RatioInlier> InlierRatios(const RatioSupport& support,
-                                      const TripletView& triplet,
-                                      const Inliers& inliers,
-                                      std::vector<WeightedFeature>* features) {
-  std::vector<RatioInlier> ratios;
-  features->clear();
-  const auto add = [&](FeatureKind kind, int index, double multiplicity) {
-    const RatioCandidate& ratio = support.Ratios(kind)[index];
-    const double stddev = ratio.log_ratio_stddev;
-    ratios.push_back({ratio.log_ratio, stddev, static_cast<int>(kind),
-                      multiplicity, CellOf(support, triplet, kind, index)});
-    features->push_back({kind, index, 1.0 / (stddev * stddev * multiplicity)});
+// The features that may agree with a ratio, as measurements of it.
+struct Measurements {
+  std::vector<RatioFeature> features;
+  std::vector<WeightedFeature> of_kind;
+  std::vector<RatioGroup> groups;
+};
+
+// The noise of the inliers in units of their standard deviations, doubled:
+// those within a threshold look too quiet, and an estimate that starts wide
+// narrows more surely than a narrow one widens.
+double InitialNoise(const std::vector<RatioCandidate>& ratios,
+                    const Indices& inliers, double log_ratio) {
+  constexpr double kStddevOfMedianDeviation = 1.4826;
+  constexpr double kPriorCount = 2.0;
+  if (inliers.empty()) return 1.0;
+  std::vector<double> deviations;
+  for (const int index : inliers) {
+    deviations.push_back(std::abs(ratios[index].log_ratio - log_ratio) /
+                         ratios[index].log_ratio_stddev);
+  }
+  const double count = static_cast<double>(inliers.size());
+  const double spread =
+      kStddevOfMedianDeviation * Median(std::move(deviations));
+  return 2.0 * std::sqrt((count * spread * spread + kPriorCount) /
+                         (count + kPriorCount));
+}
+
+Measurements Measure(const TripletView& triplet, const RatioSupport& support,
+                     const InlierThresholds& thresholds, const Inliers& inliers,
+                     double log_ratio) {
+  Measurements measurements;
+  measurements.groups.resize(kFeatureKinds.size());
+  const auto add = [&](FeatureKind kind, const Indices& of_kind,
+                       double threshold_px) {
+    if (!(threshold_px > 0)) return;
+    const std::vector<RatioCandidate>& ratios = support.Ratios(kind);
+    RatioGroup& group = measurements.groups[static_cast<std::size_t>(kind)];
+    group.count = static_cast<int>(NumOf(support, kind, thresholds));
+    // The deviations of points are those of one pixel.
+    if (kind == FeatureKind::kPoint) group.prior_count = 0.25;
+    group.noise = InitialNoise(ratios, of_kind, log_ratio);
+    for (int n = 0; n < group.count; ++n) {
+      const RatioCandidate& ratio = ratios[n];
+      const double stddev = ratio.log_ratio_stddev;
+      group.sum_of_stddevs += stddev;
+      if (!(std::abs(ratio.log_ratio - log_ratio) <
+            kRefinementReach * group.noise * stddev)) {
+        continue;
+      }
+      RatioFeature feature;
+      feature.log_ratio = ratio.log_ratio;
+      feature.log_ratio_stddev = stddev;
+      feature.group = static_cast<int>(kind);
+      feature.cell = CellOf(support, triplet, kind, n);
+      if (kind == FeatureKind::kCoplanar) {
+        const CoplanarPairCandidate& pair = support.Pair(n);
+        const CoplanarNoise noise =
+            NoiseOfCoplanarRatio(triplet.geometry, triplet.lines_ij[pair.first],
+                                 triplet.lines_jk[pair.last]);
+        feature.first_line = support.FirstLineOf(n);
+        feature.last_line = support.LastLineOf(n);
+        feature.by_first = noise.by_first;
+        feature.by_last = noise.by_last;
+      }
+      measurements.features.push_back(feature);
+      measurements.of_kind.push_back({kind, n, 0.0});
+    }
   };
-  for (const int index : inliers.points) add(FeatureKind::kPoint, index, 1.0);
-  for (const int index : inliers.lines) add(FeatureKind::kLine, index, 1.0);
-  // Pairs that share a line share its noise. With n_a lines all paired with n_b
-  // others, the mean of the two occurrence counts makes n_a n_b pairs count as
-  // the harmonic mean of n_a and n_b.
-  std::vector<int> first(triplet.lines_ij.size(), 0);
-  std::vector<int> last(triplet.lines_jk.size(), 0);
-  for (const int index : inliers.pairs) {
-    ++first[support.Pair(index).first];
-    ++last[support.Pair(index).last];
-  }
-  for (const int index : inliers.pairs) {
-    const CoplanarPairCandidate& pair = support.Pair(index);
-    add(FeatureKind::kCoplanar, index,
-        0.5 * (first[pair.first] + last[pair.last]));
-  }
-  for (const int index : inliers.plane_points) {
-    add(FeatureKind::kPlanePoint, index, 1.0);
-  }
-  return ratios;
+  add(FeatureKind::kPoint, inliers.points, thresholds.points_px);
+  add(FeatureKind::kLine, inliers.lines, thresholds.lines_px);
+  add(FeatureKind::kCoplanar, inliers.pairs, thresholds.coplanar_px);
+  add(FeatureKind::kPlanePoint, inliers.plane_points,
+      thresholds.plane_points_px);
+  return measurements;
 }
 
 }  // namespace
@@ -169,25 +173,29 @@ ScaleRatio EmptyRatio(const TripletView& triplet, const RatioSupport& support) {
 void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
                      const InlierThresholds& thresholds, double log_ratio,
                      ScaleRatio* ratio) {
-  constexpr int kRounds = 4;
+  Measurements measurements =
+      Measure(triplet, support, thresholds,
+              FindInliers(support, thresholds, log_ratio), log_ratio);
+  const RefinedRatio refined =
+      RefineRatio(measurements.features, measurements.groups, log_ratio);
   std::vector<WeightedFeature> features;
-  RefinedRatio refined = RefineRatio(
-      InlierRatios(support, triplet,
-                   FindInliers(support, thresholds, log_ratio), &features),
-      log_ratio);
-  Inliers consistent;
-  for (int round = 0; round < kRounds; ++round) {
-    Inliers next = FindConsistent(support, thresholds, refined);
-    if (round > 0 && next == consistent) break;
-    consistent = std::move(next);
-    refined = RefineRatio(InlierRatios(support, triplet, consistent, &features),
-                          refined.log_ratio);
+  for (std::size_t n = 0; n < measurements.of_kind.size(); ++n) {
+    if (refined.probability[n] < 0.5) continue;
+    features.push_back(measurements.of_kind[n]);
+    features.back().weight = refined.weight[n];
   }
   const Inliers inliers = FindInliers(support, thresholds, refined.log_ratio);
   ratio->log_ratio = refined.log_ratio;
   ratio->log_ratio_stddev =
       std::sqrt(refined.log_ratio_stddev * refined.log_ratio_stddev +
                 PoseVariance(triplet, support, features));
+  const auto share = [&](FeatureKind kind) {
+    return refined.information_share[static_cast<std::size_t>(kind)];
+  };
+  ratio->points.information_share = share(FeatureKind::kPoint);
+  ratio->lines.information_share = share(FeatureKind::kLine);
+  ratio->coplanar.information_share =
+      share(FeatureKind::kCoplanar) + share(FeatureKind::kPlanePoint);
   ratio->points.inliers = static_cast<int>(inliers.points.size());
   ratio->lines.inliers = static_cast<int>(inliers.lines.size());
   ratio->coplanar.inliers =

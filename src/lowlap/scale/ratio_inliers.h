@@ -18,13 +18,15 @@ struct InlierThresholds {
 /// A ratio with the triplet's names and candidate counts, and no verdict yet.
 ScaleRatio EmptyRatio(const TripletView& triplet, const RatioSupport& support);
 
-/// Refines a log ratio (RefineRatio), first on its inliers within the
-/// thresholds, then on every feature of their kinds that agrees with the result
-/// within 3 standard deviations: a threshold that is best for telling right
-/// from wrong is too tight for an average, which it ties to where it started.
+/// Refines a log ratio (RefineRatio) on every feature of the kinds with a
+/// threshold that is anywhere near: a threshold that is best for telling right
+/// from wrong is too tight for an average, which it ties to where it started,
+/// and makes the noise look too small. The inliers only say how large the noise
+/// is to begin with.
 /// Fills log_ratio and log_ratio_stddev (with the part that comes from the
-/// relative poses, where their covariance is known), and for the refined ratio
-/// the inlier counts, thresholds and coplanar inliers of `ratio`.
+/// relative poses, where their covariance is known), the shares of information,
+/// and for the refined ratio the inlier counts, thresholds and coplanar inliers
+/// of `ratio`.
 void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
                      const InlierThresholds& thresholds, double log_ratio,
                      ScaleRatio* ratio);

@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "lowlap/core/parallel.h"
+#include "lowlap/scale/planes_by_pair.h"
 #include "lowlap/scale/scale_estimator.h"
+#include "lowlap/scale/scale_ratios.h"
 
 namespace lowlap {
 namespace {
@@ -80,48 +82,37 @@ std::optional<RatioOptimum> SecondMode(const RatioSupport& support,
   return second;
 }
 
-// 1 / variance of the inliers by kind; what pairs say of one line is shared by
-// the pairs of that line.
-std::array<double, kFeatureKinds.size()> Information(
-    const RatioSupport& support, const RatioNfa& nfa, double log_ratio) {
-  const std::array<const NfaTerm*, kFeatureKinds.size()> terms = {
-      &nfa.points, &nfa.lines, &nfa.coplanar, &nfa.plane_points};
-  std::array<double, kFeatureKinds.size()> information{};
-  std::vector<float> errors_px;
-  double sum = 0;
-  for (const FeatureKind kind : kFeatureKinds) {
-    const std::size_t k = static_cast<std::size_t>(kind);
-    if (!(terms[k]->log10_nfa < 0)) continue;
-    const bool is_pair = kind == FeatureKind::kCoplanar;
-    const std::size_t count = is_pair
-                                  ? support.Tier(nfa.coplanar_tier).num_pairs
-                                  : support.Ratios(kind).size();
-    support.Errors(kind, log_ratio, &errors_px);
-    const auto is_inlier = [&](std::size_t n) {
-      return errors_px[n] < LadderThresholdPx(terms[k]->step);
-    };
-    std::vector<int> of_first(is_pair ? count : 0, 0);
-    std::vector<int> of_last(is_pair ? count : 0, 0);
-    for (std::size_t n = 0; is_pair && n < count; ++n) {
-      of_first[support.FirstLineOf(static_cast<int>(n))] += is_inlier(n);
-      of_last[support.LastLineOf(static_cast<int>(n))] += is_inlier(n);
-    }
-    for (std::size_t n = 0; n < count; ++n) {
-      if (!is_inlier(n)) continue;
-      const double stddev = support.Ratios(kind)[n].log_ratio_stddev;
-      const int index = static_cast<int>(n);
-      const double multiplicity =
-          is_pair ? 0.5 * (of_first[support.FirstLineOf(index)] +
-                           of_last[support.LastLineOf(index)])
-                  : 1.0;
-      information[k] += 1.0 / (stddev * stddev * multiplicity);
-    }
-    sum += information[k];
+Result<std::vector<RatioProfile>> ProfileOnce(
+    const Scene& scene, const NormalizedFeaturesByView& features,
+    const std::vector<ViewTriplet>& triplets, const ScaleOptions& options,
+    const PlanesByPair& planes, const RunContext& context) {
+  std::vector<Result<RatioProfile>> results(triplets.size());
+  const Status status = ParallelFor(
+      context, "ratio profiles", triplets.size(), [&](std::size_t n) {
+        const Result<TripletView> triplet =
+            MakeTripletView(scene, features, triplets[n], options, &planes);
+        results[n] =
+            triplet
+                ? ProfileRatio(*triplet, options)
+                : Result<RatioProfile>(tl::unexpected<Error>(triplet.error()));
+      });
+  if (!status) return tl::unexpected<Error>(status.error());
+  std::vector<RatioProfile> profiles;
+  for (Result<RatioProfile>& result : results) {
+    if (!result) return tl::unexpected<Error>(std::move(result.error()));
+    profiles.push_back(std::move(*result));
   }
-  if (sum > 0) {
-    for (double& share : information) share /= sum;
-  }
-  return information;
+  return profiles;
+}
+
+void PayForSecondTest(RatioProfile* profile) {
+  const auto pay = [](RatioOptimum* optimum) {
+    optimum->nfa.log10_nfa += std::log10(2.0);
+  };
+  PayForSecondTest(&profile->ratio);
+  pay(&profile->mode);
+  if (profile->second_mode) pay(&*profile->second_mode);
+  for (RatioOptimum& node : profile->nodes) pay(&node);
 }
 
 }  // namespace
@@ -136,11 +127,7 @@ Result<RatioProfile> ProfileRatio(const TripletView& triplet,
       MakeScaleEstimator(options)->Estimate(triplet);
   if (!ratio) return tl::unexpected<Error>(ratio.error());
   RatioProfile profile;
-  profile.views = triplet.views;
-  profile.log_ratio = ratio->log_ratio;
-  const double reach = 1.96 * ratio->log_ratio_stddev;
-  profile.interval_low = profile.log_ratio - reach;
-  profile.interval_high = profile.log_ratio + reach;
+  profile.ratio = *ratio;
   const RatioSupport support(triplet, options);
   if (support.hypotheses().empty()) return profile;
 
@@ -155,8 +142,6 @@ Result<RatioProfile> ProfileRatio(const TripletView& triplet,
                         log_ratio, support.Count(log_ratio, &workspace))});
   }
   profile.second_mode = SecondMode(support, criterion, profile);
-  profile.information_share =
-      Information(support, profile.mode.nfa, profile.log_ratio);
   return profile;
 }
 
@@ -166,24 +151,32 @@ Result<std::vector<RatioProfile>> ProfileScaleRatios(
   if (const Status status = options.Validate(); !status) {
     return tl::unexpected<Error>(status.error());
   }
+  const NormalizedFeaturesByView features = NormalizeAllFeatures(scene);
   ScaleOptions of_features = options;
   of_features.use_coplanar_points = false;
-  const NormalizedFeaturesByView features = NormalizeAllFeatures(scene);
-  std::vector<Result<RatioProfile>> results(triplets.size());
-  const Status status = ParallelFor(
-      context, "ratio profiles", triplets.size(), [&](std::size_t n) {
-        const Result<TripletView> triplet =
-            MakeTripletView(scene, features, triplets[n], of_features);
-        results[n] =
-            triplet
-                ? ProfileRatio(*triplet, of_features)
-                : Result<RatioProfile>(tl::unexpected<Error>(triplet.error()));
-      });
-  if (!status) return tl::unexpected<Error>(status.error());
-  std::vector<RatioProfile> profiles;
-  for (Result<RatioProfile>& result : results) {
-    if (!result) return tl::unexpected<Error>(std::move(result.error()));
-    profiles.push_back(std::move(*result));
+  auto profiles =
+      ProfileOnce(scene, features, triplets, of_features, {}, context);
+  if (!profiles || !options.use_coplanar || !options.use_coplanar_points) {
+    return profiles;
+  }
+  std::vector<std::size_t> undecided;
+  std::vector<ViewTriplet> undecided_triplets;
+  for (std::size_t n = 0; n < triplets.size(); ++n) {
+    if ((*profiles)[n].ratio.verdict == RatioVerdict::kMeaningful) continue;
+    undecided.push_back(n);
+    undecided_triplets.push_back(triplets[n]);
+  }
+  if (undecided.empty()) return profiles;
+  const auto planes =
+      FindPlanesByPair(scene, features, undecided_triplets, context);
+  if (!planes) return tl::unexpected<Error>(planes.error());
+  auto with_planes = ProfileOnce(scene, features, undecided_triplets, options,
+                                 *planes, context);
+  if (!with_planes) return with_planes;
+  for (std::size_t n = 0; n < undecided.size(); ++n) {
+    RatioProfile& profile = (*with_planes)[n];
+    if (!profile.nodes.empty()) PayForSecondTest(&profile);
+    (*profiles)[undecided[n]] = std::move(profile);
   }
   return profiles;
 }

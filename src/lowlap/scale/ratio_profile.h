@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <optional>
 #include <vector>
 
@@ -17,7 +16,6 @@ namespace lowlap {
 /// NFA(tau) of a triplet: what its features say about every ratio, not the best
 /// one alone.
 struct RatioProfile {
-  ViewTriplet views;
   /// The NFA on a grid of log ratios: even over the range of the features' own
   /// ratios, and finer and finer towards the mode. Sorted; empty without
   /// candidates.
@@ -29,16 +27,9 @@ struct RatioProfile {
   /// the grid). How much worse it is, second_mode->nfa.log10_nfa -
   /// mode.nfa.log10_nfa, says how sure the choice is. None if there is none.
   std::optional<RatioOptimum> second_mode;
-  /// Refined on the inliers; holds the true log ratio with a probability of
-  /// 95 % if the mode is right: log_ratio +- 1.96 standard deviations, those of
-  /// the relative poses included.
-  double log_ratio = 0;
-  double interval_low = 0;
-  double interval_high = 0;
-  /// Shares of the information (the curvature of the log likelihood in
-  /// log tau) by kind, in the order of FeatureKind; they add up to 1, or are 0
-  /// without inliers.
-  std::array<double, kFeatureKinds.size()> information_share{};
+  /// The estimate with its interval and shares of information: the mode refined
+  /// on its inliers. Its own second mode is only looked for where it is cheap.
+  ScaleRatio ratio;
 };
 
 /// The profile of one triplet, by the calibrated a-contrario criterion,
@@ -48,8 +39,10 @@ struct RatioProfile {
 Result<RatioProfile> ProfileRatio(const TripletView& triplet,
                                   const ScaleOptions& options);
 
-/// The profiles of many triplets, in their order; points on planes
-/// (use_coplanar_points) are left out. Errors as in EstimateScaleRatios.
+/// The profiles of many triplets, in their order. Points on planes
+/// (use_coplanar_points) take part exactly where EstimateScaleRatios asks them:
+/// in a second test of the triplets that are not meaningful without, which adds
+/// log10 2 to every total. Errors as in EstimateScaleRatios.
 Result<std::vector<RatioProfile>> ProfileScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
     const ScaleOptions& options, const RunContext& context);

@@ -3,117 +3,213 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
 
-#include "lowlap/core/median.h"
+#include "lowlap/scale/ratio_variance.h"
 
 namespace lowlap {
 namespace {
 
-// Cauchy's constant for 95 % efficiency on normal residuals.
-constexpr double kCauchy = 2.3849;
+constexpr double kPriorWrong = 0.5;
 
-// Squared noise of every group in units of the inliers' own deviations.
-std::vector<double> GroupNoise(const std::vector<RatioInlier>& inliers,
-                               double log_ratio) {
-  constexpr double kStddevOfMedianDeviation = 1.4826;
-  constexpr double kPriorCount = 2.0;
-  std::vector<std::vector<double>> deviations;
-  for (const RatioInlier& inlier : inliers) {
-    const std::size_t group = static_cast<std::size_t>(inlier.group);
-    if (deviations.size() <= group) deviations.resize(group + 1);
-    deviations[group].push_back(std::abs(inlier.log_ratio - log_ratio) /
-                                inlier.log_ratio_stddev);
+double Square(double value) { return value * value; }
+
+class MixtureFit {
+ public:
+  MixtureFit(const std::vector<RatioFeature>& features,
+             const std::vector<RatioGroup>& groups, double initial)
+      : features_(features), groups_(groups) {
+    int num_first = 0, num_last = 0;
+    for (const RatioFeature& feature : features) {
+      num_first = std::max(num_first, feature.first_line + 1);
+      num_last = std::max(num_last, feature.last_line + 1);
+    }
+    of_first_.resize(num_first);
+    of_last_.resize(num_last);
+    odds_.resize(groups.size());
+    num_right_.resize(groups.size());
+    fit_.log_ratio = initial;
+    fit_.weight.resize(features.size());
+    fit_.multiplicity.resize(features.size());
+    fit_.degrees.resize(groups.size());
+    for (const RatioGroup& group : groups) {
+      fit_.noise2.push_back(Square(group.noise));
+    }
+    constexpr double kRightAtFirst = 2.5;
+    for (const RatioFeature& feature : features) {
+      fit_.probability.push_back(
+          SquaredDeviation(feature) <
+          Square(kRightAtFirst * groups[feature.group].noise));
+    }
+    FindWeights();
+    FindOdds();
   }
-  std::vector<double> noise;
-  for (std::vector<double>& group : deviations) {
-    const double count = static_cast<double>(group.size());
-    const double spread = kStddevOfMedianDeviation * Median(std::move(group));
-    noise.push_back((count * (spread * spread) + kPriorCount) /
-                    (count + kPriorCount));
+
+  RatioMixture Run() {
+    constexpr int kMaxIterations = 40;
+    constexpr double kAccuracy = 1e-3;  // in standard deviations, and of phi^2
+    for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+      FindProbabilities();
+      FindWeights();
+      const double moved = MoveToMean();
+      const double change = FindNoise();
+      FindOdds();
+      if (moved < kAccuracy && change < kAccuracy) break;
+    }
+    FindProbabilities();
+    FindWeights();
+    return std::move(fit_);
   }
-  return noise;
-}
 
-double Weight(const RatioInlier& inlier, const std::vector<double>& noise,
-              double log_ratio) {
-  const double residual = inlier.log_ratio - log_ratio;
-  const double variance =
-      noise[inlier.group] * inlier.log_ratio_stddev * inlier.log_ratio_stddev;
-  const double robust =
-      1.0 / (1.0 + residual * residual / (kCauchy * kCauchy * variance));
-  return robust / (variance * inlier.multiplicity);
-}
-
-// Derivative of an inlier's term in the estimating equation sum w r = 0.
-double Curvature(const RatioInlier& inlier, const std::vector<double>& noise,
-                 double log_ratio) {
-  const double residual = inlier.log_ratio - log_ratio;
-  const double variance =
-      noise[inlier.group] * inlier.log_ratio_stddev * inlier.log_ratio_stddev;
-  const double squared = residual * residual / (kCauchy * kCauchy * variance);
-  return (1.0 - squared) /
-         ((1.0 + squared) * (1.0 + squared) * variance * inlier.multiplicity);
-}
-
-// Of the weighted mean, from the sums over cells; 0 with too few of them.
-double CellVariance(const std::vector<RatioInlier>& inliers,
-                    const std::vector<double>& noise, double log_ratio,
-                    double information) {
-  constexpr std::size_t kMinCells = 4;
-  std::map<int, double> sums;
-  for (const RatioInlier& inlier : inliers) {
-    sums[inlier.cell] +=
-        Weight(inlier, noise, log_ratio) * (inlier.log_ratio - log_ratio);
+ private:
+  double SquaredDeviation(const RatioFeature& feature) const {
+    return Square((feature.log_ratio - fit_.log_ratio) /
+                  feature.log_ratio_stddev);
   }
-  if (sums.size() < kMinCells) return 0;
-  double sum_of_squares = 0;
-  for (const auto& [cell, sum] : sums) sum_of_squares += sum * sum;
-  const double num_cells = static_cast<double>(sums.size());
-  return num_cells / (num_cells - 1) * sum_of_squares /
-         (information * information);
-}
+
+  void FindProbabilities() {
+    constexpr double kRootOf2Pi = 2.5066282746310002;
+    for (std::size_t n = 0; n < features_.size(); ++n) {
+      const RatioFeature& feature = features_[n];
+      const double noise2 = fit_.noise2[feature.group];
+      const double right = std::exp(-0.5 * SquaredDeviation(feature) / noise2) /
+                           (kRootOf2Pi * std::sqrt(noise2));
+      const double wrong = odds_[feature.group] * feature.log_ratio_stddev;
+      fit_.probability[n] = right > 0 ? right / (right + wrong) : 0.0;
+    }
+  }
+
+  void FindWeights() {
+    std::fill(of_first_.begin(), of_first_.end(), 0.0);
+    std::fill(of_last_.begin(), of_last_.end(), 0.0);
+    for (std::size_t n = 0; n < features_.size(); ++n) {
+      if (!features_[n].IsPair()) continue;
+      of_first_[features_[n].first_line] += fit_.probability[n];
+      of_last_[features_[n].last_line] += fit_.probability[n];
+    }
+    std::vector<double> information(groups_.size(), 0.0);
+    std::fill(fit_.degrees.begin(), fit_.degrees.end(), 0.0);
+    std::fill(num_right_.begin(), num_right_.end(), 0.0);
+    for (std::size_t n = 0; n < features_.size(); ++n) {
+      const RatioFeature& feature = features_[n];
+      double& multiplicity = fit_.multiplicity[n];
+      multiplicity = 1.0;
+      if (feature.IsPair()) {
+        multiplicity = std::max(1.0, 0.5 * (of_first_[feature.first_line] +
+                                            of_last_[feature.last_line]));
+      }
+      const double count = fit_.probability[n] / multiplicity;
+      fit_.weight[n] = count / (fit_.noise2[feature.group] *
+                                Square(feature.log_ratio_stddev));
+      num_right_[feature.group] += fit_.probability[n];
+      fit_.degrees[feature.group] += count;
+      information[feature.group] += fit_.weight[n];
+    }
+    information_ = 0;
+    for (const double of_group : information) information_ += of_group;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      const double share =
+          information_ > 0 ? information[g] / information_ : 0.0;
+      fit_.degrees[g] =
+          std::max(fit_.degrees[g] - share, 0.0) + groups_[g].prior_count;
+    }
+  }
+
+  // Returns by how many standard deviations.
+  double MoveToMean() {
+    if (!(information_ > 0)) return 0;
+    double sum = 0;
+    for (std::size_t n = 0; n < features_.size(); ++n) {
+      sum += fit_.weight[n] * (features_[n].log_ratio - fit_.log_ratio);
+    }
+    fit_.log_ratio += sum / information_;
+    return std::abs(sum) / std::sqrt(information_);
+  }
+
+  // Returns the largest relative change.
+  double FindNoise() {
+    std::vector<double> squares;
+    for (const RatioGroup& group : groups_) {
+      squares.push_back(group.prior_count);
+    }
+    for (std::size_t n = 0; n < features_.size(); ++n) {
+      const RatioFeature& feature = features_[n];
+      squares[feature.group] += fit_.probability[n] *
+                                SquaredDeviation(feature) /
+                                fit_.multiplicity[n];
+    }
+    double change = 0;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (!(num_right_[g] > 0)) continue;
+      const double noise2 = squares[g] / fit_.degrees[g];
+      change = std::max(change, std::abs(noise2 / fit_.noise2[g] - 1));
+      fit_.noise2[g] = noise2;
+    }
+    return change;
+  }
+
+  // The density of one wrong feature from those within reach, over the lengths
+  // that all of the group's wrong features reach over; times the number of
+  // wrong features over that of right ones.
+  void FindOdds() {
+    std::vector<double> wrong_stddevs;
+    std::vector<double> wrong(groups_.size(), kPriorWrong);
+    for (const RatioGroup& group : groups_) {
+      wrong_stddevs.push_back(group.sum_of_stddevs);
+    }
+    for (std::size_t n = 0; n < features_.size(); ++n) {
+      const RatioFeature& feature = features_[n];
+      wrong[feature.group] += 1 - fit_.probability[n];
+      wrong_stddevs[feature.group] -=
+          fit_.probability[n] * feature.log_ratio_stddev;
+    }
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      const RatioGroup& group = groups_[g];
+      if (!(num_right_[g] > 0)) continue;
+      const double reach =
+          2 * kRefinementReach * group.noise *
+          std::max(wrong_stddevs[g], group.sum_of_stddevs / group.count);
+      const double num_wrong =
+          std::max(group.count - num_right_[g], 0.0) + kPriorWrong;
+      odds_[g] = wrong[g] / reach * num_wrong / num_right_[g];
+    }
+  }
+
+  const std::vector<RatioFeature>& features_;
+  const std::vector<RatioGroup>& groups_;
+  RatioMixture fit_;
+  double information_ = 0;
+  std::vector<double> odds_;
+  std::vector<double> num_right_;
+  // Right pairs of every line.
+  std::vector<double> of_first_;
+  std::vector<double> of_last_;
+};
 
 }  // namespace
 
-RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
+RefinedRatio RefineRatio(const std::vector<RatioFeature>& features,
+                         const std::vector<RatioGroup>& groups,
                          double initial) {
-  constexpr int kMaxIterations = 20;
-  // In standard deviations of the result.
-  constexpr double kAccuracy = 1e-5;
-  constexpr double kSettled = 0.02;
-  if (inliers.empty()) {
-    return {initial, std::numeric_limits<double>::infinity(), {}};
+  RefinedRatio refined;
+  if (features.empty()) {
+    refined.log_ratio = initial;
+    refined.log_ratio_stddev = std::numeric_limits<double>::infinity();
+    refined.group_noise.assign(groups.size(), 1.0);
+    refined.information_share.assign(groups.size(), 0.0);
+    return refined;
   }
-  double log_ratio = initial;
-  double information = 0;
-  bool is_settled = false;  // so that the noise changes no more
-  std::vector<double> noise;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    if (!is_settled) noise = GroupNoise(inliers, log_ratio);
-    double sum = 0;
-    information = 0;
-    for (const RatioInlier& inlier : inliers) {
-      const double weight = Weight(inlier, noise, log_ratio);
-      sum += weight * (inlier.log_ratio - log_ratio);
-      information += weight;
-    }
-    const double step = sum / information;
-    log_ratio += step;
-    const double stddevs = std::abs(step) * std::sqrt(information);
-    if (stddevs < kAccuracy) break;
-    is_settled = iteration > 0 && stddevs < kSettled;
+  RatioMixture fit = MixtureFit(features, groups, initial).Run();
+  RatioVariance variance = FindRatioVariance(features, groups, fit);
+  refined.log_ratio = fit.log_ratio;
+  refined.log_ratio_stddev = variance.stddev;
+  refined.information_share = std::move(variance.information_share);
+  refined.probability = std::move(fit.probability);
+  refined.weight = std::move(fit.weight);
+  for (const double noise2 : fit.noise2) {
+    refined.group_noise.push_back(std::sqrt(noise2));
   }
-  double curvature = 0;
-  for (const RatioInlier& inlier : inliers) {
-    curvature += Curvature(inlier, noise, log_ratio);
-  }
-  curvature = std::max(curvature, 0.25 * information);
-  const double variance = std::max(
-      1.0 / information, CellVariance(inliers, noise, log_ratio, curvature));
-  for (double& group : noise) group = std::sqrt(group);
-  return {log_ratio, std::sqrt(variance), noise};
+  return refined;
 }
 
 }  // namespace lowlap

@@ -1,43 +1,73 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 namespace lowlap {
 
-/// One inlier's log ratio, for the refinement.
-struct RatioInlier {
+/// One feature's log ratio, for the refinement.
+struct RatioFeature {
   double log_ratio = 0;
   double log_ratio_stddev = 0;
-  /// Inliers of one group share the unknown size of their noise.
+  /// Features of one group share the unknown size of their noise and the
+  /// density of wrong ones.
   int group = 0;
-  /// How many inliers repeat the same measurement (a line occurs in several
-  /// pairs); the weight is divided by it.
-  double multiplicity = 1;
-  /// Where in the image it is; inliers of one cell may err together.
+  /// Where in the image it is; features of one cell may err together.
   int cell = 0;
+  /// Of a pair of lines: which ones (counted from 0 on either side), and how
+  /// their noise moves the log ratio, see CoplanarNoise.
+  int first_line = -1;
+  int last_line = -1;
+  std::array<double, 4> by_first{};
+  std::array<double, 4> by_last{};
+
+  bool IsPair() const { return first_line >= 0; }
+};
+
+/// What is known of a group beforehand.
+struct RatioGroup {
+  /// All features of the group, those that are far from the ratio included, and
+  /// the sum of their standard deviations.
+  int count = 0;
+  double sum_of_stddevs = 0;
+  /// Where the iteration starts: the noise in units of the features' standard
+  /// deviations.
+  double noise = 1;
+  /// How many features a noise of 1 counts as, beforehand; small where the unit
+  /// of the standard deviations is nominal.
+  double prior_count = 2;
 };
 
 struct RefinedRatio {
   double log_ratio = 0;
+  /// log_ratio +- 1.96 of them is an interval of 95 %.
   double log_ratio_stddev = 0;
-  /// phi of every group, 1 where it is unknown.
+  /// By feature: the probability of being right, and the weight in the mean.
+  std::vector<double> probability;
+  std::vector<double> weight;
+  /// By group: phi, 1 where it is unknown, and the share of the information.
   std::vector<double> group_noise;
+  std::vector<double> information_share;
 };
 
-/// The robust weighted mean of the inliers' log ratios: to first order the
-/// least squares solution of their pixel residuals in log tau.
+/// How far from the ratio a feature may be, in units of its group's initial
+/// noise and its standard deviation, to take part.
+inline constexpr double kRefinementReach = 6.0;
+
+/// The most likely log ratio mu of a mixture: a feature of group g is right,
+/// with the density N(mu, phi_g^2 s^2), or wrong, with a density that is even
+/// within reach. By expectation maximisation over mu, phi_g, and the density
+/// and number of wrong features (half a wrong one is there beforehand), from
+/// `initial`. Of `features`, those within kRefinementReach of it. No feature is
+/// cut off, so that nothing makes the noise look smaller than it is.
 ///
-/// IRLS from `initial` with the weights of Cauchy's loss,
-///   w = c / (phi_g^2 s^2 m),  c = 1 / (1 + (r / (kCauchy phi_g s))^2),
-/// where s is the inlier's standard deviation, m its multiplicity, and phi_g
-/// the noise of its group in units of s, estimated from the median of |r| / s
-/// and drawn towards 1 as if by two more inliers. The variance is
-/// 1 / sum w, which for normal residuals is some 10 % on the safe side, or that
-/// of the sums over cells, sum over cells (sum w r)^2 / (sum w)^2, if it is
-/// larger: errors of the two-view step or of the lens are the same for
-/// neighbours, and do not fall with the number of features.
-/// Without inliers: `initial`, with an infinite standard deviation.
-RefinedRatio RefineRatio(const std::vector<RatioInlier>& inliers,
-                         double initial);
+/// A right feature has the weight p / (phi_g^2 s^2 m) in the mean, p its
+/// probability; m = 1 but for pairs, which share the noise of their lines: the
+/// mean of the numbers of right pairs of the two lines, so that n_a lines all
+/// paired with n_b others count as the harmonic mean of n_a and n_b.
+/// The standard deviation is that of ratio_variance.h.
+/// Without features: `initial`, with an infinite standard deviation.
+RefinedRatio RefineRatio(const std::vector<RatioFeature>& features,
+                         const std::vector<RatioGroup>& groups, double initial);
 
 }  // namespace lowlap

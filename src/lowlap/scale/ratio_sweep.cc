@@ -7,27 +7,10 @@
 
 #include "lowlap/robust/interval_sweep.h"
 #include "lowlap/scale/feature_intervals.h"
+#include "lowlap/scale/second_mode.h"
 
 namespace lowlap {
 namespace {
-
-// Where sorted values lie closest: halves of the values, as short as possible.
-double HalfSampleMode(const std::vector<double>& sorted) {
-  std::size_t begin = 0, size = sorted.size();
-  while (size > 2) {
-    const std::size_t half = (size + 1) / 2;
-    std::size_t best = begin;
-    for (std::size_t n = begin; n + half <= begin + size; ++n) {
-      if (sorted[n + half - 1] - sorted[n] <
-          sorted[best + half - 1] - sorted[best]) {
-        best = n;
-      }
-    }
-    begin = best;
-    size = half;
-  }
-  return 0.5 * (sorted[begin] + sorted[begin + size - 1]);
-}
 
 // Counters of the sweep: a ladder each for points, lines, plane points, and
 // both sides of every tier of pairs.

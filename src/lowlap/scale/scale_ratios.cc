@@ -63,14 +63,14 @@ Result<std::vector<ScaleRatio>> EstimateOnce(
   return ratios;
 }
 
-// Two tests find twice as many false ratios.
+}  // namespace
+
 void PayForSecondTest(ScaleRatio* ratio) {
   if (ratio->verdict == RatioVerdict::kNoCandidates) return;
   ratio->log10_nfa += std::log10(2.0);
+  if (ratio->second_mode) ratio->second_mode->log10_nfa += std::log10(2.0);
   if (!(ratio->log10_nfa < 0)) ratio->verdict = RatioVerdict::kNotMeaningful;
 }
-
-}  // namespace
 
 std::vector<ViewTriplet> FindTriplets(const Scene& scene) {
   std::map<ViewId, std::vector<ViewId>> neighbors;

@@ -29,4 +29,8 @@ Result<std::vector<ScaleRatio>> EstimateScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
     const ScaleOptions& options, const RunContext& context);
 
+/// Adds what a second test costs, log10 2: two tests find twice as many false
+/// ratios.
+void PayForSecondTest(ScaleRatio* ratio);
+
 }  // namespace lowlap

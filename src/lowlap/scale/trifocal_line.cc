@@ -11,17 +11,15 @@ TrifocalLine Swapped(const TrifocalLine& line) {
   return {line.segment_in_middle, line.in_k, line.in_j, line.in_i};
 }
 
-// (log tau_ijk - log tau_kji) / 2, and half the sum in `half_difference`.
+// (log tau_ijk - log tau_kji) / 2.
 std::optional<double> CombinedLogTau(const TripletGeometry& geometry,
                                      const TrifocalLine& line,
-                                     CandidateStatus* status,
-                                     double* half_difference) {
+                                     CandidateStatus* status) {
   const std::optional<double> ijk = TrifocalLineTau(geometry, line, status);
   if (!ijk) return std::nullopt;
   const std::optional<double> kji =
       TrifocalLineTau(geometry.Swapped(), Swapped(line), status);
   if (!kji) return std::nullopt;
-  *half_difference = 0.5 * (std::log(*ijk) + std::log(*kji));
   return 0.5 * (std::log(*ijk) - std::log(*kji));
 }
 
@@ -93,12 +91,11 @@ std::optional<double> TrifocalLineTau(const TripletGeometry& geometry,
 RatioCandidate TrifocalLineRatio(const TripletGeometry& geometry,
                                  const TrifocalLine& line) {
   RatioCandidate candidate;
-  double half_difference = 0;
   const std::optional<double> log_tau =
-      CombinedLogTau(geometry, line, &candidate.status, &half_difference);
+      CombinedLogTau(geometry, line, &candidate.status);
   if (!log_tau) return candidate;
   candidate.status = CandidateStatus::kDegenerate;
-  double variance = half_difference * half_difference;
+  double variance = 0;
   for (ObservedSegment TrifocalLine::*view :
        {&TrifocalLine::in_i, &TrifocalLine::in_j, &TrifocalLine::in_k}) {
     const double focal_px = view == &TrifocalLine::in_i   ? geometry.focal_i_px
@@ -110,9 +107,8 @@ RatioCandidate TrifocalLineRatio(const TripletGeometry& geometry,
       (moved.*view).segment = Moved((line.*view).segment, start,
                                     kStep * (line.*view).stddev_px / focal_px);
       CandidateStatus status;
-      double unused;
       const std::optional<double> log_tau_moved =
-          CombinedLogTau(geometry, moved, &status, &unused);
+          CombinedLogTau(geometry, moved, &status);
       if (!log_tau_moved) return candidate;
       const double change = (*log_tau_moved - *log_tau) / kStep;
       variance += change * change;

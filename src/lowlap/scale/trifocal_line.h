@@ -37,9 +37,9 @@ std::optional<double> TrifocalLineTau(const TripletGeometry& geometry,
                                       const TrifocalLine& line,
                                       CandidateStatus* status);
 
-/// The same read from both ends, combined in the log; half their difference is
-/// part of the standard deviation. The rest is to first order from all six end
-/// points, each moving across its segment by its stddev_px (differences).
+/// The same read from both ends, combined in the log. The standard deviation is
+/// to first order from all six end points, each moving across its segment by
+/// its stddev_px (differences).
 RatioCandidate TrifocalLineRatio(const TripletGeometry& geometry,
                                  const TrifocalLine& line);
 

@@ -11,6 +11,9 @@ namespace {
 struct OneEnd {
   double tau = 0;
   double speed_px = 0;  // of the projection into k, per unit of log tau
+  // The change of log tau that makes up for a move of the point in j, in
+  // normalised coordinates there.
+  Vec2 by_middle = Vec2::Zero();
 };
 
 std::optional<OneEnd> FromOneEnd(const TripletGeometry& geometry,
@@ -39,7 +42,15 @@ std::optional<OneEnd> FromOneEnd(const TripletGeometry& geometry,
   *status = CandidateStatus::kValid;
   const Vec2 velocity =
       (*tau / in_k.z()) * (w.head<2>() - (w.z() / in_k.z()) * in_k.head<2>());
-  return OneEnd{*tau, geometry.focal_k_px * velocity.norm()};
+  const double speed = velocity.norm();
+  Vec2 by_middle;
+  for (int axis = 0; axis < 2; ++axis) {
+    const Vec3 moved = x.z() * geometry.camk_from_camj.rotation.col(axis);
+    const Vec2 in_image =
+        (moved.head<2>() - (moved.z() / in_k.z()) * in_k.head<2>()) / in_k.z();
+    by_middle(axis) = in_image.dot(velocity) / (speed * speed);
+  }
+  return OneEnd{*tau, geometry.focal_k_px * speed, by_middle};
 }
 
 }  // namespace
@@ -63,12 +74,12 @@ RatioCandidate TrifocalPointRatio(const TripletGeometry& geometry,
   const std::optional<OneEnd> kji =
       FromOneEnd(geometry.Swapped(), swapped, &candidate.status);
   if (!kji) return candidate;
-  const double half_difference =
-      0.5 * (std::log(ijk->tau) + std::log(kji->tau));
   candidate.log_ratio = 0.5 * (std::log(ijk->tau) - std::log(kji->tau));
-  candidate.log_ratio_stddev = std::sqrt(1.0 / (ijk->speed_px * ijk->speed_px) +
-                                         1.0 / (kji->speed_px * kji->speed_px) +
-                                         half_difference * half_difference);
+  const double by_middle =
+      (kji->by_middle - ijk->by_middle).norm() / geometry.focal_j_px;
+  candidate.log_ratio_stddev =
+      std::sqrt(1.0 / (ijk->speed_px * ijk->speed_px) +
+                1.0 / (kji->speed_px * kji->speed_px) + by_middle * by_middle);
   if (!(candidate.log_ratio_stddev <= kMaxLogRatioStddev)) {
     candidate.status = CandidateStatus::kDegenerate;
   }

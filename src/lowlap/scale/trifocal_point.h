@@ -19,10 +19,14 @@ std::optional<double> TrifocalPointTau(const TripletGeometry& geometry,
                                        const TrifocalPoint& point,
                                        CandidateStatus* status);
 
-/// The same read from both ends, tau_ijk and 1 / tau_kji, combined in the log;
-/// half their difference is part of the standard deviation. To first order in
-/// the noise of the outer observations, with s the speed of the projection in
-/// pixels per unit of log tau: var(log tau) = 1 / s_i^2 + 1 / s_k^2.
+/// The same read from both ends, tau_ijk and 1 / tau_kji, combined in the log.
+/// To first order in a noise of one pixel in all three views, with v_n the
+/// velocity of the projection into n per unit of log tau and D_n the change of
+/// that projection with the observation in j (a move of the point at its
+/// depth):
+///   var(log tau) = 1 / |v_i|^2 + 1 / |v_k|^2
+///                  + |D_i^T v_i / |v_i|^2 - D_k^T v_k / |v_k|^2|^2.
+/// The last term is the largest where i and k are on opposite sides of j.
 RatioCandidate TrifocalPointRatio(const TripletGeometry& geometry,
                                   const TrifocalPoint& point);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,10 +22,24 @@ struct KindSupport {
   int inliers = 0;
   double log10_nfa = 0;     // at the chosen ratio; 0 = nothing to say
   double threshold_px = 0;  // the a-contrario threshold of the inliers
+  /// Of the information on the ratio (1 / variance, without what the relative
+  /// poses add). The kinds' add up to 1; 0 for all: not known.
+  double information_share = 0;
 
   friend bool operator==(const KindSupport& a, const KindSupport& b) {
     return a.candidates == b.candidates && a.inliers == b.inliers &&
-           a.log10_nfa == b.log10_nfa && a.threshold_px == b.threshold_px;
+           a.log10_nfa == b.log10_nfa && a.threshold_px == b.threshold_px &&
+           a.information_share == b.information_share;
+  }
+};
+
+/// A ratio that could be meant instead.
+struct RatioMode {
+  double log_ratio = 0;
+  double log10_nfa = 0;
+
+  friend bool operator==(const RatioMode& a, const RatioMode& b) {
+    return a.log_ratio == b.log_ratio && a.log10_nfa == b.log10_nfa;
   }
 };
 
@@ -49,12 +64,20 @@ struct ScaleRatio {
   double log_ratio = 0;
   double log_ratio_stddev = 0;
   double log10_nfa = 0;  // total over the kinds
+  /// The ratio that the features which disagree would choose, if it is
+  /// meaningful too; see FindSecondMode.
+  std::optional<RatioMode> second_mode;
   KindSupport points;
   KindSupport lines;
   KindSupport coplanar;
   /// Candidates dropped because they would need a negative depth.
   int num_rejected_negative = 0;
   std::vector<CoplanarInlier> coplanar_inliers;
+
+  /// The interval that holds the true log ratio with a probability of 95 %, if
+  /// the mode is right.
+  double IntervalLow() const { return log_ratio - 1.96 * log_ratio_stddev; }
+  double IntervalHigh() const { return log_ratio + 1.96 * log_ratio_stddev; }
 
   friend bool operator==(const ScaleRatio& a, const ScaleRatio& b);
 };

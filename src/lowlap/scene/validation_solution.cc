@@ -21,6 +21,11 @@ Status ValidateSupport(const KindSupport& support, const std::string& place) {
   if (!(support.threshold_px >= 0) || !std::isfinite(support.threshold_px)) {
     return Invalid("must be finite and not negative", place + ".threshold_px");
   }
+  if (!(support.information_share >= 0) ||
+      !std::isfinite(support.information_share)) {
+    return Invalid("must be finite and not negative",
+                   place + ".information_share");
+  }
   return {};
 }
 
@@ -53,6 +58,10 @@ Status ValidateScaleRatio(const Scene& scene, const ViewTable& views,
   }
   if (!std::isfinite(ratio.log10_nfa)) {
     return Invalid("must be finite", place + ".log10_nfa");
+  }
+  if (ratio.second_mode && (!std::isfinite(ratio.second_mode->log_ratio) ||
+                            !std::isfinite(ratio.second_mode->log10_nfa))) {
+    return Invalid("must be finite", place + ".second_mode");
   }
   for (const auto& [support, member] :
        {std::pair(&ratio.points, ".points"), std::pair(&ratio.lines, ".lines"),

@@ -5,7 +5,8 @@
 namespace lowlap::internal {
 namespace {
 
-constexpr std::uint32_t kVersion = 2;
+// Version 2 had no second modes and shares of information.
+constexpr std::uint32_t kVersion = 3, kOldestVersion = 2;
 
 // Calls `add(a, b)` for the pairs of a flat array of ids.
 template <class Add>
@@ -120,9 +121,15 @@ RelativePose ReadRelativePose(const JsonValue& record) {
 }
 
 KindSupport ReadSupport(const JsonValue& record) {
-  record.AllowOnly({"candidates", "inliers", "log10_nfa", "threshold_px"});
-  return {record.At("candidates").Count(), record.At("inliers").Count(),
-          record.At("log10_nfa").Real(), record.At("threshold_px").Real()};
+  record.AllowOnly({"candidates", "inliers", "log10_nfa", "threshold_px",
+                    "information_share"});
+  KindSupport support = {
+      record.At("candidates").Count(), record.At("inliers").Count(),
+      record.At("log10_nfa").Real(), record.At("threshold_px").Real()};
+  if (const auto share = record.Find("information_share")) {
+    support.information_share = share->Real();
+  }
+  return support;
 }
 
 RatioVerdict ReadVerdict(const JsonValue& value) {
@@ -136,7 +143,7 @@ RatioVerdict ReadVerdict(const JsonValue& value) {
 
 ScaleRatio ReadScaleRatio(const JsonValue& record) {
   record.AllowOnly({"views", "verdict", "log_ratio", "log_ratio_stddev",
-                    "log10_nfa", "points", "lines", "coplanar",
+                    "log10_nfa", "second_mode", "points", "lines", "coplanar",
                     "num_rejected_negative", "coplanar_inliers"});
   ScaleRatio ratio;
   const JsonValue views = record.At("views");
@@ -149,6 +156,11 @@ ScaleRatio ReadScaleRatio(const JsonValue& record) {
   ratio.log_ratio = record.At("log_ratio").Real();
   ratio.log_ratio_stddev = record.At("log_ratio_stddev").Real();
   ratio.log10_nfa = record.At("log10_nfa").Real();
+  if (const auto mode = record.Find("second_mode")) {
+    mode->AllowOnly({"log_ratio", "log10_nfa"});
+    ratio.second_mode =
+        RatioMode{mode->At("log_ratio").Real(), mode->At("log10_nfa").Real()};
+  }
   ratio.points = ReadSupport(record.At("points"));
   ratio.lines = ReadSupport(record.At("lines"));
   ratio.coplanar = ReadSupport(record.At("coplanar"));
@@ -187,8 +199,9 @@ void ReadTracks(const JsonValue& list, std::map<std::uint32_t, Track>& tracks) {
 
 void ReadOwnSections(const JsonValue& own, Scene& scene) {
   const JsonValue version = own.At("version");
-  if (version.Id() != kVersion) {
+  if (version.Id() < kOldestVersion || version.Id() > kVersion) {
     version.Fail("version " + std::to_string(version.Id()) + " is not " +
+                     std::to_string(kOldestVersion) + " or " +
                      std::to_string(kVersion),
                  ErrorCode::kUnsupported);
   }

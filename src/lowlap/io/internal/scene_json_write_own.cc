@@ -126,6 +126,7 @@ void AppendSupport(std::string_view name, const KindSupport& support,
   AppendCount("inliers", support.inliers, text);
   AppendNamedReal("log10_nfa", support.log10_nfa, text);
   AppendNamedReal("threshold_px", support.threshold_px, text);
+  AppendNamedReal("information_share", support.information_share, text);
   text += "}";
 }
 
@@ -140,6 +141,13 @@ void AppendScaleRatio(const ScaleRatio& ratio, std::string& text) {
   AppendNamedReal("log_ratio", ratio.log_ratio, text);
   AppendNamedReal("log_ratio_stddev", ratio.log_ratio_stddev, text);
   AppendNamedReal("log10_nfa", ratio.log10_nfa, text);
+  if (ratio.second_mode) {
+    AppendKey("second_mode", text);
+    text += "{";
+    AppendNamedReal("log_ratio", ratio.second_mode->log_ratio, text);
+    AppendNamedReal("log10_nfa", ratio.second_mode->log10_nfa, text);
+    text += "}";
+  }
   AppendSupport("points", ratio.points, text);
   AppendSupport("lines", ratio.lines, text);
   AppendSupport("coplanar", ratio.coplanar, text);
@@ -184,7 +192,7 @@ void AppendOwnSections(const Scene& scene, std::string& text) {
   const auto append_line = [](const auto& entry, std::string& out) {
     AppendLine(entry.first, entry.second, out);
   };
-  text += "\"version\": 2,\n";
+  text += "\"version\": 3,\n";
   AppendSection("features", scene.features, append_features, text);
   text += ",\n";
   AppendSection("relative_poses", scene.relative_poses, append_relative_pose,

@@ -148,6 +148,30 @@ inline constexpr auto kTransferScaleRatio = [](auto& archive, auto& ratio) {
   });
 };
 
+// What version 3 added to the scale ratios, a section of its own.
+inline constexpr std::size_t kRatioDetailsMinBytes = 1 + 3 * 8;
+
+inline constexpr auto kTransferRatioDetails = [](auto& archive, auto& ratio) {
+  TransferOptional(archive, ratio.second_mode, [](auto& a, auto& mode) {
+    a.Real(mode.log_ratio);
+    a.Real(mode.log10_nfa);
+  });
+  archive.Real(ratio.points.information_share);
+  archive.Real(ratio.lines.information_share);
+  archive.Real(ratio.coplanar.information_share);
+};
+
+/// The number of scale ratios again, then the details of each.
+template <class Archive, class Ratios>
+void TransferRatioDetails(Archive& archive, Ratios& ratios) {
+  if (archive.Length(ratios.size(), kRatioDetailsMinBytes) != ratios.size()) {
+    if constexpr (Archive::kReads) {
+      archive.Fail("there are not as many details as scale ratios");
+    }
+  }
+  for (auto& ratio : ratios) kTransferRatioDetails(archive, ratio);
+}
+
 inline constexpr auto kTransferLine = [](auto& archive, auto& landmark) {
   archive.Reals(landmark.line.direction.data(), 3);
   archive.Reals(landmark.line.moment.data(), 3);
