@@ -1,5 +1,6 @@
 #include "lowlap/averaging/global_positioning.h"
 
+#include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -32,7 +33,7 @@ double Error(const RandomProblem& made, const TranslationSolution& solution) {
 
 TEST(GlobalPositioning, ExactFromRandomStarts) {
   const RandomProblem made = MakeRayRing(20, 400, 5, true, 1);
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const TranslationSolution solution = Solve(made.problem, {}, seed);
     EXPECT_EQ(solution.component, std::vector<int>(20, 0));
     EXPECT_LT(Error(made, solution), 1e-6) << seed;
@@ -62,6 +63,31 @@ TEST(GlobalPositioning, NoiseAndWrongRays) {
     }
   }
   EXPECT_LT(Error(made, Solve(made.problem)), 0.01);
+}
+
+// Every fifth track sees another point in one of its views. The optimum of the
+// published objective is moved by them; without wrong rays it is not.
+TEST(GlobalPositioning, WrongTracksAreFoundAndDropped) {
+  RandomProblem made = MakeRayRing(20, 1200, 6, true, 4);
+  Random random(5);
+  for (std::size_t k = 0; k < made.problem.tracks.size(); ++k) {
+    auto& seen = made.problem.tracks[k].observations;
+    for (RayObservation& each : seen) {
+      each.ray_in_world =
+          (each.ray_in_world + RandomVector(&random, 0.0005)).normalized();
+    }
+    if (k % 5 == 0) {
+      seen[random.Index(6)].ray_in_world =
+          RandomVector(&random, 1.0).normalized();
+    }
+  }
+  GlobalPositioningOptions once;
+  once.max_angle_deg = 180;
+  const double error = Error(made, Solve(made.problem));
+  const double published = Error(made, Solve(made.problem, once));
+  EXPECT_LT(error, 0.002);
+  EXPECT_GT(published, 3 * error);
+  EXPECT_EQ(Solve(made.problem).num_components, 1);
 }
 
 TEST(GlobalPositioning, TracksOfTwoViewsFixNoScale) {
@@ -134,6 +160,67 @@ TEST(GlobalPositioning, RefusesWrongInput) {
   EXPECT_TRUE(fails({}));
   made.problem.tracks[0].observations[0] = {77, Vec3::UnitZ()};
   EXPECT_TRUE(fails({}));
+}
+
+// ray - s (X - C).
+struct RayError {
+  template <typename T>
+  bool operator()(const T* center, const T* point, const T* scale,
+                  T* residual) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      residual[axis] = ray(axis) - *scale * (point[axis] - center[axis]);
+    }
+    return true;
+  }
+  Vec3 ray;
+};
+
+TEST(PositioningSolver, MeetsCeres) {
+  RandomProblem made = MakeRayRing(6, 60, 3, true, 15);
+  Random random(16);
+  for (TrackRays& track : made.problem.tracks) {
+    for (RayObservation& seen : track.observations) {
+      const double size = random.Uniform() < 0.1 ? 0.5 : 0.02;
+      seen.ray_in_world =
+          (seen.ray_in_world + RandomVector(&random, size)).normalized();
+    }
+  }
+  const auto& tracks = made.problem.tracks;
+  PositioningState state;
+  state.centers = made.centers;
+  for (const TrackRays& track : tracks) {
+    state.points.push_back(made.centers[track.observations[0].view] +
+                           5 * track.observations[0].ray_in_world);
+    state.scales.push_back(std::vector<double>(track.observations.size(), 0.2));
+  }
+  PositioningState theirs = state;
+  PositioningOptions options;
+  options.max_iterations = 2000;
+  ASSERT_TRUE(SolvePositions(tracks, options, RunContext(), &state));
+
+  ceres::Problem problem;
+  auto* loss = new ceres::HuberLoss(options.huber_reach);
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    for (std::size_t n = 0; n < tracks[k].observations.size(); ++n) {
+      const RayObservation& seen = tracks[k].observations[n];
+      problem.AddResidualBlock(
+          new ceres::AutoDiffCostFunction<RayError, 3, 3, 3, 1>(
+              new RayError{seen.ray_in_world}),
+          loss, theirs.centers[seen.view].data(), theirs.points[k].data(),
+          &theirs.scales[k][n]);
+      problem.SetParameterLowerBound(&theirs.scales[k][n], 0, 1e-6);
+    }
+  }
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.max_num_iterations = 2000;
+  solver.function_tolerance = 1e-12;
+  solver.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  const double cost = PositioningCost(tracks, theirs, options.huber_reach);
+  EXPECT_NEAR(PositioningCost(tracks, state, options.huber_reach), cost,
+              0.01 * cost);
 }
 
 TEST(PositioningSolver, StopsAtAMinimum) {

@@ -35,13 +35,12 @@ void CentersOfGraph(benchmark::State& state) {
   for (auto _ : state) {
     const auto solution = averager.Solve(graph.made.problem, RunContext());
     if (!solution) return state.SkipWithError("the graph was not solved");
-    error = MedianCenterError(graph.made.centers, *solution);
+    error = MedianCenterError(graph.made, *solution);
   }
   state.counters["error_m"] = error;
   const auto oracle = averager.Solve(graph.oracle, RunContext());
   if (!oracle) return state.SkipWithError("the graph was not solved");
-  state.counters["oracle_error_m"] =
-      MedianCenterError(graph.made.centers, *oracle);
+  state.counters["oracle_error_m"] = MedianCenterError(graph.made, *oracle);
 }
 
 void Arguments(benchmark::internal::Benchmark* benchmark) {

@@ -32,8 +32,11 @@ struct TripletProgramOptions {
 /// or the sum of all absolute values instead of their maximum         (l1_lp).
 ///
 /// Views outside every triplet are not placed: a chain has no triangle. Not
-/// robust: one wrong triplet decides linf, l1_lp bears a few. The maximum is
-/// that over the world's axes, as in the paper; it depends on the world frame.
+/// robust: l1_lp bears a few wrong triplets, while linf is decided by the worst
+/// one, and so is its error; the paper relies on triplets that were verified
+/// one by one beforehand (by the tracks of three views). Nor does the residual,
+/// a distance, tell uncertain edges from certain ones. The maximum is that over
+/// the world's axes, as in the paper; it depends on the world frame.
 class TripletProgramAverager : public TranslationAverager {
  public:
   enum class Norm { kMaximum, kSum };

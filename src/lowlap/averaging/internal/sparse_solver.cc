@@ -15,10 +15,10 @@ using Matrix = Eigen::SparseMatrix<double>;
 
 // Below this CHOLMOD's administration costs more than it saves.
 constexpr Eigen::Index kLargeSystem = 2000;
-constexpr double kMaxOperations = 1e10;
+constexpr double kMaxOperations = 2e9;
 constexpr double kGradientTolerance = 1e-6;
 // What is reached after so many steps will do, if it is no worse than this.
-constexpr int kMaxGradientSteps = 500;
+constexpr int kMaxGradientSteps = 3000;
 constexpr double kWorstGradientError = 0.1;
 
 using Gradients = Eigen::ConjugateGradient<Matrix, Eigen::Lower>;
@@ -87,9 +87,28 @@ Result<Eigen::MatrixXd> SolveWith(const Matrix& lower,
       return solution;
     }
   }
-  return MakeError(ErrorCode::kNumerical, "a sparse system of " +
-                                              std::to_string(lower.rows()) +
-                                              " unknowns could not be solved");
+  return Unsolvable(lower);
+}
+
+// From `guess`, if it is of use.
+Result<Eigen::MatrixXd> SolveByGradients(const Matrix& lower,
+                                         const Eigen::MatrixXd& rhs,
+                                         const Eigen::MatrixXd& guess) {
+  Gradients gradients;
+  gradients.setTolerance(kGradientTolerance);
+  gradients.setMaxIterations(kMaxGradientSteps);
+  gradients.compute(lower);
+  Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(rhs.rows(), rhs.cols());
+  if (guess.rows() == rhs.rows() && guess.cols() == rhs.cols() &&
+      (rhs - lower.selfadjointView<Eigen::Lower>() * guess).norm() <
+          rhs.norm()) {
+    solution = guess;
+  }
+  solution = gradients.solveWithGuess(rhs, solution).eval();
+  if (!solution.allFinite() || !(gradients.error() <= kWorstGradientError)) {
+    return Unsolvable(lower);
+  }
+  return solution;
 }
 
 }  // namespace
@@ -98,6 +117,7 @@ struct SparseSolver::Factorisation {
   Pattern pattern;
   Eigen::SimplicialLDLT<Matrix> small;
   std::unique_ptr<Cholmod> large;
+  Eigen::MatrixXd last;  // by conjugate gradients
 };
 
 SparseSolver::SparseSolver()
@@ -116,19 +136,14 @@ Result<Eigen::MatrixXd> SparseSolver::Solve(const Matrix& lower,
   if (new_pattern) {
     f.large = std::make_unique<Cholmod>();
     f.large->analyzePattern(lower);
+    f.last.resize(0, 0);
   }
   if (f.large->Operations() <= kMaxOperations) {
     return SolveWith(lower, rhs, f.large.get());
   }
-  Gradients gradients;
-  gradients.setTolerance(kGradientTolerance);
-  gradients.setMaxIterations(kMaxGradientSteps);
-  gradients.compute(lower);
-  Eigen::MatrixXd solution = gradients.solve(rhs);
-  if (solution.allFinite() && gradients.error() <= kWorstGradientError) {
-    return solution;
-  }
-  return Unsolvable(lower);
+  auto solution = SolveByGradients(lower, rhs, f.last);
+  if (solution) f.last = *solution;
+  return solution;
 }
 
 }  // namespace lowlap
