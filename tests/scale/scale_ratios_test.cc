@@ -7,6 +7,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
+#include "lowlap/scale/ratio_profile.h"
 #include "lowlap/scale/triplet_view.h"
 
 namespace lowlap {
@@ -137,6 +138,39 @@ TEST(EstimateScaleRatios, PlanePointsHaveNoSayWhereOthersDecide) {
   EXPECT_TRUE(*a == *b);
 }
 
+// With lines that decide, and with nothing but places on planes.
+TEST(ProfileScaleRatios, AreThoseOfTheEstimatedRatios) {
+  for (const bool has_lines : {true, false}) {
+    RowOfViews row;
+    for (auto& [views, pose] : row.scene.relative_poses) {
+      if (has_lines) continue;
+      pose.line_inliers.clear();
+      const FeatureIndex slot = (views.first + views.second) % 3;
+      auto& points = pose.point_inliers;
+      points.erase(std::remove_if(points.begin(), points.end(),
+                                  [&](const FeatureMatch& match) {
+                                    return match.first % 3 != slot;
+                                  }),
+                   points.end());
+    }
+    const auto ratios = EstimateScaleRatios(row.scene, {}, {});
+    const auto profiles =
+        ProfileScaleRatios(row.scene, FindTriplets(row.scene), {}, {});
+    ASSERT_TRUE(ratios.has_value() && profiles.has_value());
+    ASSERT_EQ(profiles->size(), ratios->size());
+    int with_nodes = 0;
+    for (std::size_t n = 0; n < ratios->size(); ++n) {
+      const RatioProfile& profile = (*profiles)[n];
+      EXPECT_TRUE(profile.ratio == (*ratios)[n]);
+      if (profile.nodes.empty()) continue;
+      ++with_nodes;
+      if ((*ratios)[n].verdict != RatioVerdict::kMeaningful) continue;
+      EXPECT_NEAR(profile.mode.nfa.log10_nfa, (*ratios)[n].log10_nfa, 1e-9);
+    }
+    EXPECT_GT(with_nodes, 0) << has_lines;
+  }
+}
+
 TEST(EstimateScaleRatios, DoNotDependOnTheWorldFrame) {
   const RowOfViews row;
   const RowOfViews turned(RotationFromAngleAxis({0.7, -1.1, 0.4}), 250.0);
@@ -249,6 +283,20 @@ TEST(EstimateScaleRatios, CanBeCancelled) {
   const auto ratios = EstimateScaleRatios(row.scene, {}, context);
   ASSERT_FALSE(ratios.has_value());
   EXPECT_EQ(ratios.error().code, ErrorCode::kCancelled);
+}
+
+TEST(ScaleRatios, ViewsWithoutIntrinsicsHaveNoRatios) {
+  RowOfViews row;
+  row.scene.views[3].intrinsic_id = kInvalidId;
+  ScaleOptions options;
+  const auto ratios = EstimateScaleRatios(row.scene, options, RunContext());
+  ASSERT_TRUE(ratios) << ratios.error().ToString();
+  ASSERT_EQ(ratios->size(), FindTriplets(row.scene).size());
+  for (const ScaleRatio& ratio : *ratios) {
+    const bool has_last = ratio.views.middle == 3 || ratio.views.last == 3;
+    EXPECT_EQ(ratio.verdict, has_last ? RatioVerdict::kNoCandidates
+                                      : RatioVerdict::kMeaningful);
+  }
 }
 
 }  // namespace
