@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "lowlap/pipeline/image_collection.h"
+#include "third_party_adapters/onedsfm/problem.h"
 #include "third_party_adapters/openmvg/import.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -44,10 +45,21 @@ Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
   return loaded;
 }
 
+// A scene file, or a problem folder, whose notes are passed on.
+Result<Scene> ReadAnyScene(const std::string& path, const RunContext& context) {
+  if (!onedsfm::IsProblemFolder(path)) return ReadScene(path);
+  auto problem = onedsfm::ReadProblem(path);
+  if (!problem) return tl::unexpected<Error>(problem.error());
+  for (const std::string& note : problem->notes) {
+    context.Log(LogLevel::kWarning, note);
+  }
+  return std::move(problem->scene);
+}
+
 Result<LoadedScene> ReadOwnScene(const SceneInputFlags& flags,
-                                 StageLog* stages) {
+                                 const RunContext& context, StageLog* stages) {
   const StageLog::Scope scope(stages, "read");
-  auto scene = ReadScene(flags.scene);
+  auto scene = ReadAnyScene(flags.scene, context);
   if (!scene) return tl::unexpected<Error>(scene.error());
   const auto excluded = FindViews(*scene, flags.exclude);
   if (!excluded) return tl::unexpected<Error>(excluded.error());
@@ -61,8 +73,8 @@ Result<LoadedScene> ReadOwnScene(const SceneInputFlags& flags,
 void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
   command
       ->add_option("scene,-i,--input_file", flags->scene,
-                   "Scene file (.json, .lowlap), or an OpenMVG sfm_data file "
-                   "together with -m")
+                   "Scene file (.json, .lowlap), a problem folder of 1DSfM, or "
+                   "an OpenMVG sfm_data file together with -m")
       ->required();
   command->add_option("-m,--matchdir", flags->matches_dir,
                       "OpenMVG matches folder (.feat and matches.* files)");
@@ -79,7 +91,7 @@ Result<LoadedScene> LoadMeasuredScene(const SceneInputFlags& flags,
                                       const RunContext& context,
                                       StageLog* stages) {
   auto loaded = flags.matches_dir.empty()
-                    ? ReadOwnScene(flags, stages)
+                    ? ReadOwnScene(flags, context, stages)
                     : ImportOpenMvg(flags, context, stages);
   if (!loaded) return loaded;
   if (loaded->scene.relative_poses.empty()) {

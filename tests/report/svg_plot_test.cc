@@ -193,6 +193,26 @@ TEST(LinePlotTest, EndsMustIncrease) {
   EXPECT_EQ(svg.error().code, ErrorCode::kInvalidArgument);
 }
 
+// The look of a curve says which it is in every plot of a set.
+TEST(LinePlotTest, EmptySeriesKeepTheirLookAndAreNotNamed) {
+  LinePlot plot = OneCurve({{0, 1}, {1, 2}});
+  plot.series.push_back({"second", {{0, 2}, {1, 3}}});
+  const auto look_of_second = [&] {
+    const auto svg = DrawLinePlot(plot);
+    EXPECT_TRUE(svg);
+    // The last series is drawn first, below the others.
+    std::smatch match;
+    std::regex_search(*svg, match,
+                      std::regex("<path d=\"[^\"]*\" fill=\"none\" ([^/]*)/>"));
+    EXPECT_THAT(*svg, HasSubstr(">second<"));
+    return match[1].str();
+  };
+  const std::string look = look_of_second();
+  plot.series[0].points = {{0, std::numeric_limits<double>::infinity()}};
+  EXPECT_EQ(look_of_second(), look);
+  EXPECT_THAT(*DrawLinePlot(plot), Not(HasSubstr(">graph<")));
+}
+
 TEST(LinePlotTest, ManySeriesAreToldApart) {
   LinePlot plot = OneCurve({{0, 1}, {1, 2}});
   for (int n = 1; n < 12; ++n) {

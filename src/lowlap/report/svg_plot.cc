@@ -115,14 +115,15 @@ std::string Stroke(std::size_t series) {
                         : std::string(" stroke-dasharray=\"") + dash + "\"");
 }
 
-/// Names of the series in rows from `y` on; returns where they end. Of bars,
-/// the sample is a square.
+/// Names of the series in rows from `y` on, but for empty ones; returns where
+/// they end. Of bars, the sample is a square.
 double DrawLegend(const std::vector<std::string>& names, bool bars, double y,
                   Svg* svg) {
   constexpr double kSample = 30, kGap = 22, kRow = 20;
   double x = kPadding;
   y += kRow / 2;
   for (std::size_t n = 0; n < names.size(); ++n) {
+    if (names[n].empty()) continue;
     const double width = kSample + TextWidth(names[n]) + kGap;
     if (x > kPadding && x + width > kWidth - kPadding) {
       x = kPadding;
@@ -219,7 +220,6 @@ Result<std::string> DrawLinePlot(const LinePlot& plot) {
   std::vector<double> all_x, all_y;
   std::vector<std::string> names;
   for (const LineSeries& series : plot.series) {
-    names.push_back(series.name);
     for (const auto& [x, y] : series.points) {
       all_x.push_back(x);
       all_y.push_back(y);
@@ -229,6 +229,14 @@ Result<std::string> DrawLinePlot(const LinePlot& plot) {
   if (!x_range) return tl::unexpected<Error>(x_range.error());
   const auto y_range = AxisRange::Make(plot.y, all_y);
   if (!y_range) return tl::unexpected<Error>(y_range.error());
+
+  for (const LineSeries& series : plot.series) {
+    const bool is_drawn = std::any_of(
+        series.points.begin(), series.points.end(), [&](const auto& point) {
+          return x_range->Shows(point.first) && y_range->Shows(point.second);
+        });
+    names.push_back(is_drawn ? series.name : "");
+  }
 
   constexpr double kHeight = 380, kLeft = 84, kRight = kWidth - 2 * kPadding;
   Svg svg;
@@ -261,7 +269,7 @@ Result<std::string> DrawLinePlot(const LinePlot& plot) {
       20, (top + bottom) / 2, plot.y.label,
       "text-anchor=\"middle\" transform=\"rotate(-90 20 " + middle + ")\"");
 
-  for (std::size_t s = 0; s < plot.series.size(); ++s) {
+  for (std::size_t s = plot.series.size(); s-- > 0;) {
     std::string path, markers;
     bool pen_down = false;
     for (const auto& [x, y] : plot.series[s].points) {

@@ -45,7 +45,8 @@ struct LineSeries {
 };
 
 /// Curves over a common horizontal axis, each with a colour, a dash and a
-/// marker of its own.
+/// marker of its own, by its place among the series. The first lie on top.
+/// Series without any value have no entry in the legend.
 struct LinePlot {
   std::string title;
   std::string note;  // below the title; may be empty

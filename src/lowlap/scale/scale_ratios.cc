@@ -37,6 +37,12 @@ std::vector<std::size_t> LargestFirst(
   return order;
 }
 
+bool HasFeatures(const NormalizedFeaturesByView& features,
+                 const ViewTriplet& views) {
+  return features.count(views.first) > 0 && features.count(views.middle) > 0 &&
+         features.count(views.last) > 0;
+}
+
 Result<std::vector<ScaleRatio>> EstimateOnce(
     const Scene& scene, const NormalizedFeaturesByView& features,
     const std::vector<ViewTriplet>& triplets, const ScaleOptions& options,
@@ -46,6 +52,13 @@ Result<std::vector<ScaleRatio>> EstimateOnce(
   std::vector<Result<ScaleRatio>> results(triplets.size());
   const Status status =
       ParallelFor(context, "scale ratios", triplets.size(), [&](std::size_t n) {
+        if (!HasFeatures(features, triplets[order[n]])) {
+          ScaleRatio nothing;
+          nothing.views = triplets[order[n]];
+          nothing.verdict = RatioVerdict::kNoCandidates;
+          results[order[n]] = std::move(nothing);
+          return;
+        }
         const Result<TripletView> triplet = MakeTripletView(
             scene, features, triplets[order[n]], options, &planes);
         results[order[n]] =
@@ -114,7 +127,10 @@ Result<std::vector<ScaleRatio>> EstimateScaleRatios(
   std::vector<std::size_t> undecided;
   std::vector<ViewTriplet> undecided_triplets;
   for (std::size_t n = 0; n < triplets.size(); ++n) {
-    if ((*ratios)[n].verdict == RatioVerdict::kMeaningful) continue;
+    if ((*ratios)[n].verdict == RatioVerdict::kMeaningful ||
+        !HasFeatures(features, triplets[n])) {
+      continue;
+    }
     undecided.push_back(n);
     undecided_triplets.push_back(triplets[n]);
   }

@@ -17,6 +17,7 @@ std::vector<ViewTriplet> FindTriplets(const Scene& scene);
 /// including those that are not meaningful or have no candidates (see their
 /// verdict). Triplets that are not meaningful by points, lines and pairs are
 /// tested a second time with plane points (ScaleOptions::use_coplanar_points).
+/// Triplets with a view without an intrinsic or features have no candidates.
 /// The same for any number of threads.
 ///
 /// Errors: invalid options, those of MakeTripletView, kCancelled.
