@@ -49,19 +49,21 @@ Result<std::string> Draw(const RobustnessStudy& study, std::size_t s,
   plot.x.label = scenario.axis;
   plot.x.scale =
       scenario.is_logarithmic ? AxisScale::kLog10 : AxisScale::kLinear;
+  if (scenario.levels.size() > 1) {
+    plot.x.min = scenario.levels.front().value;
+    plot.x.max = scenario.levels.back().value;
+  }
   plot.y = quantity.axis;
   for (std::size_t n = 0; n < study.options.strategies.size(); ++n) {
     LineSeries series;
     series.name = study.options.strategies[n];
-    bool any = false;
     for (std::size_t l = 0; l < scenario.levels.size(); ++l) {
       const CurvePoint point = PointOf(study, s, l, n);
-      any = any || point.is_known;
       series.points.emplace_back(
           scenario.levels[l].value,
           point.is_known ? point.*quantity.value : HUGE_VAL);
     }
-    if (any) plot.series.push_back(std::move(series));
+    plot.series.push_back(std::move(series));
   }
   return DrawLinePlot(plot);
 }

@@ -42,8 +42,8 @@ Result<SimulatedProblem> SimulateProblem(const RobustnessLevel& level,
     }
   }
   SimulatedProblem made;
-  made.problem = MakeTranslationProblem(scene, rotations, excluded, {},
-                                        /*with_tracks=*/level.has_features);
+  made.problem =
+      MakeTranslationProblem(scene, rotations, excluded, {}, level.HasTracks());
   Mat3 sum = Mat3::Zero();
   for (const auto& [view, rotation] : rotations) {
     sum += synthetic->true_poses.at(view).rotation.transpose() * rotation;

@@ -22,6 +22,9 @@ struct RobustnessLevel {
   bool averages_rotations = true;
   ScaleOptions scale;
   SimulatedRatioOptions ratios;
+
+  /// Strategies on point tracks get those that the ratios come from.
+  bool HasTracks() const { return has_features && scale.use_points; }
 };
 
 /// What gets worse from level to level, in one simulated world.

@@ -183,18 +183,26 @@ class StudyRun {
     return failed_ ? tried : failed_;
   }
 
-  // A smaller problem of the scenario that took the strategy too long.
-  bool WasOverTime(const RobustnessKey& key) {
+  // A smaller problem of the scenario took the strategy so long that this one
+  // would be over time even if time only grew like the number of views.
+  bool WouldBeOverTime(const RobustnessKey& key) {
+    if (!study_->scenarios[key.scenario].levels_grow) return false;
+    const auto seconds_here = [&](const RobustnessKey& smaller,
+                                  double seconds) {
+      return seconds * LevelOf(key).scene.num_views /
+             LevelOf(smaller).scene.num_views;
+    };
     const std::lock_guard<std::mutex> lock(mutex_);
-    return study_->scenarios[key.scenario].levels_grow &&
-           std::any_of(study_->outcomes.begin(), study_->outcomes.end(),
-                       [&](const auto& entry) {
-                         return entry.first.scenario == key.scenario &&
-                                entry.first.level < key.level &&
-                                entry.first.strategy == key.strategy &&
-                                entry.second.status ==
-                                    RobustnessStatus::kOverTime;
-                       });
+    return std::any_of(
+        study_->outcomes.begin(), study_->outcomes.end(),
+        [&](const auto& entry) {
+          const auto& [other, outcome] = entry;
+          return other.scenario == key.scenario && other.level < key.level &&
+                 other.strategy == key.strategy &&
+                 (outcome.status == RobustnessStatus::kOverTime ||
+                  seconds_here(other, outcome.seconds) >
+                      study_->options.time_limit_s);
+        });
   }
 
   // Nothing if the study is to stop.
@@ -208,13 +216,15 @@ class StudyRun {
       return Missing(RobustnessStatus::kFailed, num_views,
                      averager.error().message);
     }
-    if ((*averager)->NeedsTracks() && !level.has_features) {
+    if ((*averager)->NeedsTracks() && !level.HasTracks()) {
       return Missing(RobustnessStatus::kNotAsked, num_views,
                      "needs point tracks");
     }
-    if (WasOverTime(key)) {
+    if (WouldBeOverTime(key)) {
       return Missing(RobustnessStatus::kNotAsked, num_views,
-                     "a smaller problem took it too long");
+                     "would take more than " +
+                         Decimals(options.time_limit_s, 1) +
+                         " s, judging by a smaller problem");
     }
     const Problem& problem = problems_.at({key.scenario, key.level, key.seed});
     if (!*problem) {

@@ -22,8 +22,9 @@ struct RobustnessOptions {
   /// A centre is right within this share of the spread of the true centres.
   double tolerance = 0.05;
   /// Processor time that a strategy has for one problem. One that takes longer
-  /// is stopped if it asks for leave to go on, else when it is done; it is
-  /// reported as over time, and not asked for larger problems of the scenario.
+  /// is stopped if it asks for leave to go on, else judged when it is done; it
+  /// is reported as over time. It is not asked for larger problems of the
+  /// scenario that would take longer even if time grew like their size.
   double time_limit_s = 20;
 
   Status Validate() const;

@@ -97,12 +97,16 @@ std::vector<CoplanarCandidate> Candidates(const SyntheticScene& synthetic,
   std::set<std::pair<FeatureIndex, FeatureIndex>> pairs;  // (first, last)
   const auto add_nearest = [&](const std::vector<FeatureIndex>& from,
                                const std::vector<FeatureIndex>& to, bool swap) {
+    std::vector<LineTrackId> lines_of_to;
+    for (const FeatureIndex b : to) lines_of_to.push_back(line_of.at(b));
     std::vector<std::pair<double, FeatureIndex>> nearest;
     for (const FeatureIndex a : from) {
+      const LineTrackId line_of_a = line_of.at(a);
       nearest.clear();
-      for (const FeatureIndex b : to) {
-        if (line_of.at(a) == line_of.at(b)) continue;
-        nearest.emplace_back(SegmentDistance(segments[a], segments[b]), b);
+      for (std::size_t n = 0; n < to.size(); ++n) {
+        if (line_of_a == lines_of_to[n]) continue;
+        nearest.emplace_back(SegmentDistance(segments[a], segments[to[n]]),
+                             to[n]);
       }
       const std::size_t count = std::min(
           nearest.size(), static_cast<std::size_t>(std::max(0, num_neighbors)));

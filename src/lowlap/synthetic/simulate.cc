@@ -173,8 +173,12 @@ Result<SyntheticScene> Simulate(const SyntheticOptions& options) {
   double best_share = CountCoplanarCandidates(best).WrongShare();
   if (best_share >= wanted) return best;
   // The share grows with the lines moved off: bisection on how many.
+  constexpr int kMaxSteps = 10;
+  constexpr double kCloseEnough = 0.005;
   double low = 0.0, high = 1.0;
-  for (int step = 0; step < 10; ++step) {
+  for (int step = 0;
+       step < kMaxSteps && std::abs(best_share - wanted) > kCloseEnough;
+       ++step) {
     const double off_wall = 0.5 * (low + high);
     SyntheticScene scene = Build(options, off_wall);
     const double share = CountCoplanarCandidates(scene).WrongShare();
