@@ -195,6 +195,17 @@ TEST(TripletProgramNorms, TheSumBearsAWrongTripletThatTheMaximumDoesNot) {
   EXPECT_GT(Error(made, *maximum), 1e-3);
 }
 
+TEST(TripletProgramNorms, TooManyTripletsAreRefusedByNumber) {
+  const TranslationProblem problem =
+      MakeRandomProblem(800, Band(800, 4), 1, /*with_ratios=*/false).problem;
+  const auto refused =
+      TripletProgramAverager(Norm::kSum).Solve(problem, RunContext());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kUnsupported);
+  EXPECT_NE(refused.error().message.find("at most 2000"), std::string::npos)
+      << refused.error().message;
+}
+
 TEST(FindTriplets, BoundsTheirNumberWithoutLosingAConnection) {
   const RandomProblem made = MakeRandomProblem(14, Band(14, 13), 13);
   TripletProgramOptions options;

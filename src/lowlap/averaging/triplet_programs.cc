@@ -10,6 +10,22 @@ namespace {
 
 using Norm = TripletProgramAverager::Norm;
 
+// The simplex method takes ten seconds or so at this size, on a street, and
+// grows with the square or the cube of it.
+constexpr std::size_t kMaxTripletsOfMaximum = 6000;
+constexpr std::size_t kMaxTripletsOfSum = 2000;
+
+Status CheckSize(const std::string& name, Norm norm, std::size_t size) {
+  const std::size_t most =
+      norm == Norm::kMaximum ? kMaxTripletsOfMaximum : kMaxTripletsOfSum;
+  if (size <= most) return {};
+  return MakeError(ErrorCode::kUnsupported,
+                   name + ": " + std::to_string(size) +
+                       " triplets hang together; its linear program is solved "
+                       "for at most " +
+                       std::to_string(most));
+}
+
 /// The linear program of one set of triplets.
 class CenterProgram {
  public:
@@ -89,6 +105,9 @@ Result<TranslationSolution> TripletProgramAverager::Solve(
   solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
   for (const std::vector<TripletMotion>& triplets :
        FindTriplets(problem, options_)) {
+    if (const Status fits = CheckSize(Name(), norm_, triplets.size()); !fits) {
+      return tl::unexpected<Error>(fits.error());
+    }
     CenterProgram program(problem, norm_);
     for (const TripletMotion& motion : triplets) program.Add(motion);
     bool adds_views = false;
