@@ -17,7 +17,7 @@ namespace lowlap {
 struct RobustnessOptions {
   std::vector<std::string> scenarios;   // empty: all
   std::vector<std::string> strategies;  // empty: all
-  int num_seeds = 3;                    // simulations per level
+  int num_seeds = 2;                    // simulations per level
   bool quick = false;
   /// A centre is right within this share of the spread of the true centres.
   double tolerance = 0.05;
