@@ -71,18 +71,4 @@ void BlockMatrix::Add(std::size_t block, const Mat3& value) {
   }
 }
 
-void BlockMatrix::AddToDiagonal(const Eigen::VectorXd& values) {
-  for (Eigen::Index n = 0; n < lower_.cols(); ++n) {
-    lower_.valuePtr()[lower_.outerIndexPtr()[n]] += values(n);
-  }
-}
-
-Eigen::VectorXd BlockMatrix::Diagonal() const {
-  Eigen::VectorXd diagonal(lower_.cols());
-  for (Eigen::Index n = 0; n < lower_.cols(); ++n) {
-    diagonal(n) = lower_.valuePtr()[lower_.outerIndexPtr()[n]];
-  }
-  return diagonal;
-}
-
 }  // namespace lowlap

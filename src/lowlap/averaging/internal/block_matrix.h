@@ -24,8 +24,6 @@ class BlockMatrix {
   void SetZero();
   /// Adds to a block; of a diagonal one, the lower triangle.
   void Add(std::size_t block, const Mat3& value);
-  void AddToDiagonal(const Eigen::VectorXd& values);
-  Eigen::VectorXd Diagonal() const;
   const Eigen::SparseMatrix<double>& lower() const { return lower_; }
 
  private:
