@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/scale/ratio_inliers.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap {
@@ -324,6 +325,16 @@ TEST(ScaleOptions, AreValidated) {
   options = {};
   options.num_neighbors = 0;
   EXPECT_FALSE(options.Validate());
+}
+
+// Such a ratio is written to scenes, which hold finite numbers only.
+TEST(ScaleEstimator, ARatioThatNoFeatureBearsOutHasAFiniteDeviation) {
+  const SyntheticTriplet triplet = MakeSyntheticTriplet({}, 1);
+  const RatioSupport support(triplet.view, {});
+  ScaleRatio ratio = EmptyRatio(triplet.view, support);
+  RefineOnInliers(triplet.view, support, {}, 0.5, &ratio);
+  EXPECT_EQ(ratio.log_ratio, 0.5);
+  EXPECT_EQ(ratio.log_ratio_stddev, kMaxLogRatioStddev);
 }
 
 }  // namespace

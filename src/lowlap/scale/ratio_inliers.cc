@@ -186,9 +186,10 @@ void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
   }
   const Inliers inliers = FindInliers(support, thresholds, refined.log_ratio);
   ratio->log_ratio = refined.log_ratio;
-  ratio->log_ratio_stddev =
+  const double stddev =
       std::sqrt(refined.log_ratio_stddev * refined.log_ratio_stddev +
                 PoseVariance(triplet, support, features));
+  ratio->log_ratio_stddev = std::isfinite(stddev) ? stddev : kMaxLogRatioStddev;
   const auto share = [&](FeatureKind kind) {
     return refined.information_share[static_cast<std::size_t>(kind)];
   };

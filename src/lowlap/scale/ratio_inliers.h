@@ -26,7 +26,8 @@ ScaleRatio EmptyRatio(const TripletView& triplet, const RatioSupport& support);
 /// Fills log_ratio and log_ratio_stddev (with the part that comes from the
 /// relative poses, where their covariance is known), the shares of information,
 /// and for the refined ratio the inlier counts, thresholds and coplanar inliers
-/// of `ratio`.
+/// of `ratio`. A ratio that no feature bears out stays as it is, with the
+/// deviation kMaxLogRatioStddev.
 void RefineOnInliers(const TripletView& triplet, const RatioSupport& support,
                      const InlierThresholds& thresholds, double log_ratio,
                      ScaleRatio* ratio);
