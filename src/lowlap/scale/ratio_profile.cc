@@ -6,10 +6,8 @@
 #include <limits>
 #include <utility>
 
-#include "lowlap/core/parallel.h"
-#include "lowlap/scale/planes_by_pair.h"
 #include "lowlap/scale/scale_estimator.h"
-#include "lowlap/scale/scale_ratios.h"
+#include "lowlap/scale/triplet_tests.h"
 
 namespace lowlap {
 namespace {
@@ -82,47 +80,18 @@ std::optional<RatioOptimum> SecondMode(const RatioSupport& support,
   return second;
 }
 
-Result<std::vector<RatioProfile>> ProfileOnce(
-    const Scene& scene, const NormalizedFeaturesByView& features,
-    const std::vector<ViewTriplet>& triplets, const ScaleOptions& options,
-    const PlanesByPair& planes, const RunContext& context) {
-  std::vector<Result<RatioProfile>> results(triplets.size());
-  const Status status = ParallelFor(
-      context, "ratio profiles", triplets.size(), [&](std::size_t n) {
-        const Result<TripletView> triplet =
-            MakeTripletView(scene, features, triplets[n], options, &planes);
-        results[n] =
-            triplet
-                ? ProfileRatio(*triplet, options)
-                : Result<RatioProfile>(tl::unexpected<Error>(triplet.error()));
-      });
-  if (!status) return tl::unexpected<Error>(status.error());
-  std::vector<RatioProfile> profiles;
-  for (Result<RatioProfile>& result : results) {
-    if (!result) return tl::unexpected<Error>(std::move(result.error()));
-    profiles.push_back(std::move(*result));
-  }
-  return profiles;
-}
-
-void PayForSecondTest(RatioProfile* profile) {
-  const auto pay = [](RatioOptimum* optimum) {
-    optimum->nfa.log10_nfa += std::log10(2.0);
-  };
-  PayForSecondTest(&profile->ratio);
-  pay(&profile->mode);
-  if (profile->second_mode) pay(&*profile->second_mode);
-  for (RatioOptimum& node : profile->nodes) pay(&node);
+ScaleOptions Calibrated(ScaleOptions options) {
+  options.criterion = ScaleCriterion::kAContrario;
+  options.nfa_form = NfaForm::kCalibrated;
+  options.search = RatioSearch::kSweep;
+  return options;
 }
 
 }  // namespace
 
 Result<RatioProfile> ProfileRatio(const TripletView& triplet,
                                   const ScaleOptions& given) {
-  ScaleOptions options = given;
-  options.criterion = ScaleCriterion::kAContrario;
-  options.nfa_form = NfaForm::kCalibrated;
-  options.search = RatioSearch::kSweep;
+  const ScaleOptions options = Calibrated(given);
   const Result<ScaleRatio> ratio =
       MakeScaleEstimator(options)->Estimate(triplet);
   if (!ratio) return tl::unexpected<Error>(ratio.error());
@@ -145,40 +114,22 @@ Result<RatioProfile> ProfileRatio(const TripletView& triplet,
   return profile;
 }
 
+void PayForSecondTest(RatioProfile* profile) {
+  if (profile->nodes.empty()) return;
+  const auto pay = [](RatioOptimum* optimum) {
+    optimum->nfa.log10_nfa += std::log10(2.0);
+  };
+  PayForSecondTest(&profile->ratio);
+  pay(&profile->mode);
+  if (profile->second_mode) pay(&*profile->second_mode);
+  for (RatioOptimum& node : profile->nodes) pay(&node);
+}
+
 Result<std::vector<RatioProfile>> ProfileScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
-    const ScaleOptions& options, const RunContext& context) {
-  if (const Status status = options.Validate(); !status) {
-    return tl::unexpected<Error>(status.error());
-  }
-  const NormalizedFeaturesByView features = NormalizeAllFeatures(scene);
-  ScaleOptions of_features = options;
-  of_features.use_coplanar_points = false;
-  auto profiles =
-      ProfileOnce(scene, features, triplets, of_features, {}, context);
-  if (!profiles || !options.use_coplanar || !options.use_coplanar_points) {
-    return profiles;
-  }
-  std::vector<std::size_t> undecided;
-  std::vector<ViewTriplet> undecided_triplets;
-  for (std::size_t n = 0; n < triplets.size(); ++n) {
-    if ((*profiles)[n].ratio.verdict == RatioVerdict::kMeaningful) continue;
-    undecided.push_back(n);
-    undecided_triplets.push_back(triplets[n]);
-  }
-  if (undecided.empty()) return profiles;
-  const auto planes =
-      FindPlanesByPair(scene, features, undecided_triplets, context);
-  if (!planes) return tl::unexpected<Error>(planes.error());
-  auto with_planes = ProfileOnce(scene, features, undecided_triplets, options,
-                                 *planes, context);
-  if (!with_planes) return with_planes;
-  for (std::size_t n = 0; n < undecided.size(); ++n) {
-    RatioProfile& profile = (*with_planes)[n];
-    if (!profile.nodes.empty()) PayForSecondTest(&profile);
-    (*profiles)[undecided[n]] = std::move(profile);
-  }
-  return profiles;
+    const ScaleOptions& given, const RunContext& context) {
+  return TestTriplets<RatioProfile>(scene, triplets, Calibrated(given), context,
+                                    "ratio profiles", ProfileRatio);
 }
 
 }  // namespace lowlap

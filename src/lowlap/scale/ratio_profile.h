@@ -32,6 +32,10 @@ struct RatioProfile {
   ScaleRatio ratio;
 };
 
+/// For TestTriplets.
+inline ScaleRatio& RatioOf(RatioProfile& profile) { return profile.ratio; }
+void PayForSecondTest(RatioProfile* profile);
+
 /// The profile of one triplet, by the calibrated a-contrario criterion,
 /// whatever `options` says about the form, criterion and search.
 ///

@@ -30,8 +30,4 @@ Result<std::vector<ScaleRatio>> EstimateScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
     const ScaleOptions& options, const RunContext& context);
 
-/// Adds what a second test costs, log10 2: two tests find twice as many false
-/// ratios.
-void PayForSecondTest(ScaleRatio* ratio);
-
 }  // namespace lowlap
