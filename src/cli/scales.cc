@@ -1,14 +1,17 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/evaluation/relative_errors.h"
+#include "lowlap/pipeline/ratio_table.h"
 #include "lowlap/pipeline/summary_json.h"
 #include "lowlap/scale/ratio_profile.h"
 #include "lowlap/scale/scale_ratios.h"
@@ -63,43 +66,28 @@ Status WriteProfiles(const std::string& path,
   });
 }
 
-// "60/30/10": percent of the information of points, lines and coplanar pairs.
-std::string InformationText(const ScaleRatio& ratio) {
-  const auto percent = [](const KindSupport& kind) {
-    return std::to_string(std::lround(100 * kind.information_share));
-  };
-  return percent(ratio.points) + '/' + percent(ratio.lines) + '/' +
-         percent(ratio.coplanar);
-}
-
-// "ratio (log10 NFA)".
-std::string SecondModeText(const ScaleRatio& ratio) {
-  if (!ratio.second_mode) return "-";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.4f (%.1f)",
-                std::exp(ratio.second_mode->log_ratio),
-                ratio.second_mode->log10_nfa);
-  return text;
-}
-
 void PrintTable(const std::vector<ScaleRatio>& ratios) {
-  std::printf("%-12s %9s %9s %9s %9s %11s %11s %11s %10s %16s  %s\n", "views",
-              "ratio", "95% from", "to", "log10 NFA", "points", "lines",
-              "coplanar", "info %", "second mode", "verdict");
-  for (const ScaleRatio& r : ratios) {
-    const auto support = [](const KindSupport& kind) {
-      return std::to_string(kind.inliers) + "/" +
-             std::to_string(kind.candidates);
-    };
-    const std::string views = std::to_string(r.views.first) + "-" +
-                              std::to_string(r.views.middle) + "-" +
-                              std::to_string(r.views.last);
-    std::printf("%-12s %9.4f %9.4f %9.4f %9.1f %11s %11s %11s %10s %16s  %s\n",
-                views.c_str(), std::exp(r.log_ratio), std::exp(r.IntervalLow()),
-                std::exp(r.IntervalHigh()), r.log10_nfa,
-                support(r.points).c_str(), support(r.lines).c_str(),
-                support(r.coplanar).c_str(), InformationText(r).c_str(),
-                SecondModeText(r).c_str(), RatioVerdictName(r.verdict));
+  std::vector<std::vector<std::string>> rows = {RatioColumns()};
+  rows.front().insert(rows.front().begin(), "views");
+  for (const ScaleRatio& ratio : ratios) {
+    rows.push_back(RatioRow(ratio));
+    rows.back().insert(rows.back().begin(),
+                       std::to_string(ratio.views.first) + "-" +
+                           std::to_string(ratio.views.middle) + "-" +
+                           std::to_string(ratio.views.last));
+  }
+  std::vector<int> widths(rows.front().size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      widths[n] = std::max(widths[n], static_cast<int>(row[n].size()));
+    }
+  }
+  for (const auto& row : rows) {
+    std::printf("%-*s", widths.front(), row.front().c_str());
+    for (std::size_t n = 1; n + 1 < row.size(); ++n) {
+      std::printf("  %*s", widths[n], row[n].c_str());
+    }
+    std::printf("  %s\n", row.back().c_str());
   }
 }
 

@@ -1,10 +1,10 @@
 #include "lowlap/pipeline/run_report.h"
 
-#include <cmath>
 #include <cstdio>
 #include <utility>
 
 #include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/pipeline/ratio_table.h"
 
 namespace lowlap {
 namespace {
@@ -19,31 +19,23 @@ std::string NameOf(const Scene& scene, ViewId view) {
   return scene.views.at(view).filename;
 }
 
-std::string Support(const KindSupport& kind) {
-  return std::to_string(kind.inliers) + " of " +
-         std::to_string(kind.candidates);
-}
-
 ReportTable RatioTable(const Scene& scene) {
   ReportTable table;
   table.title = "Scale ratios";
   table.note =
-      "Baseline (middle, last) over baseline (first, middle). A ratio is used "
-      "if chance does not explain it (log10 NFA below 0); supports are inliers "
-      "of candidates.";
-  table.columns = {"first, middle, last", "ratio",  "std of log",
-                   "log10 NFA",           "points", "lines",
-                   "coplanar pairs",      "verdict"};
+      "Baseline (middle, last) over baseline (first, middle), with the "
+      "interval that holds it with a probability of 95 %. A ratio is used if "
+      "chance does not explain it (log10 NFA below 0). Points, lines and "
+      "coplanar pairs: inliers/candidates, and percent of the information in "
+      "that order. Second mode: what the features that disagree would choose.";
+  table.columns = RatioColumns();
+  table.columns.insert(table.columns.begin(), "first, middle, last");
   for (const ScaleRatio& ratio : scene.scale_ratios) {
-    table.rows.push_back({NameOf(scene, ratio.views.first) + ", " +
-                              NameOf(scene, ratio.views.middle) + ", " +
-                              NameOf(scene, ratio.views.last),
-                          Number(std::exp(ratio.log_ratio), "%.4f"),
-                          Number(ratio.log_ratio_stddev, "%.4f"),
-                          Number(ratio.log10_nfa, "%.1f"),
-                          Support(ratio.points), Support(ratio.lines),
-                          Support(ratio.coplanar),
-                          RatioVerdictName(ratio.verdict)});
+    std::vector<std::string> row = RatioRow(ratio);
+    row.insert(row.begin(), NameOf(scene, ratio.views.first) + ", " +
+                                NameOf(scene, ratio.views.middle) + ", " +
+                                NameOf(scene, ratio.views.last));
+    table.rows.push_back(std::move(row));
   }
   return table;
 }

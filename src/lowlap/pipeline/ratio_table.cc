@@ -1,0 +1,59 @@
+#include "lowlap/pipeline/ratio_table.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace lowlap {
+namespace {
+
+std::string Number(double value, const char* format) {
+  char text[32];
+  std::snprintf(text, sizeof text, format, value);
+  return text;
+}
+
+std::string RatioText(double log_ratio) {
+  return Number(std::exp(log_ratio), "%.4f");
+}
+
+std::string Support(const KindSupport& kind) {
+  return std::to_string(kind.inliers) + "/" + std::to_string(kind.candidates);
+}
+
+std::string Information(const ScaleRatio& ratio) {
+  const auto percent = [](const KindSupport& kind) {
+    return std::to_string(std::lround(100 * kind.information_share));
+  };
+  return percent(ratio.points) + "/" + percent(ratio.lines) + "/" +
+         percent(ratio.coplanar);
+}
+
+}  // namespace
+
+std::vector<std::string> RatioColumns() {
+  return {"ratio", "95 % from", "to",     "log10 NFA",   "points",
+          "lines", "coplanar",  "info %", "second mode", "verdict"};
+}
+
+std::vector<std::string> RatioRow(const ScaleRatio& ratio) {
+  const std::string none = "-";
+  const std::string verdict = RatioVerdictName(ratio.verdict);
+  if (ratio.verdict == RatioVerdict::kNoCandidates) {
+    return {none, none, none, none, none, none, none, none, none, verdict};
+  }
+  return {RatioText(ratio.log_ratio),
+          RatioText(ratio.IntervalLow()),
+          RatioText(ratio.IntervalHigh()),
+          Number(ratio.log10_nfa, "%.1f"),
+          Support(ratio.points),
+          Support(ratio.lines),
+          Support(ratio.coplanar),
+          Information(ratio),
+          ratio.second_mode
+              ? RatioText(ratio.second_mode->log_ratio) + " (" +
+                    Number(ratio.second_mode->log10_nfa, "%.1f") + ")"
+              : none,
+          verdict};
+}
+
+}  // namespace lowlap
