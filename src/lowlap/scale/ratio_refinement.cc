@@ -110,8 +110,11 @@ class MixtureFit {
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       const double share =
           information_ > 0 ? information[g] / information_ : 0.0;
+      // The mean follows `share` of the group's independent features.
+      const double count = fit_.degrees[g];
       fit_.degrees[g] =
-          std::max(fit_.degrees[g] - share, 0.0) + groups_[g].prior_count;
+          (count > share ? num_right_[g] * (1 - share / count) : 0.0) +
+          groups_[g].prior_count;
     }
   }
 
@@ -126,7 +129,9 @@ class MixtureFit {
     return std::abs(sum) / std::sqrt(information_);
   }
 
-  // Returns the largest relative change.
+  // Returns the largest relative change. Pairs all count alike, since the
+  // squares of those that share a line hardly depend on each other, and weights
+  // 1 / m would favour wrong ones, whose lines have few right pairs.
   double FindNoise() {
     std::vector<double> squares;
     for (const RatioGroup& group : groups_) {
@@ -134,9 +139,7 @@ class MixtureFit {
     }
     for (std::size_t n = 0; n < features_.size(); ++n) {
       const RatioFeature& feature = features_[n];
-      squares[feature.group] += fit_.probability[n] *
-                                SquaredDeviation(feature) /
-                                fit_.multiplicity[n];
+      squares[feature.group] += fit_.probability[n] * SquaredDeviation(feature);
     }
     double change = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <utility>
 
 namespace lowlap {
 namespace {
@@ -26,6 +25,27 @@ double StudentFactor(double degrees) {
          (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n);
 }
 
+// (r / (phi s))^2.
+double SquaredDeviation(const RatioFeature& feature, double log_ratio,
+                        double noise2) {
+  return Square((feature.log_ratio - log_ratio) / feature.log_ratio_stddev) /
+         noise2;
+}
+
+// By feature, how fast its part of the sum w r falls with mu; they add up to H.
+std::vector<double> Slopes(const std::vector<RatioFeature>& features,
+                           const RatioMixture& mixture) {
+  std::vector<double> slopes;
+  slopes.reserve(features.size());
+  for (std::size_t n = 0; n < features.size(); ++n) {
+    const double u = SquaredDeviation(features[n], mixture.log_ratio,
+                                      mixture.noise2[features[n].group]);
+    slopes.push_back(mixture.weight[n] *
+                     (1 - (1 - mixture.probability[n]) * u));
+  }
+  return slopes;
+}
+
 // Sums over the features of a group; scores are derivatives of the log
 // likelihood of one feature if it is right.
 struct GroupSums {
@@ -35,24 +55,21 @@ struct GroupSums {
   double wrong = 0;
   // Information between mu, log phi, and the log odds of being wrong.
   double mu_phi = 0, mu_odds = 0, phi_phi = 0, phi_odds = 0, odds_odds = 0;
+  std::vector<int> pairs;
 
   void Add(const RatioFeature& feature, double log_ratio, double noise2,
            double p, double multiplicity) {
-    const double variance = noise2 * Square(feature.log_ratio_stddev);
-    const double residual = feature.log_ratio - log_ratio;
-    const double u = residual * residual / variance;
-    const double share = 1 / multiplicity;
-    const double score = residual / variance;
+    const double u = SquaredDeviation(feature, log_ratio, noise2);
+    const double score = (feature.log_ratio - log_ratio) /
+                         (noise2 * Square(feature.log_ratio_stddev));
     const double unsure = p * (1 - p);
-    curvature += share * (p - unsure * u) / variance;
-    information += share * p / variance;
-    count += share;
-    wrong += share * (1 - p);
-    mu_phi += share * score * (2 * p - unsure * (u - 1));
-    mu_odds += share * score * unsure;
-    phi_phi += share * (2 * p * u - unsure * Square(u - 1));
-    phi_odds += share * unsure * (u - 1);
-    odds_odds -= share * unsure;
+    count += 1;
+    wrong += 1 - p;
+    mu_phi += score * (2 * p - unsure * (u - 1)) / multiplicity;
+    mu_odds += score * unsure / multiplicity;
+    phi_phi += 2 * p * u - unsure * Square(u - 1);
+    phi_odds += unsure * (u - 1);
+    odds_odds -= unsure;
   }
 
   void AddPriors(double prior_count, double noise2) {
@@ -74,64 +91,109 @@ struct GroupSums {
             Square(mu_odds) * phi_phi) /
            determinant;
   }
+
+  // Half the information on log phi, the share of wrong features unknown. A
+  // variance with n degrees of freedom has n / 2 on its logarithm, so 2 n on
+  // that of its root. At most `if_sure`, that of features known to be right.
+  double Degrees(double if_sure) const {
+    double information_on_phi = phi_phi;
+    if (odds_odds > 1e-9 * phi_phi) {
+      information_on_phi -= Square(phi_odds) / odds_odds;
+    }
+    return std::clamp(0.5 * information_on_phi, kLeastKept * if_sure, if_sure);
+  }
 };
 
 using Moves = std::array<double, 4>;
 
+// Calls visit(begin, end) for the pairs of every line of one side, `pairs`
+// being sorted by it.
+template <class Visit>
+void VisitLines(const std::vector<RatioFeature>& features, bool is_first,
+                std::vector<int>* pairs, const Visit& visit) {
+  const auto line_of = [&](int n) {
+    return is_first ? features[n].first_line : features[n].last_line;
+  };
+  std::stable_sort(pairs->begin(), pairs->end(),
+                   [&](int a, int b) { return line_of(a) < line_of(b); });
+  for (auto begin = pairs->begin(), end = begin; begin != pairs->end();
+       begin = end) {
+    while (end != pairs->end() && line_of(*end) == line_of(*begin)) ++end;
+    visit(begin, end);
+  }
+}
+
 // The variance of the sum of w r over pairs, counting the noise of a line once.
+// That of one pair is its slope / m (the information identity); two that share
+// a line covary by the product of their slopes and of what its noise does to
+// them (to first order in the correlation, Price 1958).
 double PairVariance(const std::vector<RatioFeature>& features,
-                    const std::vector<int>& pairs,
-                    const RatioMixture& mixture) {
-  // What the noise of a line does, by first and last lines.
-  std::vector<std::pair<int, Moves>> moves;
-  moves.reserve(pairs.size());
+                    std::vector<int> pairs, const RatioMixture& mixture,
+                    const std::vector<double>& slopes) {
   double variance = 0;
+  for (const int n : pairs) {
+    variance += slopes[n] / mixture.multiplicity[n] -
+                Square(slopes[n] * features[n].log_ratio_stddev) *
+                    mixture.noise2[features[n].group];
+  }
   for (const bool is_first : {true, false}) {
-    moves.clear();
-    for (const int n : pairs) {
-      const RatioFeature& pair = features[n];
-      Moves of_pair = is_first ? pair.by_first : pair.by_last;
-      const double scale =
-          mixture.weight[n] * std::sqrt(mixture.noise2[pair.group]);
-      for (double& move : of_pair) move *= scale;
-      moves.emplace_back(is_first ? pair.first_line : pair.last_line, of_pair);
-    }
-    std::stable_sort(
-        moves.begin(), moves.end(),
-        [](const auto& a, const auto& b) { return a.first < b.first; });
-    for (std::size_t begin = 0, end = 0; begin < moves.size(); begin = end) {
+    VisitLines(features, is_first, &pairs, [&](auto begin, auto end) {
       Moves sum{};
-      for (; end < moves.size() && moves[end].first == moves[begin].first;
-           ++end) {
-        for (std::size_t m = 0; m < sum.size(); ++m) {
-          sum[m] += moves[end].second[m];
-        }
+      for (; begin != end; ++begin) {
+        const RatioFeature& pair = features[*begin];
+        const Moves& moves = is_first ? pair.by_first : pair.by_last;
+        const double scale =
+            slopes[*begin] * std::sqrt(mixture.noise2[pair.group]);
+        for (std::size_t m = 0; m < sum.size(); ++m) sum[m] += scale * moves[m];
       }
       for (const double move : sum) variance += move * move;
-    }
+    });
   }
-  return variance;
+  return std::max(variance, 0.0);
 }
 
-// That of a group's pairs over what independent ones of the same weights would
-// give; 1 for other features.
-double LineFactor(const std::vector<RatioFeature>& features,
-                  const RatioMixture& mixture, int group) {
-  std::vector<int> pairs;
-  double sum_of_weights = 0;
-  for (std::size_t n = 0; n < features.size(); ++n) {
-    if (features[n].group != group || !features[n].IsPair()) continue;
-    pairs.push_back(static_cast<int>(n));
-    sum_of_weights += mixture.weight[n];
+// The sum of p p' rho^2 over right pairs that share a line, rho the correlation
+// of their noise: that of its squares is rho^2.
+double SharedSquares(const std::vector<RatioFeature>& features,
+                     std::vector<int> pairs, const RatioMixture& mixture) {
+  double shared = 0;
+  for (const bool is_first : {true, false}) {
+    VisitLines(features, is_first, &pairs, [&](auto begin, auto end) {
+      // The squared norm of the sum of p a a^T, a the moves in standard
+      // deviations of the pair, without what every pair has with itself.
+      std::array<Moves, 4> sum{};
+      for (; begin != end; ++begin) {
+        const RatioFeature& pair = features[*begin];
+        const Moves& moves = is_first ? pair.by_first : pair.by_last;
+        const double scale =
+            mixture.probability[*begin] / Square(pair.log_ratio_stddev);
+        double own = 0;
+        for (std::size_t k = 0; k < sum.size(); ++k) {
+          own += scale * moves[k] * moves[k];
+          for (std::size_t m = 0; m < sum.size(); ++m) {
+            sum[k][m] += scale * moves[k] * moves[m];
+          }
+        }
+        shared -= own * own;
+      }
+      for (const Moves& row : sum) {
+        for (const double value : row) shared += value * value;
+      }
+    });
   }
-  return sum_of_weights > 0
-             ? PairVariance(features, pairs, mixture) / sum_of_weights
-             : 1.0;
+  return std::max(shared, 0.0);
 }
+
+struct CellSpread {
+  double factor = 1;
+  double relative_variance = 0;  // of the factor, over 2
+};
 
 // How much the sums over cells vary over how much they should.
-double CellFactor(const std::vector<RatioFeature>& features,
-                  const RatioMixture& mixture, double information) {
+CellSpread FindCellSpread(const std::vector<RatioFeature>& features,
+                          const RatioMixture& mixture,
+                          const std::vector<double>& slopes,
+                          double information) {
   constexpr double kPriorCells = 8.0;
   struct Cell {
     double sum = 0;
@@ -148,23 +210,24 @@ double CellFactor(const std::vector<RatioFeature>& features,
     if (features[n].IsPair()) {
       cell.pairs.push_back(static_cast<int>(n));
     } else {
-      cell.variance += weight;
+      cell.variance += slopes[n];
     }
   }
   double observed = 0, expected = 0, expected2 = 0;
   for (const auto& [number, cell] : cells) {
     // The mean follows the cell.
     const double variance =
-        (cell.variance + PairVariance(features, cell.pairs, mixture)) *
+        (cell.variance + PairVariance(features, cell.pairs, mixture, slopes)) *
         std::max(0.0, 1 - cell.weight / information);
     observed += cell.sum * cell.sum;
     expected += variance;
     expected2 += variance * variance;
   }
-  if (!(expected > 0)) return 1.0;
+  if (!(expected > 0)) return {};
   const double num_cells = std::max(0.0, Square(expected) / expected2 - 1);
-  return (kPriorCells + num_cells * observed / expected) /
-         (kPriorCells + num_cells);
+  return {(kPriorCells + num_cells * observed / expected) /
+              (kPriorCells + num_cells),
+          num_cells / Square(kPriorCells + num_cells)};
 }
 
 }  // namespace
@@ -173,11 +236,17 @@ RatioVariance FindRatioVariance(const std::vector<RatioFeature>& features,
                                 const std::vector<RatioGroup>& groups,
                                 const RatioMixture& mixture) {
   const std::size_t num_groups = groups.size();
+  const std::vector<double> slopes = Slopes(features, mixture);
   std::vector<GroupSums> sums(num_groups);
   for (std::size_t n = 0; n < features.size(); ++n) {
     const int group = features[n].group;
     sums[group].Add(features[n], mixture.log_ratio, mixture.noise2[group],
                     mixture.probability[n], mixture.multiplicity[n]);
+    sums[group].curvature += slopes[n];
+    sums[group].information += mixture.weight[n];
+    if (features[n].IsPair()) {
+      sums[group].pairs.push_back(static_cast<int>(n));
+    }
   }
   double curvature = 0, information = 0, lost = 0;
   for (std::size_t g = 0; g < num_groups; ++g) {
@@ -197,20 +266,29 @@ RatioVariance FindRatioVariance(const std::vector<RatioFeature>& features,
   double variance = 0, spread = 0, meier = 1;
   for (std::size_t g = 0; g < num_groups; ++g) {
     if (!(sums[g].curvature > 0)) continue;
-    const double of_group =
-        sums[g].curvature * LineFactor(features, mixture, static_cast<int>(g));
+    double of_group = sums[g].curvature;
+    double degrees = sums[g].Degrees(mixture.degrees[g]);
+    if (!sums[g].pairs.empty()) {
+      of_group =
+          std::max(PairVariance(features, sums[g].pairs, mixture, slopes),
+                   kLeastKept * of_group);
+      degrees *=
+          degrees / (degrees + SharedSquares(features, sums[g].pairs, mixture));
+    }
     const double share = sums[g].curvature / curvature;
     variance += of_group;
-    spread += Square(of_group) / mixture.degrees[g];
-    meier += 2 * share * (1 - share) / mixture.degrees[g];
+    spread += Square(of_group) / degrees;
+    meier += 2 * share * (1 - share) / degrees;
     result.information_share[g] = share;
   }
   const double kept =
       std::max(curvature - lost, kLeastKept * curvature) / curvature;
-  result.stddev = StudentFactor(Square(variance) / spread) *
-                  std::sqrt(variance * meier / kept *
-                            CellFactor(features, mixture, information)) /
-                  curvature;
+  const CellSpread cells =
+      FindCellSpread(features, mixture, slopes, information);
+  const double degrees =
+      1 / (spread / Square(variance) + cells.relative_variance);
+  result.stddev = StudentFactor(degrees) *
+                  std::sqrt(variance * meier / kept * cells.factor) / curvature;
   return result;
 }
 

@@ -13,8 +13,9 @@ struct RatioMixture {
   std::vector<double> probability;
   std::vector<double> weight;
   std::vector<double> multiplicity;
-  /// By group: phi^2, and its degrees of freedom: right features, less the
-  /// group's share of the mean, with those that count beforehand.
+  /// By group: phi^2, and the degrees of freedom that it would have if right
+  /// and wrong were known and all noise were independent: right features, less
+  /// what the mean follows them, with those that count beforehand.
   std::vector<double> noise2;
   std::vector<double> degrees;
 };
@@ -31,7 +32,8 @@ struct RatioVariance {
 ///   H = sum w (1 - (1 - p) u), u = r^2 / (phi^2 s^2): the information on mu,
 ///     less what is missing since right and wrong are not known (Louis 1982);
 ///   J, the variance of sum w r: H, but of pairs with the noise of every end
-///     point of a line counted once, however many pairs the line is part of;
+///     point of a line counted once, however many pairs the line is part of
+///     (Godambe 1960 on estimating equations: var = J / H^2);
 ///   C, what is lost since the noise and share of right features of each group
 ///     are not known either (Schur complement of their information);
 ///   M = 1 + 2 sum h_g (1 - h_g) / n_g, h_g the group's share of H and n_g its
@@ -41,7 +43,12 @@ struct RatioVariance {
 ///     should; errors of the two-view step or of the lens are the same for
 ///     neighbours, and do not fall with the number of features. As if 8 more
 ///     cells varied as they should.
-/// Student's t has the degrees of freedom of Welch (1947) and Satterthwaite.
+/// Degrees of freedom: n_g = I_g^2 / (I_g + S_g), with I_g half the information
+/// on log phi_g, less what is missing as in H and what the unknown share of
+/// wrong features takes, and S_g the sum of the squared correlations of pairs
+/// that share a line. F has (8 + m)^2 / m, m the number of cells. Student's t
+/// has those of Welch (1947) and Satterthwaite (1946), the relative variances
+/// of J and F adding up.
 RatioVariance FindRatioVariance(const std::vector<RatioFeature>& features,
                                 const std::vector<RatioGroup>& groups,
                                 const RatioMixture& mixture);
