@@ -133,6 +133,75 @@ TEST(RefineRatio, ALineIsOneMeasurementInHoweverManyPairs) {
   EXPECT_NEAR(stated / std::sqrt(squares), 1.0, 0.2);
 }
 
+// Wrong lines have few right pairs; they must not make the noise look larger.
+TEST(RefineRatio, WrongPairsDoNotWidenTheNoise) {
+  Random random(8);
+  constexpr int kTrials = 60, kLines = 6;
+  constexpr double kNoise = 0.01;
+  double noise = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<RatioFeature> features;
+    const auto add = [&](int first, int last, double log_ratio) {
+      RatioFeature pair;
+      pair.log_ratio = log_ratio;
+      pair.log_ratio_stddev = std::sqrt(2.0) * kNoise;
+      pair.first_line = first;
+      pair.last_line = last;
+      pair.by_first = {kNoise, 0, 0, 0};
+      pair.by_last = {-kNoise, 0, 0, 0};
+      pair.cell = static_cast<int>(features.size());
+      features.push_back(pair);
+    };
+    std::vector<double> first, last;
+    for (int n = 0; n < kLines; ++n) first.push_back(random.Gaussian(kNoise));
+    for (int n = 0; n < kLines; ++n) last.push_back(random.Gaussian(kNoise));
+    for (int a = 0; a < kLines; ++a) {
+      for (int b = 0; b < kLines; ++b) add(a, b, 0.3 + first[a] - last[b]);
+    }
+    for (int n = kLines; n < 10 * kLines; ++n) {
+      add(n, n, 0.3 + random.Uniform(-0.3, 0.3));
+    }
+    noise += Refine(features, 0.3).group_noise[0] / kTrials;
+  }
+  EXPECT_GT(noise, 0.9);
+  EXPECT_LT(noise, 1.4);
+}
+
+// Few right ones among wrong ones, of unknown noise.
+TEST(RefineRatio, IntervalHoldsAmongWrongFeatures) {
+  Random random(9);
+  constexpr int kTrials = 2000;
+  constexpr double kStddev = 0.02;
+  int inside = 0;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    std::vector<RatioFeature> features = Measurements(10, kStddev, &random);
+    for (int n = 0; n < 15; ++n) {
+      RatioFeature wrong = features[0];
+      wrong.log_ratio = 0.3 + random.Uniform(-0.5, 0.5);
+      wrong.cell = 10 + n;
+      features.push_back(wrong);
+    }
+    RatioGroup group;
+    group.count = static_cast<int>(features.size());
+    group.sum_of_stddevs = kStddev * group.count;
+    group.noise = 2;
+    group.prior_count = 0.25;
+    std::vector<RatioFeature> near;
+    for (const RatioFeature& feature : features) {
+      if (std::abs(feature.log_ratio - 0.3) <
+          kRefinementReach * group.noise * kStddev) {
+        near.push_back(feature);
+      }
+    }
+    const RefinedRatio refined = RefineRatio(near, {group}, 0.3);
+    inside +=
+        std::abs(refined.log_ratio - 0.3) < 1.96 * refined.log_ratio_stddev;
+  }
+  EXPECT_GE(inside, 0.94 * kTrials);
+  EXPECT_LE(inside, 0.97 * kTrials);
+  RecordProperty("inside", inside);
+}
+
 TEST(RefineRatio, ErrorsSharedByACellDoNotAverageOut) {
   Random random(4);
   constexpr int kCells = 16, kPerCell = 100;

@@ -238,10 +238,14 @@ TEST(ScaleEstimator, TheOrderOfTheFeaturesChangesNothing) {
   std::reverse(view.lines_jk.begin(), view.lines_jk.end());
   view.coplanar =
       FindCoplanarCandidates(view.geometry, view.lines_ij, view.lines_jk, 10);
-  const ScaleRatio after = Estimate(view);
+  ScaleRatio after = Estimate(view);
   EXPECT_NEAR(before.log_ratio, after.log_ratio, 1e-9);
   EXPECT_NEAR(before.log_ratio_stddev, after.log_ratio_stddev, 1e-9);
   EXPECT_NEAR(before.log10_nfa, after.log10_nfa, 1e-9);
+  // A sum in another order.
+  EXPECT_NEAR(before.points.information_share, after.points.information_share,
+              1e-12);
+  after.points.information_share = before.points.information_share;
   EXPECT_EQ(before.points, after.points);
   EXPECT_EQ(before.coplanar.inliers, after.coplanar.inliers);
 }
