@@ -198,6 +198,11 @@ TEST(CompareStrategies, UnknownStrategiesAreRefusedBeforeAnyWork) {
     EXPECT_THAT(comparison.error().message, HasSubstr("strategy"));
     EXPECT_FALSE(options.Validate());
   }
+  options = CompareOptions();
+  options.reference = "guess";
+  const auto refused = CompareStrategies(Scene(), options, RunContext());
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, HasSubstr("unknown strategy 'guess'"));
 }
 
 TEST(CompareStrategies, CancellingStopsTheRun) {

@@ -203,13 +203,16 @@ Status CompareOptions::Validate() const {
   if (const Status valid = solve.Validate(); !valid) return valid;
   const auto averagers = MakeAveragers(strategies);
   if (!averagers) return tl::unexpected<Error>(averagers.error());
+  if (const auto known = MakeTranslationAverager(reference); !known) {
+    return tl::unexpected<Error>(known.error());
+  }
   return {};
 }
 
 Result<Comparison> CompareStrategies(const Scene& scene,
                                      const CompareOptions& options,
                                      const RunContext& context) {
-  if (const Status valid = options.solve.Validate(); !valid) {
+  if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
   const auto averagers = MakeAveragers(options.strategies);
