@@ -142,6 +142,11 @@ TEST(SubsetTable, Summary) {
   EXPECT_THAT(*plot, HasSubstr("<svg"));
   EXPECT_TRUE(DrawSubsets({}));
   EXPECT_FALSE((SubsetBounds{0.5, 0.1}).Validate());
+  // There is no median of nothing.
+  const SubsetSummary none = SummarizeSubsets({}, bounds);
+  EXPECT_THAT(ToText(none, bounds),
+              HasSubstr("mean errors -, of the largest errors -"));
+  EXPECT_THAT(ToJson(none, bounds), HasSubstr("\"median_max_error\": null"));
 }
 
 class RunSubsetsTest : public ::testing::Test {

@@ -226,14 +226,16 @@ std::string ToText(const SubsetSummary& summary, const SubsetBounds& bounds) {
   const std::size_t total = summary.num_subsets;
   const std::string good = Number(bounds.accurate, "%g");
   const std::string bad = Number(bounds.failed, "%g");
+  const auto median = [&](double error) {
+    return summary.num_complete > 0 ? Number(error, "%.4f") : std::string("-");
+  };
   return "subsets: " + std::to_string(total) +
          "\nall views placed: " + Share(summary.num_complete, total) +
          "\n  mean position error at most " + good + ": " +
          Share(summary.num_accurate_mean, total) + "\n  every camera within " +
          good + ": " + Share(summary.num_accurate, total) +
-         "\n  median of the mean errors " +
-         Number(summary.median_mean_error, "%.4f") +
-         ", of the largest errors " + Number(summary.median_max_error, "%.4f") +
+         "\n  median of the mean errors " + median(summary.median_mean_error) +
+         ", of the largest errors " + median(summary.median_max_error) +
          "\nflagged as doubtful: " + Share(summary.num_flagged, total) +
          "\na camera beyond " + bad + ": " +
          std::to_string(summary.num_flagged_failures) +
@@ -248,6 +250,9 @@ std::string ToText(const SubsetSummary& summary, const SubsetBounds& bounds) {
 std::string ToJson(const SubsetSummary& summary, const SubsetBounds& bounds) {
   const double total =
       static_cast<double>(std::max<std::size_t>(summary.num_subsets, 1));
+  const auto median = [&](double error) {
+    return summary.num_complete > 0 ? Json(error) : Json();
+  };
   const Json json = {
       {"subsets", summary.num_subsets},
       {"accurate_bound", bounds.accurate},
@@ -258,8 +263,8 @@ std::string ToJson(const SubsetSummary& summary, const SubsetBounds& bounds) {
       {"share_accurate_by_mean",
        static_cast<double>(summary.num_accurate_mean) / total},
       {"share_accurate", static_cast<double>(summary.num_accurate) / total},
-      {"median_mean_error", summary.median_mean_error},
-      {"median_max_error", summary.median_max_error},
+      {"median_mean_error", median(summary.median_mean_error)},
+      {"median_max_error", median(summary.median_max_error)},
       {"flagged", summary.num_flagged},
       {"flagged_failures", summary.num_flagged_failures},
       {"silent_failures", summary.num_silent_failures}};

@@ -29,7 +29,7 @@ struct SubsetSummary {
   /// A camera beyond `failed` in a solution that was flagged, or was not.
   std::size_t num_flagged_failures = 0;
   std::size_t num_silent_failures = 0;
-  double median_mean_error = 0;  // of the complete ones
+  double median_mean_error = 0;  // of the complete ones, if there are any
   double median_max_error = 0;
   double seconds = 0;  // of all subsets
 };
