@@ -85,9 +85,12 @@ Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
                                StructureState* state) {
   const ProblemSelection selection = SelectForSolve(*cameras, *state, options);
   if (selection.IsEmpty()) {
-    return MakeError(ErrorCode::kInsufficientData,
-                     "nothing to adjust: no point in two posed views, no line "
-                     "in three, and no coplanar pair");
+    return MakeError(
+        ErrorCode::kInsufficientData,
+        cameras->views.empty()
+            ? "nothing to adjust: no view has both a pose and an intrinsic"
+            : "nothing to adjust: no point in two posed views, no line in "
+              "three, and no coplanar pair");
   }
   const std::vector<Component> components =
       FindComponents(*cameras, *state, selection);
