@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 
@@ -19,7 +20,31 @@ void OnSignal(int signal) {
       ::write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
 }
 
+template <class Allows>
+CLI::Validator NumberThat(const char* adjective, const char* name,
+                          Allows allows) {
+  return CLI::Validator(
+      [adjective, allows](const std::string& text) -> std::string {
+        double value = 0;
+        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) &&
+            allows(value)) {
+          return {};
+        }
+        return "'" + text + "' is not a " + adjective + " number";
+      },
+      name);
+}
+
 }  // namespace
+
+CLI::Validator Positive() {
+  return NumberThat("positive", "POSITIVE", [](double v) { return v > 0; });
+}
+
+CLI::Validator NonNegative() {
+  return NumberThat("non-negative", "NONNEGATIVE",
+                    [](double v) { return v >= 0; });
+}
 
 void CatchInterrupts() {
   struct sigaction action {};
@@ -39,10 +64,14 @@ void AddCommonFlags(CLI::App* command, CommonFlags* flags) {
   command
       ->add_option("--threads", flags->threads,
                    "Threads to use; 0 takes all cores")
-      ->check(CLI::Range(0, 1024));
-  command->add_option("--seed", flags->seed,
-                      "Seed of the random draws; the same seed gives the same "
-                      "result");
+      ->check(CLI::Range(0, 1024))
+      ->capture_default_str();
+  command
+      ->add_option("--seed", flags->seed,
+                   "Seed of the random draws; the same seed gives the same "
+                   "result")
+      ->check(NonNegative())
+      ->capture_default_str();
   command->add_flag("-v,--verbose", flags->verbose, "Say more while working");
   command->add_flag("-q,--quiet", flags->quiet, "No progress, no notes");
 }

@@ -10,15 +10,20 @@
 
 namespace lowlap::cli {
 
-/// Flags that every command has.
+/// Flags of every command that computes or draws at random.
 struct CommonFlags {
-  int threads = 0;
+  int threads = 0;  // all cores
   std::uint64_t seed = 0;
   bool verbose = false;
   bool quiet = false;
 };
 
 void AddCommonFlags(CLI::App* command, CommonFlags* flags);
+
+/// Checks of one finite number. (Those of CLI11 name the largest double in
+/// their messages.)
+CLI::Validator Positive();
+CLI::Validator NonNegative();
 
 /// Messages and progress go to standard error, so that standard output holds
 /// only the command's result. Progress needs a terminal. An interrupt stops

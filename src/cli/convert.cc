@@ -55,7 +55,7 @@ void AddConvert(CLI::App* program, Action* action) {
       ->add_option("--max-point-matches", flags->max_point_matches,
                    "Keep at most this many point matches of each pair, those "
                    "on the longest tracks first, and drop the solution")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive());
   command->add_option("--root-path", flags->root_path,
                       "Image folder to write into the scene, where the images "
                       "have moved");

@@ -29,6 +29,9 @@ int RunDiagnose(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
   const auto options = MakeScaleOptions(flags.scale);
   if (!options) return Fail(options.error());
+  if (const Status valid = flags.diagnosis.Validate(); !valid) {
+    return Fail(valid.error());
+  }
   StageLog stages;
   auto loaded = LoadMeasuredScene(flags.input, context, &stages);
   if (!loaded) return Fail(loaded.error());
@@ -66,7 +69,7 @@ void AddDiagnose(CLI::App* program, Action* action) {
   command
       ->add_option("--min-inliers", flags->diagnosis.min_inliers,
                    "A ratio with fewer inliers is weak")
-      ->check(CLI::NonNegativeNumber)
+      ->check(NonNegative())
       ->capture_default_str();
   command
       ->add_option("--max-log10-nfa", flags->diagnosis.max_log10_nfa,
@@ -75,7 +78,7 @@ void AddDiagnose(CLI::App* program, Action* action) {
   command
       ->add_option("--max-stddev", flags->diagnosis.max_stddev,
                    "A ratio whose logarithm has a larger deviation is weak")
-      ->check(CLI::PositiveNumber)
+      ->check(Positive())
       ->capture_default_str();
   command->add_option("--json", flags->json,
                       "Also write the diagnosis as JSON");

@@ -1,16 +1,28 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 #include "cli/command.h"
+
+namespace {
+
+bool HasCommand(const CLI::App& program, const std::string& name) {
+  for (const CLI::App* command : program.get_subcommands({})) {
+    if (command->check_name(name)) return true;
+  }
+  return false;
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   CLI::App program{
       "lowlap calibrates photographs that hardly overlap: it finds the "
-      "relative "
-      "scale of\nneighbouring relative poses from coplanar lines and from "
-      "trifocal points and lines,\ncomposes camera poses, and refines them by "
-      "bundle adjustment."};
+      "relative scale of\n"
+      "neighbouring relative poses from coplanar lines and from trifocal "
+      "points and lines,\n"
+      "composes camera poses, and refines them by bundle adjustment."};
   program.set_version_flag("--version", LOWLAP_VERSION);
   program.require_subcommand(1);
   program.footer("'lowlap COMMAND --help' explains a command.");
@@ -32,6 +44,12 @@ int main(int argc, char** argv) {
   lowlap::cli::AddSimulate(&program, &action);
   lowlap::cli::AddRobustness(&program, &action);
 
+  if (argc > 1 && argv[1][0] != '-' && !HasCommand(program, argv[1])) {
+    std::fprintf(stderr,
+                 "there is no command '%s'; 'lowlap --help' lists them\n",
+                 argv[1]);
+    return static_cast<int>(CLI::ExitCodes::ExtrasError);
+  }
   CLI11_PARSE(program, argc, argv);
   lowlap::cli::CatchInterrupts();
   try {

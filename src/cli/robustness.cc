@@ -121,16 +121,19 @@ void AddRobustness(CLI::App* program, Action* action) {
       ->add_option("--strategies", o.strategies,
                    "Strategies, separated by commas; all if left out")
       ->delimiter(',');
-  command->add_option("--seeds", o.num_seeds, "Simulations per value");
-  command->add_option("--tolerance", o.tolerance,
-                      "A centre is right within this share of the spread");
+  command->add_option("--seeds", o.num_seeds, "Simulations per value")
+      ->capture_default_str();
+  command
+      ->add_option("--tolerance", o.tolerance,
+                   "A centre is right within this share of the spread")
+      ->capture_default_str();
   command
       ->add_option("--time-limit", o.time_limit_s,
                    "Seconds of processor time that a strategy has for one "
                    "problem; beyond, it is not asked for larger ones")
       ->capture_default_str();
   command->add_flag("--quick", o.quick,
-                    "The room alone, few values, small graphs: a minute");
+                    "The room alone, few values, small graphs: seconds");
   AddCommonFlags(command, &flags->common);
   command->callback(
       [flags, action] { *action = [flags] { return StudyAndWrite(*flags); }; });

@@ -53,13 +53,15 @@ void AddSimulate(CLI::App* program, Action* action) {
   SyntheticOptions& o = flags->options;
   CLI::App* command = program->add_subcommand(
       "simulate", "Make a synthetic scene whose truth is known");
+  command->option_defaults()->always_capture_default();
   command->add_option("--kind", flags->kind,
                       "room, corridor, ring; degenerate: planar, collinear, "
                       "pure_rotation, twins");
   command->add_option("-o,--output", flags->output, "Scene file to write")
       ->required();
-  command->add_option("--truth", flags->truth,
-                      "Also write the scene with its true solution");
+  command->add_option(
+      "--truth", flags->truth,
+      "Also write the scene with its true solution, to this file");
   command->add_option("--views", o.num_views, "Number of views");
   command->add_option("--pairs", o.pairs,
                       "chain, cycle, window:N, loop:N or all");

@@ -1,6 +1,7 @@
 #include "lowlap/averaging/diagnosis.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <set>
@@ -156,10 +157,12 @@ std::vector<FloatingPart> FindFloating(const Scene& scene,
 }  // namespace
 
 Status DiagnosisOptions::Validate() const {
-  if (min_inliers < 0 || !(max_stddev > 0) || min_shared_tracks < 1) {
+  if (min_inliers < 0 || !(max_stddev > 0) || std::isnan(max_log10_nfa) ||
+      min_shared_tracks < 1) {
     return MakeError(ErrorCode::kInvalidArgument,
-                     "diagnosis: the least numbers of inliers and tracks must "
-                     "not be negative, the largest deviation positive");
+                     "diagnosis: the least number of inliers must not be "
+                     "negative, that of tracks and the largest deviation must "
+                     "be positive, and the log10 NFA a number");
   }
   return {};
 }
