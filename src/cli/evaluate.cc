@@ -107,15 +107,16 @@ void AddEvaluate(CLI::App* program, Action* action) {
       ->add_option("--gt", flags->truth_option,
                    "The same, as an option: instead of the second argument")
       ->excludes(positional);
-  command->add_flag("--relative-poses", flags->relative_poses,
-                    "Judge the relative poses of the pairs instead of the "
-                    "cameras: rotation and direction errors, failures among "
-                    "consecutive and among all pairs");
+  CLI::Option* relative_poses = command->add_flag(
+      "--relative-poses", flags->relative_poses,
+      "Judge the relative poses of the pairs instead of the cameras: rotation "
+      "and direction errors, failures among consecutive and among all pairs");
   command
       ->add_option("--expect", flags->expected_pairs,
                    "Pairs of view ids that must have a relative pose, as in "
                    "0-1,1-2 (with --relative-poses; consecutive views always)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->needs(relative_poses);
   CLI::Option* lines = command->add_option(
       "--gt-lines", flags->true_edges,
       "Judge the line matches of the pairs instead, by the true edges of this "
@@ -124,6 +125,7 @@ void AddEvaluate(CLI::App* program, Action* action) {
       "one on an edge that the other image shows elsewhere. Else unknown. "
       "Recall: share of the edges shown by both images that have a right "
       "match");
+  lines->excludes(relative_poses);
   command
       ->add_option("--line-pairs", flags->line_pairs,
                    "With --gt-lines, the pairs to count: all, chain, cycle, "

@@ -8,7 +8,6 @@
 #include "lowlap/averaging/rigidity.h"
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/pipeline/summary_json.h"
-#include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {
 namespace {
@@ -93,16 +92,9 @@ void PrintGroups(const RigidityReport& report, const Scene& scene) {
 int Inspect(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
   StageLog stages;
-  Scene scene;
-  if (flags.input.matches_dir.empty()) {
-    auto read = ReadScene(flags.input.scene);
-    if (!read) return Fail(read.error());
-    scene = std::move(*read);
-  } else {
-    auto loaded = LoadMeasuredScene(flags.input, context, &stages);
-    if (!loaded) return Fail(loaded.error());
-    scene = std::move(loaded->scene);
-  }
+  const auto loaded = LoadScene(flags.input, context, &stages);
+  if (!loaded) return Fail(loaded.error());
+  const Scene& scene = loaded->scene;
   const RigidityReport by_directions = AnalyzeRigidity(scene);
   RigidityOptions triplet_rule;
   triplet_rule.rule = RigidityRule::kTriplets;

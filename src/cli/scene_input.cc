@@ -71,15 +71,18 @@ Result<LoadedScene> ReadOwnScene(const SceneInputFlags& flags,
 }  // namespace
 
 void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
+  // Required, but the message about it is ours: LoadScene.
+  command->add_option("scene,-i,--input_file", flags->scene,
+                      "Scene file (.json, .lowlap, .bin, .xml), a problem "
+                      "folder of 1DSfM, or an OpenMVG sfm_data file together "
+                      "with -m; as the first argument or with -i");
+  CLI::Option* matches =
+      command->add_option("-m,--matchdir", flags->matches_dir,
+                          "OpenMVG matches folder (.feat and matches.* files)");
   command
-      ->add_option("scene,-i,--input_file", flags->scene,
-                   "Scene file (.json, .lowlap), a problem folder of 1DSfM, or "
-                   "an OpenMVG sfm_data file together with -m")
-      ->required();
-  command->add_option("-m,--matchdir", flags->matches_dir,
-                      "OpenMVG matches folder (.feat and matches.* files)");
-  command->add_option("-M,--match_file", flags->match_file,
-                      "Match file in that folder; default as in OpenMVG");
+      ->add_option("-M,--match_file", flags->match_file,
+                   "Match file in that folder; default as in OpenMVG")
+      ->needs(matches);
   command
       ->add_option("--exclude", flags->exclude,
                    "Views to leave out (file names or ids), separated by "
@@ -87,12 +90,20 @@ void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
       ->delimiter(',');
 }
 
+Result<LoadedScene> LoadScene(const SceneInputFlags& flags,
+                              const RunContext& context, StageLog* stages) {
+  if (flags.scene.empty()) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "the scene is missing: first argument, or -i");
+  }
+  return flags.matches_dir.empty() ? ReadOwnScene(flags, context, stages)
+                                   : ImportOpenMvg(flags, context, stages);
+}
+
 Result<LoadedScene> LoadMeasuredScene(const SceneInputFlags& flags,
                                       const RunContext& context,
                                       StageLog* stages) {
-  auto loaded = flags.matches_dir.empty()
-                    ? ReadOwnScene(flags, context, stages)
-                    : ImportOpenMvg(flags, context, stages);
+  auto loaded = LoadScene(flags, context, stages);
   if (!loaded) return loaded;
   if (loaded->scene.relative_poses.empty()) {
     return MakeError(

@@ -11,8 +11,8 @@
 
 namespace lowlap::cli {
 
-/// A scene to work on: a scene file of ours, or an OpenMVG listing with its
-/// matches folder. OpenMVG's flag names are understood.
+/// A scene to work on: a scene file, a problem folder of 1DSfM, or an OpenMVG
+/// listing with its matches folder. OpenMVG's flag names are understood.
 struct SceneInputFlags {
   std::string scene;
   std::string matches_dir;
@@ -28,7 +28,11 @@ struct LoadedScene {
 };
 
 /// Reads the scene without the excluded views. From an OpenMVG project the
-/// relative poses are estimated. kInvalidScene if there are none in the end.
+/// relative poses are estimated. kInvalidArgument if no scene is named.
+Result<LoadedScene> LoadScene(const SceneInputFlags& flags,
+                              const RunContext& context, StageLog* stages);
+
+/// The same; kInvalidScene if there are no relative poses in the end.
 Result<LoadedScene> LoadMeasuredScene(const SceneInputFlags& flags,
                                       const RunContext& context,
                                       StageLog* stages);

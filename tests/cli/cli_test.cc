@@ -31,7 +31,7 @@ TEST_F(Cli, HelpNamesEveryCommand) {
   for (const char* command :
        {"run", "solve", "compare", "ablate", "scales", "adjust", "evaluate",
         "features", "inspect", "diagnose", "subsets", "convert", "validate",
-        "simulate"}) {
+        "simulate", "robustness"}) {
     EXPECT_THAT(help.output, HasSubstr(command));
     const Outcome own = Lowlap(std::string(command) + " --help");
     EXPECT_EQ(own.exit_code, 0) << command;
@@ -170,15 +170,19 @@ TEST_F(Cli, FeaturesAreCountedAndDrawn) {
 }
 
 TEST_F(Cli, LineMatchesAreJudgedByTrueEdges) {
-  ASSERT_EQ(Lowlap("simulate --kind room --views 4 -o " + Path("room.lowlap"))
+  ASSERT_EQ(Lowlap("simulate --kind room --views 4 -o " + Path("room.lowlap") +
+                   " --truth " + Path("truth.lowlap"))
                 .exit_code,
             0);
   const std::string evaluate =
-      "evaluate " + Path("room.lowlap") + " --gt " + Path("room.lowlap");
+      "evaluate " + Path("room.lowlap") + " --gt " + Path("truth.lowlap");
   Write("edges.json", R"({"edges": [{"p0": [0,0]}]})");
   const Outcome bad = Lowlap(evaluate + " --gt-lines " + Path("edges.json"));
   EXPECT_EQ(bad.exit_code, 1);
-  EXPECT_THAT(bad.output, HasSubstr("edges.json: edge 0"));
+  EXPECT_THAT(bad.output, HasSubstr("edges.json: edge 0: array index"));
+  Write("scene.json", "{}");
+  EXPECT_THAT(Lowlap(evaluate + " --gt-lines " + Path("scene.json")).output,
+              HasSubstr("scene.json: key 'edges' not found"));
   EXPECT_NE(Lowlap(evaluate + " --line-pairs all").exit_code, 0);
 }
 

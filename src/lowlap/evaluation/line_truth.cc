@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
+
+#include "lowlap/core/atomic_file.h"
 
 namespace lowlap {
 namespace {
@@ -78,19 +79,24 @@ bool LiesOn(const LineSegment& segment, const Piece& piece,
 }  // namespace
 
 Result<std::vector<TrueEdge>> ReadTrueEdges(const std::string& path) {
-  std::ifstream file(path);
-  if (!file) {
-    return MakeError(ErrorCode::kNotFound, "cannot be opened", path);
-  }
+  const Result<std::string> text = ReadWholeFile(path);
+  if (!text) return tl::unexpected<Error>(text.error());
   std::vector<TrueEdge> edges;
+  std::string place;
   try {
-    const Json json = Json::parse(file);
+    const Json json = Json::parse(*text);
     for (const Json& edge : json.at("edges")) {
+      place = "edge " + std::to_string(edges.size());
       edges.push_back(ParseEdge(edge));
     }
-  } catch (const std::exception& e) {
-    return MakeError(ErrorCode::kParse, e.what(), path,
-                     "edge " + std::to_string(edges.size()));
+  } catch (const Json::exception& e) {
+    // "[json.exception.KIND.NUMBER] message"
+    const std::string message = e.what();
+    const std::size_t start = message.find("] ");
+    return MakeError(
+        ErrorCode::kParse,
+        start == std::string::npos ? message : message.substr(start + 2), path,
+        place);
   }
   return edges;
 }

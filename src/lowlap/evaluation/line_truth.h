@@ -28,7 +28,7 @@ struct TrueEdge {
 ///               "pts": [[x, y, z], ...],
 ///               "views": [[image, visible fraction, visible length], ...]}]}
 /// `pts` (optional) is the polyline, else it is p0, p1. `image` is the number
-/// that the image's file name is. Errors: kNotFound, kParse.
+/// that the image's file name is. Errors: those of ReadWholeFile, kParse.
 Result<std::vector<TrueEdge>> ReadTrueEdges(const std::string& path);
 
 /// The number that a view's file name without extension is ("0012.jpg": 12).
