@@ -33,8 +33,8 @@ int RunAblation(const Flags& flags) {
   }
   if (!flags.output.empty()) {
     // A folder that cannot be written is found before the work.
-    if (const Status made = PrepareOutputFolder(flags.output); !made) {
-      return Fail(made.error());
+    if (const Status usable = CheckOutputFolder(flags.output); !usable) {
+      return Fail(usable.error());
     }
   }
   StageLog stages;
@@ -74,12 +74,15 @@ void AddAblate(CLI::App* program, Action* action) {
   AddTruthFlag(command, &flags->ground_truth)->required();
   command->add_option("-o,--output,--outdir", flags->output,
                       "Folder for the tables and plots; none if not given");
-  command->add_option("--strategy", flags->strategy,
-                      "How poses are composed, as in solve");
+  command
+      ->add_option("--strategy", flags->strategy,
+                   "How poses are composed, as in solve")
+      ->capture_default_str();
   command
       ->add_option("--thresholds", flags->thresholds_px,
                    "Fixed inlier thresholds in pixels, separated by commas")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->capture_default_str();
   AddCommonFlags(command, &flags->common);
   command->callback(
       [flags, action] { *action = [flags] { return RunAblation(*flags); }; });

@@ -34,6 +34,10 @@ int Adjust(const Flags& flags) {
   if (const Status valid = options.Validate(); !valid) {
     return Fail(valid.error());
   }
+  // A folder that cannot be written is found before the work.
+  if (const Status usable = CheckOutputFolder(flags.output); !usable) {
+    return Fail(usable.error());
+  }
   auto scene = ReadScene(flags.scene);
   if (!scene) return Fail(scene.error());
   if (scene->poses.empty()) {
@@ -68,7 +72,12 @@ int Adjust(const Flags& flags) {
   {
     const StageLog::Scope scope(&stages, "adjustment");
     auto adjustment = AdjustScene(&*scene, options, context);
-    if (!adjustment) return Fail(adjustment.error());
+    if (!adjustment) {
+      if (adjustment.error().file.empty()) {
+        adjustment.error().file = flags.scene;
+      }
+      return Fail(adjustment.error());
+    }
     result.adjustment = std::move(*adjustment);
   }
   if (*truth) summary.evaluation = EvaluatePoses(*scene, **truth);
@@ -114,7 +123,8 @@ void AddAdjust(CLI::App* program, Action* action) {
       ->add_option("--adjust-features", flags->features,
                    "Kinds to adjust, separated by commas: points, lines, "
                    "coplanar")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->capture_default_str();
   command->add_flag("--retriangulate", flags->retriangulate,
                     "Build the structure anew from the tracks first");
   AddRefinementFlag(command, &flags->refine_intrinsics);

@@ -32,8 +32,8 @@ int Compare(const Flags& flags) {
     return Fail(valid.error());
   }
   // A folder that cannot be written is found before the work.
-  if (const Status made = PrepareOutputFolder(flags.output); !made) {
-    return Fail(made.error());
+  if (const Status usable = CheckOutputFolder(flags.output); !usable) {
+    return Fail(usable.error());
   }
   StageLog stages;
   const auto loaded = LoadMeasuredScene(flags.input, context, &stages);
@@ -72,10 +72,14 @@ void AddCompare(CLI::App* program, Action* action) {
       ->add_option("--strategies", flags->strategies,
                    "Strategies, separated by commas; all: every one there is. "
                    "1dsfm+NAME runs NAME behind the filter of 1DSfM")
-      ->delimiter(',');
-  command->add_option("--reference", flags->reference,
-                      "The strategy whose cameras the others are compared with "
-                      "where there are no true ones");
+      ->delimiter(',')
+      ->capture_default_str();
+  command
+      ->add_option("--reference", flags->reference,
+                   "The strategy whose cameras the others are compared with "
+                   "where there are no true ones; if it places none, the "
+                   "first that does")
+      ->capture_default_str();
   AddScaleFlags(command, &flags->solve.scale);
   AddAdjustFlags(command, &flags->solve);
   AddTruthFlag(command, &flags->solve.ground_truth);

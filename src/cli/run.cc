@@ -93,6 +93,9 @@ int Run(const RunFlags& flags) {
   // Everything that can be refused is refused before the long work.
   const auto options = MakeSolveOptions(flags.solve);
   if (!options) return Fail(options.error());
+  if (const Status usable = CheckOutputFolder(flags.output); !usable) {
+    return Fail(usable.error());
+  }
   const auto intrinsics = ReadIntrinsics(flags);
   if (!intrinsics) return Fail(intrinsics.error());
   auto scene = SceneFromImages(flags.images, *intrinsics, flags.exclude);
@@ -136,7 +139,7 @@ int Run(const RunFlags& flags) {
   }
   summary.pairs = std::move(*pairs);
   return SolveAndWrite(std::move(*scene), flags.solve, std::move(summary),
-                       &stages, context, flags.output);
+                       &stages, context, flags.images, flags.output);
 }
 
 }  // namespace
@@ -160,13 +163,14 @@ void AddRun(CLI::App* program, Action* action) {
       command
           ->add_option("--focal", flags->focal_px,
                        "Focal length in pixels; principal point in the middle")
-          ->check(CLI::PositiveNumber);
+          ->check(Positive());
   matrix->excludes(focal);
-  command->add_option(
-      "--pairs", flags->pairs,
-      "Pairs to match: all, chain, cycle, window:N, auto (those "
-      "that look alike), or a file with two view names or ids "
-      "a line");
+  command
+      ->add_option("--pairs", flags->pairs,
+                   "Pairs to match: all, chain, cycle, window:N, auto (those "
+                   "that look alike), or a file with two view names or ids a "
+                   "line")
+      ->capture_default_str();
   command
       ->add_option("--exclude", flags->exclude,
                    "Photographs to leave out, separated by commas")
@@ -176,7 +180,8 @@ void AddRun(CLI::App* program, Action* action) {
                    "What relative poses are estimated from, separated by "
                    "commas: points, lines")
       ->delimiter(',')
-      ->check(CLI::IsMember({"points", "lines"}));
+      ->check(CLI::IsMember({"points", "lines"}))
+      ->capture_default_str();
   auto* cache = command->add_option(
       "--cache", flags->cache,
       "Folder of features and matches to use again; default OUTPUT/cache");

@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
+#include "lowlap/pipeline/output_folder.h"
 
 namespace lowlap::cli {
 namespace {
@@ -20,6 +21,10 @@ int Solve(const Flags& flags) {
   if (const auto options = MakeSolveOptions(flags.solve); !options) {
     return Fail(options.error());
   }
+  // A folder that cannot be written is found before the work.
+  if (const Status usable = CheckOutputFolder(flags.output); !usable) {
+    return Fail(usable.error());
+  }
   StageLog stages;
   RunSummary summary;
   summary.command = "solve";
@@ -27,7 +32,8 @@ int Solve(const Flags& flags) {
   if (!loaded) return Fail(loaded.error());
   summary.pairs = std::move(loaded->pairs);
   return SolveAndWrite(std::move(loaded->scene), flags.solve,
-                       std::move(summary), &stages, context, flags.output);
+                       std::move(summary), &stages, context, flags.input.scene,
+                       flags.output);
 }
 
 }  // namespace

@@ -54,6 +54,22 @@ void PrintPoses(const PoseSummary& poses, const Scene& scene) {
   }
 }
 
+// A truth that says nothing about the scene is a mistake in the command.
+Result<std::optional<GroundTruth>> KnownTruth(GroundTruth truth,
+                                              const Scene& scene,
+                                              const std::string& path) {
+  for (const auto& entry : truth) {
+    if (scene.views.count(entry.first) > 0) {
+      return std::optional<GroundTruth>(std::move(truth));
+    }
+  }
+  return MakeError(ErrorCode::kInsufficientData,
+                   truth.empty()
+                       ? "holds no camera poses to compare with"
+                       : "no view of the scene has the id of a true camera",
+                   path);
+}
+
 void PrintCost(const std::vector<StageCost>& stages) {
   std::printf("%-16s %8s %8s\n", "stage", "wall s", "CPU s");
   double wall = 0, cpu = 0;
@@ -87,7 +103,8 @@ void AddScaleFlags(CLI::App* command, ScaleFlags* flags) {
                    "Kinds that determine the scale ratios, separated by "
                    "commas: points, lines (both seen in three views), coplanar "
                    "(pairs of lines seen in two views each)")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->capture_default_str();
   command->add_flag(
       "--coplanar-points,!--no-coplanar-points", flags->coplanar_points,
       "Whether coplanar includes points and lines of one pair that lie on a "
@@ -96,15 +113,18 @@ void AddScaleFlags(CLI::App* command, ScaleFlags* flags) {
       ->add_option("--criterion", flags->criterion,
                    "How a ratio is chosen: ac (a contrario, no threshold) or "
                    "ransac (most inliers within --threshold)")
-      ->check(CLI::IsMember({"ac", "ransac"}));
+      ->check(CLI::IsMember({"ac", "ransac"}))
+      ->capture_default_str();
   command
       ->add_option("--nfa", flags->nfa,
                    "Number of false alarms: calibrated, or as in the paper")
-      ->check(CLI::IsMember({"calibrated", "paper"}));
+      ->check(CLI::IsMember({"calibrated", "paper"}))
+      ->capture_default_str();
   command
       ->add_option("--threshold", flags->threshold_px,
                    "Inlier threshold of --criterion ransac, in pixels")
-      ->check(CLI::PositiveNumber);
+      ->check(Positive())
+      ->capture_default_str();
 }
 
 Result<ScaleOptions> MakeScaleOptions(const ScaleFlags& flags) {
@@ -138,9 +158,11 @@ void AddSolveFlags(CLI::App* command, SolveFlags* flags) {
             const auto averager = MakeTranslationAverager(name);
             return averager ? std::string() : averager.error().message;
           },
-          "NAME"));
+          "NAME"))
+      ->capture_default_str();
   AddAdjustFlags(command, flags);
-  AddRefinementFlag(command, &flags->refine_intrinsics);
+  AddRefinementFlag(command, &flags->refine_intrinsics)
+      ->excludes(command->get_option("--no-adjust"));
   AddTruthFlag(command, &flags->ground_truth);
 }
 
@@ -148,18 +170,21 @@ void AddAdjustFlags(CLI::App* command, SolveFlags* flags) {
   command
       ->add_option("--adjust-features", flags->adjust_features,
                    "Kinds in the bundle adjustment, separated by commas")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->capture_default_str();
   AddPrincipalPointFlag(command, &flags->principal_point_stddev);
   command->add_flag("--no-adjust", flags->no_adjust,
                     "Stop before the bundle adjustment");
 }
 
 void AddPrincipalPointFlag(CLI::App* command, double* stddev) {
-  command->add_option("--principal-point-stddev", *stddev,
-                      "How well the given principal points are known, as a "
-                      "share of the image diagonal: the bundle adjustment "
-                      "moves them within this (0: exactly; not for intrinsics "
-                      "that --refine-intrinsics names)");
+  command
+      ->add_option("--principal-point-stddev", *stddev,
+                   "How well the given principal points are known, as a share "
+                   "of the image diagonal: the bundle adjustment moves them "
+                   "within this (0: exactly)")
+      ->check(NonNegative())
+      ->capture_default_str();
 }
 
 CLI::Option* AddTruthFlag(CLI::App* command, std::string* path) {
@@ -180,13 +205,15 @@ Status SetAdjustedFeatures(const std::vector<std::string>& features,
   return {};
 }
 
-void AddRefinementFlag(CLI::App* command, std::string* parts) {
-  command
+CLI::Option* AddRefinementFlag(CLI::App* command, std::string* parts) {
+  return command
       ->add_option("--refine-intrinsics", *parts,
-                   "Let the bundle adjustment refine the intrinsics, each for "
+                   "Let the bundle adjustment refine the intrinsics (not done "
+                   "unless asked for), each for "
                    "all its views: a list of focal, aspect (fy / fx), "
                    "principal-point, distortion (of a pinhole: k1), or all; "
-                   "without a list: focal,distortion")
+                   "without a list: focal,distortion. What is not named is "
+                   "held, the principal point too")
       ->expected(0, 1)
       ->default_str("focal,distortion");
 }
@@ -254,12 +281,12 @@ Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
   if (std::filesystem::is_regular_file(path)) {
     const auto truth = ReadScene(path);
     if (!truth) return tl::unexpected<Error>(truth.error());
-    return std::optional<GroundTruth>(GroundTruthFromScene(*truth));
+    return KnownTruth(GroundTruthFromScene(*truth), scene, path);
   }
   if (onedsfm::IsProblemFolder(path)) {
     auto truth = onedsfm::ReadTruePoses(path);
     if (!truth) return tl::unexpected<Error>(truth.error());
-    return std::optional<GroundTruth>(std::move(*truth));
+    return KnownTruth(std::move(*truth), scene, path);
   }
   const auto poses = strecha::ReadGroundTruth(path);
   if (!poses) return tl::unexpected<Error>(poses.error());
@@ -270,7 +297,7 @@ Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
 
 int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
                   StageLog* stages, const RunContext& context,
-                  const std::string& output) {
+                  const std::string& input, const std::string& output) {
   auto options = MakeSolveOptions(flags);
   if (!options) return Fail(options.error());
   const auto truth = LoadGroundTruth(flags.ground_truth, scene);
@@ -284,7 +311,10 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
   }
 
   auto result = SolveScene(&scene, *options, context, stages);
-  if (!result) return Fail(result.error());
+  if (!result) {
+    if (result.error().file.empty()) result.error().file = input;
+    return Fail(result.error());
+  }
   if (*truth) {
     if (result->adjustment) {
       Scene before = scene;
@@ -302,7 +332,8 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
 
   PrintPoses(summary.solve->poses, scene);
   PrintIntrinsics(start, scene);
-  if (summary.evaluation_before_adjustment) {
+  if (summary.evaluation_before_adjustment &&
+      summary.evaluation_before_adjustment->scope == EvaluationScope::kFull) {
     std::printf("\nbefore adjustment: mean position error %.4f\n",
                 summary.evaluation_before_adjustment->position.mean);
   }

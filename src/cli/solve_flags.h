@@ -52,7 +52,7 @@ Status SetAdjustedFeatures(const std::vector<std::string>& features,
                            AdjustmentOptions* options);
 
 /// --refine-intrinsics [focal,aspect,principal-point,distortion|all]
-void AddRefinementFlag(CLI::App* command, std::string* parts);
+CLI::Option* AddRefinementFlag(CLI::App* command, std::string* parts);
 /// Sets the options for every intrinsic of the scene (RefineAllIntrinsics).
 Status SetRefinement(const std::string& parts, Scene* scene,
                      AdjustmentOptions* options);
@@ -61,14 +61,16 @@ Status SetRefinement(const std::string& parts, Scene* scene,
 void PrintIntrinsics(const Scene& before, const Scene& after);
 
 /// The true poses of a Strecha folder, matched by image name, or of a scene
-/// file, by view id; empty if `path` is.
+/// file or a problem folder of 1DSfM, by view id; empty if `path` is.
+/// kInsufficientData if no view of the scene is among them.
 Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
                                                    const Scene& scene);
 
 /// Solves a measured scene, writes the output folder, prints what a person
-/// wants to know, and returns the exit code.
+/// wants to know, and returns the exit code. `input` is what the scene came
+/// from, for messages.
 int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
                   StageLog* stages, const RunContext& context,
-                  const std::string& output);
+                  const std::string& input, const std::string& output);
 
 }  // namespace lowlap::cli

@@ -15,9 +15,11 @@
 #include "cli/solve_flags.h"
 #include "lowlap/core/hash.h"
 #include "lowlap/io/scene_binary.h"
+#include "lowlap/pipeline/output_folder.h"
 #include "lowlap/pipeline/scene_reduction.h"
 #include "lowlap/pipeline/subset_runs.h"
 #include "lowlap/pipeline/subset_table.h"
+#include "lowlap/report/table_text.h"
 
 namespace lowlap::cli {
 namespace {
@@ -58,7 +60,9 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
   for (const std::string& kind : flags.solve.adjust_features) {
     text += " " + kind;
   }
-  return text + "\nrefine " + flags.solve.refine_intrinsics + "\n";
+  return text + "\nrefine " + flags.solve.refine_intrinsics +
+         "\nprincipal point " +
+         NumberText(flags.solve.principal_point_stddev, 9) + "\n";
 }
 
 std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
@@ -173,6 +177,10 @@ int Subsets(const Flags& flags) {
   if (const Status valid = flags.bounds.Validate(); !valid) {
     return Fail(valid.error());
   }
+  // A folder that cannot be written is found before the work.
+  if (const Status usable = CheckOutputFolder(flags.output); !usable) {
+    return Fail(usable.error());
+  }
   StageLog stages;
   auto loaded = LoadMeasuredScene(flags.input, context, &stages);
   if (!loaded) return Fail(loaded.error());
@@ -259,8 +267,11 @@ void AddSubsets(CLI::App* program, Action* action) {
       ->required();
   command->add_option("--drop", flags->drop, "Number of views to leave out")
       ->capture_default_str();
-  command->add_option("--sample,--limit", flags->sample,
-                      "Only so many of the ways, drawn with --seed");
+  command
+      ->add_option("--sample,--limit", flags->sample,
+                   "Only so many of the ways, drawn with --seed; 0: all")
+      ->check(NonNegative())
+      ->capture_default_str();
   command
       ->add_option("--jobs", flags->jobs,
                    "Subsets to solve at a time, each on one thread; default "
@@ -270,7 +281,7 @@ void AddSubsets(CLI::App* program, Action* action) {
       ->add_option("--max-point-matches", flags->max_point_matches,
                    "Point matches to use of each pair, those on the longest "
                    "tracks first; 0: all")
-      ->check(CLI::NonNegativeNumber)
+      ->check(NonNegative())
       ->capture_default_str();
   command
       ->add_option("--good", flags->bounds.accurate,

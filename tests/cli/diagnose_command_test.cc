@@ -50,6 +50,7 @@ TEST_F(DiagnoseCommand, WhatIsWeakFailsIfAskedFor) {
   EXPECT_THAT(told.output, HasSubstr("At 000001.png: one photograph"));
   EXPECT_EQ(OnRoom("diagnose", severe + "--strict").exit_code, 2);
   EXPECT_NE(OnRoom("diagnose", "--max-stddev 0").exit_code, 0);
+  EXPECT_NE(OnRoom("diagnose", "--max-log10-nfa nan").exit_code, 0);
 }
 
 TEST_F(DiagnoseCommand, PartsWithoutALinkFloat) {
@@ -83,9 +84,12 @@ TEST_F(DiagnoseCommand, SubsetsAreResumed) {
               HasSubstr(four.substr(
                   second_line, four.find('\n', second_line) - second_line)));
   EXPECT_TRUE(std::filesystem::exists(Path("out/results.svg")));
-  const Outcome other = OnRoom("subsets", common + " --no-adjust");
-  EXPECT_EQ(other.exit_code, 1);
-  EXPECT_THAT(other.output, HasSubstr("results of another scene or of other"));
+  for (const char* option : {" --no-adjust", " --principal-point-stddev 0"}) {
+    const Outcome other = OnRoom("subsets", common + option);
+    EXPECT_EQ(other.exit_code, 1) << option;
+    EXPECT_THAT(other.output,
+                HasSubstr("results of another scene or of other"));
+  }
 }
 
 TEST_F(DiagnoseCommand, SubsetsNeedTruthAndViews) {

@@ -1,5 +1,8 @@
 #include "lowlap/pipeline/output_folder.h"
 
+#include <unistd.h>
+
+#include <cerrno>
 #include <filesystem>
 #include <ostream>
 #include <system_error>
@@ -13,7 +16,33 @@
 namespace lowlap {
 namespace fs = std::filesystem;
 
+Status CheckOutputFolder(const std::string& folder) {
+  if (folder.empty()) {
+    return MakeError(ErrorCode::kIo, "the output folder has an empty name");
+  }
+  std::error_code error;
+  // The folder, or the nearest one above it that exists.
+  fs::path existing = fs::absolute(folder, error).lexically_normal();
+  while (!fs::exists(existing, error) && existing.has_relative_path()) {
+    existing = existing.parent_path();
+  }
+  if (!fs::is_directory(existing, error)) {
+    return MakeError(
+        ErrorCode::kIo,
+        "cannot be made a folder: " + existing.string() + " is a file", folder);
+  }
+  if (::access(existing.c_str(), W_OK | X_OK) != 0) {
+    return MakeError(
+        ErrorCode::kIo,
+        "cannot be written to: " + std::generic_category().message(errno) +
+            " (" + existing.string() + ")",
+        folder);
+  }
+  return {};
+}
+
 Status PrepareOutputFolder(const std::string& folder) {
+  if (Status possible = CheckOutputFolder(folder); !possible) return possible;
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder)) {

@@ -10,6 +10,11 @@
 
 namespace lowlap {
 
+/// Whether results can be put into the folder: it is one that can be written
+/// to, or can be made. Makes nothing; for asking before long work. kIo if a
+/// file is in the way or a folder cannot be written to.
+Status CheckOutputFolder(const std::string& folder);
+
 /// Makes the folder (and its parents) if it does not exist; kIo if a file is
 /// in the way or it cannot be written to.
 Status PrepareOutputFolder(const std::string& folder);

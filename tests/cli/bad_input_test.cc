@@ -1,0 +1,136 @@
+// What every command says to input that cannot be right: what is wrong, and
+// where; nothing is left behind.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "cli_fixture.h"
+
+namespace lowlap {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class BadInput : public Cli {
+ protected:
+  void SetUp() override {
+    Cli::SetUp();
+    const Outcome simulated =
+        Lowlap("simulate --views 5 --points 30 --lines 15 -o " +
+               Path("room.lowlap") + " --truth " + Path("truth.lowlap"));
+    ASSERT_EQ(simulated.exit_code, 0) << simulated.output;
+    Write("file", "in the way");
+  }
+  // Refused, with these words, and without leaving anything.
+  void ExpectRefused(const std::string& arguments, const std::string& says) {
+    const Outcome outcome = Lowlap(arguments);
+    EXPECT_NE(outcome.exit_code, 0) << arguments;
+    EXPECT_THAT(outcome.output, HasSubstr(says)) << arguments;
+    EXPECT_FALSE(std::filesystem::exists(Path("out"))) << arguments;
+  }
+  std::string Room() const { return Path("room.lowlap"); }
+  std::string Truth() const { return Path("truth.lowlap"); }
+  std::string Out() const { return " -o " + Path("out") + " "; }
+};
+
+TEST_F(BadInput, CommandsAndNumbers) {
+  ExpectRefused("calibrate a b", "there is no command 'calibrate'");
+  ExpectRefused("solve" + Out(), "the scene is missing: first argument, or -i");
+  const std::string solve = "solve " + Room() + Out();
+  ExpectRefused(solve + "--threshold -1", "'-1' is not a positive number");
+  ExpectRefused(solve + "--threshold nan", "'nan' is not a positive number");
+  ExpectRefused(solve + "--seed -1", "'-1' is not a non-negative number");
+  ExpectRefused(solve + "--principal-point-stddev inf",
+                "'inf' is not a non-negative number");
+}
+
+TEST_F(BadInput, OptionsThatWouldBeIgnored) {
+  const std::string solve = "solve " + Room() + Out();
+  ExpectRefused(solve + "-M matches.f.txt", "requires --matchdir");
+  ExpectRefused(solve + "--no-adjust --refine-intrinsics focal", "excludes");
+  ExpectRefused("compare " + Room() + Out() + "--reference guess",
+                "unknown strategy 'guess'");
+  const std::string evaluate = "evaluate " + Room() + " " + Truth();
+  ExpectRefused(evaluate + " --expect 0-1", "requires --relative-poses");
+  ExpectRefused(evaluate + " --relative-poses --gt-lines " + Path("file"),
+                "excludes");
+}
+
+TEST_F(BadInput, ScenesThatCannotBeRead) {
+  const std::string whole = ReadText(Room());
+  Write("cut.lowlap", whole.substr(0, whole.size() / 2));
+  const std::string gt = " --gt " + Truth();
+  for (const std::string& command :
+       {"solve" + Out(), "compare" + Out(), "ablate" + Out() + gt,
+        "subsets" + Out() + gt, std::string("diagnose "),
+        std::string("scales "), std::string("inspect ")}) {
+    const std::size_t name = command.find(' ');
+    const auto on = [&](const std::string& scene) {
+      return command.substr(0, name + 1) + Path(scene) + command.substr(name);
+    };
+    ExpectRefused(on("cut.lowlap"), "cut.lowlap: byte ");
+    ExpectRefused(on("none.lowlap"), "none.lowlap: no such file");
+  }
+}
+
+// Found before anything is computed.
+TEST_F(BadInput, OutputFoldersThatCannotBe) {
+  for (const char* folder : {"file", "file/below", "file/"}) {
+    for (const std::string& command :
+         {"solve " + Room(), "compare " + Room(), "adjust " + Truth(),
+          "ablate " + Room() + " --gt " + Truth(),
+          "subsets " + Room() + " --drop 1 --gt " + Truth(),
+          "run " + folder_.string() + " --focal 500",
+          std::string("robustness --quick --scenario noise")}) {
+      const Outcome outcome = Lowlap(command + " -o " + Path(folder));
+      EXPECT_EQ(outcome.exit_code, 1) << command;
+      EXPECT_THAT(
+          outcome.output,
+          HasSubstr("cannot be made a folder: " + Path("file") + " is a file"))
+          << command;
+      EXPECT_THAT(outcome.output, Not(HasSubstr("adjustment"))) << command;
+    }
+  }
+}
+
+TEST_F(BadInput, TruthThatSaysNothing) {
+  const std::string says = "room.lowlap: holds no camera poses";
+  const std::string gt = " --gt " + Room();
+  ExpectRefused("solve " + Room() + gt + Out(), says);
+  ExpectRefused("compare " + Room() + gt + Out(), says);
+  ExpectRefused("ablate " + Room() + gt + Out(), says);
+  ExpectRefused("subsets --drop 1 " + Room() + gt + Out(), says);
+  ExpectRefused("evaluate " + Truth() + gt, says);
+}
+
+TEST_F(BadInput, ExcludedViewsThatAreNotThere) {
+  for (const char* command : {"inspect ", "diagnose ", "scales "}) {
+    ExpectRefused(command + Room() + " --exclude nobody", "no view 'nobody'");
+  }
+  EXPECT_THAT(Lowlap("inspect " + Room() + " --exclude 0").output,
+              HasSubstr("views 4"));
+}
+
+TEST_F(BadInput, NothingToAdjust) {
+  // OpenMVG's listing of views whose cameras are not known.
+  ASSERT_EQ(Lowlap("convert " + Room() + " " + Path("room.json")).exit_code, 0);
+  std::string text = ReadText(Path("room.json"));
+  const std::string key = "\"id_intrinsic\": ";
+  for (std::size_t at = 0; (at = text.find(key, at)) != std::string::npos;) {
+    at += key.size();
+    text.replace(at, 1, "4294967295");
+  }
+  const std::size_t list = text.find("\"intrinsics\": [");
+  const std::size_t after = text.find("\"extrinsics\"");
+  ASSERT_NE(list, std::string::npos);
+  ASSERT_NE(after, std::string::npos);
+  Write("unknown.json",
+        text.substr(0, list) + "\"intrinsics\": [], " + text.substr(after));
+  ExpectRefused("solve " + Path("unknown.json") + Out(),
+                "unknown.json: nothing to adjust: no view has both");
+}
+
+}  // namespace
+}  // namespace lowlap
