@@ -123,27 +123,6 @@ TEST(LineFromTwoViews, LineInAnEpipolarPlaneIsRefused) {
                                 /*min_sine=*/0.1));
 }
 
-TEST(ReciprocalProduct, VanishesIffLinesMeetOrAreParallel) {
-  Random random(6);
-  for (int n = 0; n < 100; ++n) {
-    const Vec3 x = RandomVector(random);
-    const PluckerLine a =
-        PluckerLine::FromPointAndDirection(x, RandomVector(random));
-    const PluckerLine meeting =
-        PluckerLine::FromPointAndDirection(x, RandomVector(random));
-    const PluckerLine parallel = PluckerLine::FromPointAndDirection(
-        RandomVector(random), -2 * a.direction);
-    EXPECT_NEAR(ReciprocalProduct(a, meeting), 0, 1e-12);
-    EXPECT_NEAR(ReciprocalProduct(a, parallel), 0, 1e-12);
-    // |product| = distance times the sine of the angle.
-    const PluckerLine skew = RandomLine(random);
-    EXPECT_NEAR(
-        std::abs(ReciprocalProduct(a, skew)),
-        LineDistance(a, skew) * a.direction.cross(skew.direction).norm(),
-        1e-12);
-  }
-}
-
 TEST(ClosestPointOnLine, AgreesWithSearch) {
   Random random(7);
   for (int n = 0; n < 50; ++n) {

@@ -60,7 +60,7 @@ TEST(BestOfPartners, IsTheComplementOfAllMissing) {
   EXPECT_EQ(BestOfPartners(1.5, 3), 1.0);
 }
 
-TEST(CalibratedTerm, IsTheMinimumOverTheSteps) {
+TEST(CalibratedValues, IsTheMinimumOverTheSteps) {
   const LogFactorials factorials(20);
   LadderCounts counts{};
   LadderProbabilities log10_alpha;
@@ -68,39 +68,44 @@ TEST(CalibratedTerm, IsTheMinimumOverTheSteps) {
   for (int step = 4; step < kNumThresholds; ++step) counts[step] = 9;
   counts[6] = counts[7] = 12;
   log10_alpha[6] = -3;
-  const NfaTerm term = CalibratedTerm(factorials, 20, counts, log10_alpha, 1);
+  const NfaTerm term =
+      LeastOverSteps(CalibratedValues(factorials, 20, counts, log10_alpha, 1));
   EXPECT_EQ(term.step, 6);
   EXPECT_NEAR(term.log10_nfa, std::log10(15.0) + Log10Binomial(19, 11) - 3 * 11,
               1e-9);
 }
 
-TEST(CalibratedTerm, IsCappedAtOneAndProbabilitiesToo) {
+TEST(CalibratedValues, IsCappedAtOneAndProbabilitiesToo) {
   const LogFactorials factorials(20);
   LadderCounts counts{};
   counts.fill(20);
   LadderProbabilities log10_alpha;
   log10_alpha.fill(2.0);  // alpha = 100
-  const NfaTerm term = CalibratedTerm(factorials, 20, counts, log10_alpha, 0);
+  const NfaTerm term =
+      LeastOverSteps(CalibratedValues(factorials, 20, counts, log10_alpha, 0));
   EXPECT_EQ(term.log10_nfa, 0.0);
   EXPECT_NEAR(term.uncapped, std::log10(15.0), 1e-12);
-  EXPECT_EQ(CalibratedTerm(LogFactorials(1), 1, {}, {}, 1).log10_nfa, 0.0);
+  EXPECT_EQ(LeastOverSteps(CalibratedValues(LogFactorials(1), 1, {}, {}, 1))
+                .log10_nfa,
+            0.0);
 }
 
-TEST(CalibratedPairTerm, IsTheGeometricMeanOfTheSides) {
+TEST(CalibratedPairValues, IsTheGeometricMeanOfTheSides) {
   const LogFactorials factorials(30);
   LadderCounts counts{};
   counts.fill(10);
   LadderProbabilities log10_alpha;
   log10_alpha.fill(-2);
-  const NfaTerm one = CalibratedTerm(factorials, 30, counts, log10_alpha, 1);
-  const NfaTerm pair = CalibratedPairTerm(factorials, 30, counts, log10_alpha,
-                                          30, counts, log10_alpha, 1);
+  const NfaTerm one =
+      LeastOverSteps(CalibratedValues(factorials, 30, counts, log10_alpha, 1));
+  const NfaTerm pair = LeastOverSteps(CalibratedPairValues(
+      factorials, 30, counts, log10_alpha, 30, counts, log10_alpha, 1));
   EXPECT_NEAR(pair.log10_nfa, one.log10_nfa, 1e-12);
   LadderCounts one_line{};
   one_line.fill(1);
   // One line paired with a bundle: the other side has nothing to say.
-  const NfaTerm star = CalibratedPairTerm(factorials, 30, one_line, log10_alpha,
-                                          30, counts, log10_alpha, 1);
+  const NfaTerm star = LeastOverSteps(CalibratedPairValues(
+      factorials, 30, one_line, log10_alpha, 30, counts, log10_alpha, 1));
   EXPECT_NEAR(star.uncapped, 0.5 * (one.log10_nfa + std::log10(15.0)), 1e-12);
 }
 
@@ -130,7 +135,7 @@ TEST(PaperTerms, AreThePrintedFormulas) {
 // 200 lines, each with the least of ten errors that obey the one-dimensional
 // law: the printed form takes this noise for a certainty, the calibrated one
 // does not.
-TEST(CalibratedTerm, DoesNotMistakeTheBestOfTenPartnersForEvidence) {
+TEST(CalibratedValues, DoesNotMistakeTheBestOfTenPartnersForEvidence) {
   constexpr int kLines = 200, kPartners = 10, kTrials = 100;
   const LogFactorials factorials(kLines);
   LadderProbabilities log10_alpha;
@@ -151,9 +156,9 @@ TEST(CalibratedTerm, DoesNotMistakeTheBestOfTenPartnersForEvidence) {
     }
     const LadderCounts counts = CountOnLadder(errors.data(), kLines);
     // An NFA below x happens with a probability of at most x.
-    false_alarms +=
-        CalibratedTerm(factorials, kLines, counts, log10_alpha, 0).log10_nfa <
-        -1;
+    false_alarms += LeastOverSteps(CalibratedValues(factorials, kLines, counts,
+                                                    log10_alpha, 0))
+                        .log10_nfa < -1;
     worst_paper =
         std::max(worst_paper,
                  PaperCoplanarTerm(factorials, kLines, counts, kArea, kPartners)

@@ -43,10 +43,6 @@ std::optional<PluckerLine> LineFromTwoViews(
   return line;
 }
 
-double ReciprocalProduct(const PluckerLine& a, const PluckerLine& b) {
-  return a.direction.dot(b.moment) + b.direction.dot(a.moment);
-}
-
 std::optional<Vec3> ClosestPointOnLine(const PluckerLine& on,
                                        const PluckerLine& to, double min_sine) {
   const Vec3 n = on.direction.cross(to.direction);

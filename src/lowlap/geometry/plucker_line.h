@@ -36,14 +36,10 @@ PluckerLine operator*(const RigidTransform& target_from_source,
 /// With q = R^T l2 and b the centre of camera 2 in camera 1:
 ///   direction = l1 x q / |l1 x q|,  moment = (q . b) / |l1 x q| l1.
 /// Degenerate, nullopt: the two planes meet at less than `min_sine` (the line
-/// lies near an epipolar plane). See the design notes, "A line from two views".
+/// lies near an epipolar plane).
 std::optional<PluckerLine> LineFromTwoViews(
     const RigidTransform& cam2_from_cam1, const Vec3& l1, const Vec3& l2,
     double min_sine = 1e-9);
-
-/// The reciprocal product d_a . m_b + d_b . m_a; it vanishes iff the lines meet
-/// or are parallel.
-double ReciprocalProduct(const PluckerLine& a, const PluckerLine& b);
 
 /// The point of `on` that is closest to `to`; nullopt for parallel lines.
 std::optional<Vec3> ClosestPointOnLine(const PluckerLine& on,

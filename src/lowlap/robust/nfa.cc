@@ -81,13 +81,6 @@ LadderValues CalibratedValues(const LogFactorials& factorials, int n,
   return values;
 }
 
-NfaTerm CalibratedTerm(const LogFactorials& factorials, int n,
-                       const LadderCounts& counts,
-                       const LadderProbabilities& log10_alpha, int sampled) {
-  return LeastOverSteps(
-      CalibratedValues(factorials, n, counts, log10_alpha, sampled));
-}
-
 LadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
                                   const LadderCounts& counts_a,
                                   const LadderProbabilities& log10_alpha_a,
@@ -108,17 +101,6 @@ LadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
     values[step] = kLog10Tests + 0.5 * (a + b);
   }
   return values;
-}
-
-NfaTerm CalibratedPairTerm(const LogFactorials& factorials, int n_a,
-                           const LadderCounts& counts_a,
-                           const LadderProbabilities& log10_alpha_a, int n_b,
-                           const LadderCounts& counts_b,
-                           const LadderProbabilities& log10_alpha_b,
-                           int sampled) {
-  return LeastOverSteps(CalibratedPairValues(factorials, n_a, counts_a,
-                                             log10_alpha_a, n_b, counts_b,
-                                             log10_alpha_b, sampled));
 }
 
 NfaTerm PaperPointTerm(const LogFactorials& factorials, int n,

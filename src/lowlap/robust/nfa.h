@@ -46,31 +46,21 @@ using LadderValues = std::array<double, kNumThresholds>;
 /// The least value and its step, uncapped and capped at 0.
 NfaTerm LeastOverSteps(const LadderValues& values);
 
-/// The calibrated term of one kind:
+/// The calibrated NFA of one kind at every step; LeastOverSteps gives the term:
 ///   NFA = min(1, min over steps T C(n - s, k - s) alpha_step^(k - s)),
-/// T = kNumThresholds tests, k the count at the step, s = 1 if the hypothesis
-/// was computed from a feature of this kind (which is an inlier by
+/// T = kNumThresholds tests, k the count at the step, s = `sampled` = 1 if the
+/// hypothesis was computed from a feature of this kind (which is an inlier by
 /// construction), else 0. `log10_alpha` is the background probability per step.
-NfaTerm CalibratedTerm(const LogFactorials& factorials, int n,
-                       const LadderCounts& counts,
-                       const LadderProbabilities& log10_alpha, int sampled);
-/// Its value at every step, uncapped.
 LadderValues CalibratedValues(const LogFactorials& factorials, int n,
                               const LadderCounts& counts,
                               const LadderProbabilities& log10_alpha,
                               int sampled);
 
-/// The calibrated term of pairs, whose members a (n_a of them) and b form two
-/// sides: an inlier pair makes one member of each side an inlier, so that
-/// members of both sides together would count every accident twice. Each side
-/// alone is a valid count given the other, and so is the geometric mean of the
-/// two (Cauchy-Schwarz): NFA = min(1, min over steps sqrt(NFA_a NFA_b)).
-NfaTerm CalibratedPairTerm(const LogFactorials& factorials, int n_a,
-                           const LadderCounts& counts_a,
-                           const LadderProbabilities& log10_alpha_a, int n_b,
-                           const LadderCounts& counts_b,
-                           const LadderProbabilities& log10_alpha_b,
-                           int sampled);
+/// The same of pairs, whose members a (n_a of them) and b form two sides: an
+/// inlier pair makes one member of each side an inlier, so that members of both
+/// sides together would count every accident twice. Each side alone is a valid
+/// count given the other, and so is the geometric mean of the two
+/// (Cauchy-Schwarz): NFA = min(1, min over steps sqrt(NFA_a NFA_b)).
 LadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
                                   const LadderCounts& counts_a,
                                   const LadderProbabilities& log10_alpha_a,

@@ -154,7 +154,6 @@ void AddPlanePoints(const TripletGeometry& geometry, const PairPlanes& planes,
     point.plane = static_cast<int>(n);
     point.other_plane = OtherPlane(votes, others.planes.size());
     point.num_samples = static_cast<int>(votes.size());
-    point.num_lying_on = static_cast<int>(by_plane[n].size());
     points->push_back(point);
   }
 }

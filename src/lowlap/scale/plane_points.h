@@ -19,8 +19,7 @@ struct PlanePoint {
   int plane = 0;  // index in that pair's planes
   /// The other pair's plane on which most of its samples lie; kNoPlane: none.
   int other_plane = PairPlanes::kNoPlane;
-  int num_samples = 0;   // of the other pair that agree on the ratio
-  int num_lying_on = 0;  // all of them in the plane's extent
+  int num_samples = 0;  // of the other pair that agree on the ratio
 };
 
 /// For every plane of either pair that has samples of the other in its extent,
