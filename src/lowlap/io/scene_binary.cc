@@ -7,6 +7,7 @@
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/io/internal/byte_archive.h"
 #include "lowlap/io/internal/crc32.h"
+#include "lowlap/io/internal/scale_ratio_records.h"
 #include "lowlap/io/internal/scene_records.h"
 #include "lowlap/io/internal/transfer.h"
 #include "lowlap/scene/validation.h"
