@@ -24,8 +24,8 @@ struct CycleSupport {
 /// triangles through it, and of the 4-cycles where it is in no triangle, by
 /// message passing (Lerman and Shi 2022, "Robust group synchronization via
 /// cycle-edge message passing"):
-///   s_e <- sum_c w_c d_c / sum_c w_c,  w_c = exp(-beta sum_{f in c, f != e}
-///   s_f)
+///   s_e <- sum_c w_c d_c / sum_c w_c,
+///   w_c = exp(-beta sum_{f in c, f != e} s_f),
 /// over the cycles c through e with closing angles d_c, with beta doubled from
 /// step to step until it resolves the typical error. A cycle speaks for or
 /// against a measurement only as far as its other members are trusted.

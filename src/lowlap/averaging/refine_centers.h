@@ -21,6 +21,9 @@ namespace lowlap {
 /// them alone the bounded loss can gain by giving up all directions of a view
 /// to please its ratios, which say little across a plane of centres. The factor
 /// is not estimated again: it would shrink with what is given up.
+///
+/// Where no step can be computed, or none lowers the sum, the centres stay as
+/// they are; that is no error.
 Status RefineCenters(const TranslationProblem& problem,
                      const std::vector<bool>& placed,
                      std::vector<Vec3>* centers, int max_iterations = 50);

@@ -56,7 +56,8 @@ struct RotationAveragingResult {
 ///   sum_e (1 + log(1 + max(0, -cost_e))) log(1 + (r_e / sigma_e)^2)
 /// is returned. Each step is a graph Laplacian in the tangent space
 /// (SolveDifferences). Gauge: one rotation of every connected component is the
-/// identity. A tree is reproduced exactly.
+/// identity. A tree is reproduced exactly. Errors: kInvalidArgument (options, a
+/// measurement without two views or a positive deviation), kNumerical.
 Result<RotationAveragingResult> AverageRotations(
     std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
     const RotationAveragingOptions& options = {});

@@ -74,7 +74,8 @@ void SetPoses(const TranslationProblem& problem,
 /// ratios that are not, if at least two points or lines, or three coplanar
 /// pairs, agree on them; these are listed (`weak_ratios`). The poses of the
 /// largest component replace scene.poses; the others have no common scale with
-/// it and are listed. Gauge: that of SetPoses.
+/// it and are listed. Gauge: that of SetPoses. Errors, with the scene
+/// unchanged: invalid options, an unknown strategy, those of the strategy.
 Result<PoseSummary> SolveScenePoses(Scene* scene,
                                     const SceneRotations& rotations,
                                     const PoseOptions& options,

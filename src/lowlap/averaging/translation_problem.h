@@ -77,6 +77,10 @@ class TranslationAverager {
     return "directions that fix its place among the others without any length "
            "(cycles that share no single camera); scale ratios are not used";
   }
+  /// Centres of what the strategy can place; views that it cannot are no error
+  /// but have component -1. Errors: those of ValidateProblem; kNumerical if an
+  /// equation or a program cannot be solved; kUnsupported for a problem too
+  /// large for the strategy; kCancelled.
   virtual Result<TranslationSolution> Solve(
       const TranslationProblem& problem, const RunContext& context) const = 0;
 };
@@ -92,7 +96,8 @@ TranslationProblem MakeTranslationProblem(
     const std::vector<ViewPair>& excluded_edges,
     const std::set<ViewTriplet>& weak = {}, bool with_tracks = false);
 
-/// Indices in range, numbers finite, deviations positive.
+/// Indices in range, numbers finite, deviations positive; else
+/// kInvalidArgument.
 Status ValidateProblem(const TranslationProblem& problem);
 
 }  // namespace lowlap

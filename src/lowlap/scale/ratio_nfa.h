@@ -50,15 +50,13 @@ struct RatioNfaBound {
 ///    short baselines. Few draws say little about small e, so the law is
 ///    continued in proportion to e from above, and it is never below 2 D e / A.
 ///  - Where the hypotheses of a kind are dense, unrelated ones agree more
-///  often:
-///    the law is scaled by the density of the kind's ratios at tau, smoothed by
-///    the same logistic, over its mean.
+///    often: the law is scaled by the density of the kind's ratios at tau,
+///    smoothed by the same logistic, over its mean.
 ///  - The least error of a line over its partners is measured as such, so that
 ///    the number of partners is paid for.
-///  - A pair has two lines: see CalibratedPairTerm.
-///  - Of the tiers of pairs (ratio_support.h) the best counts, which is paid
-///  for
-///    by their number.
+///  - A pair has two lines: see CalibratedPairValues.
+///  - Of the tiers of pairs (support_counts.h) the best counts, which is paid
+///    for by their number.
 ///  - Only the kind of the sampled feature loses one sample.
 ///  - Every probability, and the NFA of every kind, is at most 1: a kind with
 ///    nothing to say never outvotes the others.

@@ -10,7 +10,7 @@ enum class ScaleCriterion {
   kFixedThreshold,  // most inliers within threshold_px (RANSAC), to compare
 };
 
-/// The number of false alarms; see a_contrario_scale.h.
+/// The number of false alarms; see ratio_nfa.h.
 enum class NfaForm {
   kCalibrated,  // keeps the a-contrario promise; the default
   kPaper,       // as printed in Salaün et al. 2017; not calibrated
