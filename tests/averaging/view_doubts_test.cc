@@ -154,6 +154,9 @@ TEST(ViewDoubts, AViewThatLostItsFeatures) {
   EXPECT_EQ(doubts[0].reason, DoubtReason::kLostFeatures);
   EXPECT_THAT(doubts[0].views, ElementsAre(3));
   EXPECT_EQ(doubts[0].share, 0);
+  // Where the camera is not known, landmarks cannot have observations.
+  scene.views.at(3).intrinsic_id = kInvalidId;
+  EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
 }
 
 }  // namespace

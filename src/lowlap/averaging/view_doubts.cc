@@ -229,7 +229,11 @@ void CountFeatures(const Scene& scene,
   for (const auto& [id, track] : tracks) {
     std::vector<ViewId> views;
     for (const FeatureRef& ref : track) {
-      if (scene.FindPose(ref.view) != nullptr) views.push_back(ref.view);
+      // Without an intrinsic nothing of a view can be triangulated.
+      if (scene.FindPose(ref.view) != nullptr &&
+          scene.FindIntrinsic(ref.view) != nullptr) {
+        views.push_back(ref.view);
+      }
     }
     if (views.size() < min_views) continue;
     std::set<ViewId> fitting;

@@ -58,10 +58,10 @@ std::vector<ViewDoubt> FindViewDoubts(const Scene& scene,
                                       const TranslationSolution& solution,
                                       const DoubtOptions& options);
 
-/// The fourth: views with a pose of whose features fewer than half are
-/// observations of a landmark. Features are those on point tracks over two
-/// placed views or more, and on line tracks over three or more (two views of a
-/// line fit any poses). Views without any have no entry.
+/// The fourth: views with a pose and an intrinsic of whose features fewer than
+/// half are observations of a landmark. Features are those on point tracks over
+/// two such views or more, and on line tracks over three or more (two views of
+/// a line fit any poses). Views without any have no entry.
 std::vector<ViewDoubt> FindLostFeatures(const Scene& scene);
 
 }  // namespace lowlap
