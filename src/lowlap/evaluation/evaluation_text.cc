@@ -1,20 +1,9 @@
-#include <cstdarg>
-#include <cstdio>
-
+#include "lowlap/core/format.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/evaluation/relative_errors.h"
 
 namespace lowlap {
 namespace {
-
-std::string Format(const char* format, ...) {
-  char buffer[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof(buffer), format, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 std::string SummaryLine(const std::string& name,
                         const ErrorStatistics& statistics) {

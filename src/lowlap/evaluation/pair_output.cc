@@ -1,23 +1,13 @@
-#include <cstdarg>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "lowlap/core/format.h"
 #include "lowlap/evaluation/pair_errors.h"
 
 namespace lowlap {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string Format(const char* format, ...) {
-  char buffer[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(buffer, sizeof(buffer), format, arguments);
-  va_end(arguments);
-  return buffer;
-}
 
 std::string Angle(const std::optional<double>& value) {
   return value ? Format("%.3f", *value) : "-";

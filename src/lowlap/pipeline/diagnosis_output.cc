@@ -2,24 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "lowlap/core/format.h"
 #include "lowlap/pipeline/summary_json.h"
 
 namespace lowlap {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string Format(const char* format, double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
 
 class Writer {
  public:

@@ -1,0 +1,19 @@
+#include "lowlap/core/format.h"
+
+#include <gtest/gtest.h>
+
+namespace lowlap {
+namespace {
+
+TEST(Format, WritesWhatPrintfDoes) {
+  EXPECT_EQ(Format("%d of %s: %.2f", 3, "five", 0.6), "3 of five: 0.60");
+  EXPECT_EQ(Format("%s", ""), "");
+}
+
+TEST(Format, DoesNotCutLongTexts) {
+  const std::string name(1000, 'x');
+  EXPECT_EQ(Format("%s\n", name.c_str()), name + "\n");
+}
+
+}  // namespace
+}  // namespace lowlap
