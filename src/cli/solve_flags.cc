@@ -291,7 +291,10 @@ Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
   const auto poses = strecha::ReadGroundTruth(path);
   if (!poses) return tl::unexpected<Error>(poses.error());
   auto truth = GroundTruthByName(scene, *poses);
-  if (!truth) return tl::unexpected<Error>(truth.error());
+  if (!truth) {
+    if (truth.error().file.empty()) truth.error().file = path;
+    return tl::unexpected<Error>(truth.error());
+  }
   return std::optional<GroundTruth>(std::move(*truth));
 }
 

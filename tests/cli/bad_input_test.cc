@@ -103,6 +103,11 @@ TEST_F(BadInput, TruthThatSaysNothing) {
   ExpectRefused("ablate " + Room() + gt + Out(), says);
   ExpectRefused("subsets --drop 1 " + Room() + gt + Out(), says);
   ExpectRefused("evaluate " + Truth() + gt, says);
+  // A folder of true cameras of other images.
+  const std::string other =
+      std::string(LOWLAP_SOURCE_DIR) + "/sfm_data/samples/room";
+  ExpectRefused("evaluate " + Truth() + " " + other,
+                "samples/room: no view of the scene has a true pose");
 }
 
 TEST_F(BadInput, ExcludedViewsThatAreNotThere) {
