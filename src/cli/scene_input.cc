@@ -10,6 +10,14 @@
 namespace lowlap::cli {
 namespace {
 
+// The views that --exclude names.
+Result<std::vector<ViewId>> ExcludedViews(const Scene& scene,
+                                          const SceneInputFlags& flags) {
+  auto excluded = FindViews(scene, flags.exclude);
+  if (!excluded) excluded.error().file = flags.scene;
+  return excluded;
+}
+
 Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
                                   const RunContext& context, StageLog* stages) {
   LoadedScene loaded;
@@ -27,7 +35,7 @@ Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
                   std::to_string(project->num_dropped_pairs) +
                       " pairs name views that the listing does not have");
     }
-    const auto excluded = FindViews(project->scene, flags.exclude);
+    const auto excluded = ExcludedViews(project->scene, flags);
     if (!excluded) return tl::unexpected<Error>(excluded.error());
     loaded.scene = WithoutViews(project->scene, *excluded);
     for (auto& [views, points] : project->matches) {
@@ -61,7 +69,7 @@ Result<LoadedScene> ReadOwnScene(const SceneInputFlags& flags,
   const StageLog::Scope scope(stages, "read");
   auto scene = ReadAnyScene(flags.scene, context);
   if (!scene) return tl::unexpected<Error>(scene.error());
-  const auto excluded = FindViews(*scene, flags.exclude);
+  const auto excluded = ExcludedViews(*scene, flags);
   if (!excluded) return tl::unexpected<Error>(excluded.error());
   return LoadedScene{
       excluded->empty() ? std::move(*scene) : WithoutViews(*scene, *excluded),

@@ -112,7 +112,8 @@ TEST_F(BadInput, TruthThatSaysNothing) {
 
 TEST_F(BadInput, ExcludedViewsThatAreNotThere) {
   for (const char* command : {"inspect ", "diagnose ", "scales "}) {
-    ExpectRefused(command + Room() + " --exclude nobody", "no view 'nobody'");
+    ExpectRefused(command + Room() + " --exclude nobody",
+                  "room.lowlap: no view 'nobody'");
   }
   EXPECT_THAT(Lowlap("inspect " + Room() + " --exclude 0").output,
               HasSubstr("views 4"));
