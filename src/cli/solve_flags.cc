@@ -63,11 +63,12 @@ Result<std::optional<GroundTruth>> KnownTruth(GroundTruth truth,
       return std::optional<GroundTruth>(std::move(truth));
     }
   }
-  return MakeError(ErrorCode::kInsufficientData,
-                   truth.empty()
-                       ? "holds no camera poses to compare with"
-                       : "no view of the scene has the id of a true camera",
-                   path);
+  return MakeError(
+      ErrorCode::kInsufficientData,
+      truth.empty()
+          ? "holds no camera poses to compare with"
+          : "no view of the scene has the name or the id of a true camera",
+      path);
 }
 
 void PrintCost(const std::vector<StageCost>& stages) {
@@ -281,7 +282,7 @@ Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
   if (std::filesystem::is_regular_file(path)) {
     const auto truth = ReadScene(path);
     if (!truth) return tl::unexpected<Error>(truth.error());
-    return KnownTruth(GroundTruthFromScene(*truth), scene, path);
+    return KnownTruth(GroundTruthFromScene(*truth, scene), scene, path);
   }
   if (onedsfm::IsProblemFolder(path)) {
     auto truth = onedsfm::ReadTruePoses(path);

@@ -83,6 +83,37 @@ TEST(GroundTruthFromScene, TakesThePosedViewsWithSharedPoses) {
   EXPECT_EQ(truth.at(1).center.x(), 5);
 }
 
+/// The center of each view's pose has the view's id as its x.
+void PoseEveryView(Scene* scene) {
+  for (auto& [id, view] : scene->views) {
+    view.pose_id = id;
+    scene->poses[id] = PoseAt(id);
+  }
+}
+
+TEST(GroundTruthFromScene, GoesByNameWhereNamesTell) {
+  const Scene scene = SceneOf({{"", "b.jpg"}, {"", "a.jpg"}});
+  Scene truth = SceneOf({{"", "a.jpg"}, {"", "b.jpg"}, {"", "c.jpg"}});
+  PoseEveryView(&truth);
+  const GroundTruth by_name = GroundTruthFromScene(truth, scene);
+  ASSERT_EQ(by_name.size(), 2u);
+  EXPECT_EQ(by_name.at(0).center.x(), 1);
+  EXPECT_EQ(by_name.at(1).center.x(), 0);
+}
+
+TEST(GroundTruthFromScene, GoesByIdWhereNamesDoNotTell) {
+  const Scene scene = SceneOf({{"", "b.jpg"}, {"", "a.jpg"}});
+  for (const char* other : {"a.jpg", "c.jpg"}) {
+    // Two true views of one name; two whose names do not occur.
+    Scene truth = SceneOf({{"", other}, {"", other}});
+    if (other[0] == 'c') truth.views.at(1).filename = "d.jpg";
+    PoseEveryView(&truth);
+    const GroundTruth by_id = GroundTruthFromScene(truth, scene);
+    ASSERT_EQ(by_id.size(), 2u);
+    EXPECT_EQ(by_id.at(0).center.x(), 0);
+  }
+}
+
 TEST(Summarize, GivesMeanMedianMaxAndRmse) {
   EXPECT_EQ(Summarize({}).count, 0);
   EXPECT_EQ(Summarize({}).mean, 0);

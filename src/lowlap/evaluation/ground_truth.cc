@@ -78,4 +78,14 @@ GroundTruth GroundTruthFromScene(const Scene& truth) {
   return result;
 }
 
+GroundTruth GroundTruthFromScene(const Scene& truth, const Scene& scene) {
+  const GroundTruth by_id = GroundTruthFromScene(truth);
+  std::map<std::string, Pose> by_name;
+  for (const auto& [id, pose] : by_id) {
+    by_name.emplace(NamesOf(truth.views.at(id)).front(), pose);
+  }
+  if (by_name.size() < by_id.size()) return by_id;
+  return GroundTruthByName(scene, by_name).value_or(by_id);
+}
+
 }  // namespace lowlap

@@ -24,4 +24,8 @@ Result<GroundTruth> GroundTruthByName(
 /// The poses of a scene (a simulated one, a reference solution) as truth.
 GroundTruth GroundTruthFromScene(const Scene& truth);
 
+/// The same for the views of another scene: by image name if no two of its
+/// posed views share one and a name occurs in the other scene, else by view id.
+GroundTruth GroundTruthFromScene(const Scene& truth, const Scene& scene);
+
 }  // namespace lowlap
