@@ -134,8 +134,13 @@ TEST_F(BadInput, NothingToAdjust) {
   ASSERT_NE(after, std::string::npos);
   Write("unknown.json",
         text.substr(0, list) + "\"intrinsics\": [], " + text.substr(after));
-  ExpectRefused("solve " + Path("unknown.json") + Out(),
-                "unknown.json: nothing to adjust: no view has both");
+  const Outcome solved =
+      Lowlap("solve " + Path("unknown.json") + " -o " + Path("solved"));
+  EXPECT_EQ(solved.exit_code, 0) << solved.output;
+  EXPECT_THAT(solved.output,
+              HasSubstr("not adjusted: nothing to adjust: no view has both"));
+  ExpectRefused("adjust " + Path("solved/scene.lowlap") + Out(),
+                "scene.lowlap: nothing to adjust: no view has both");
 }
 
 }  // namespace

@@ -205,6 +205,15 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
   result.poses = std::move(*poses);
   result.poses_before_adjustment = scene->poses;
   auto refinement = RefineSolution(scene, options, context, stages);
+  if (!refinement && options.adjust &&
+      refinement.error().code == ErrorCode::kInsufficientData) {
+    // The poses of a graph without features are a result too.
+    context.Log(LogLevel::kWarning,
+                "not adjusted: " + refinement.error().message);
+    SolveOptions structure_only = options;
+    structure_only.adjust = false;
+    refinement = RefineSolution(scene, structure_only, context, stages);
+  }
   if (!refinement) return tl::unexpected<Error>(refinement.error());
   result.structure = std::move(refinement->structure);
   result.adjustment = std::move(refinement->adjustment);
