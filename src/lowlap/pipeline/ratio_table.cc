@@ -1,19 +1,14 @@
 #include "lowlap/pipeline/ratio_table.h"
 
 #include <cmath>
-#include <cstdio>
+
+#include "lowlap/core/format.h"
 
 namespace lowlap {
 namespace {
 
-std::string Number(double value, const char* format) {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 std::string RatioText(double log_ratio) {
-  return Number(std::exp(log_ratio), "%.4f");
+  return Format("%.4f", std::exp(log_ratio));
 }
 
 std::string Support(const KindSupport& kind) {
@@ -44,14 +39,14 @@ std::vector<std::string> RatioRow(const ScaleRatio& ratio) {
   return {RatioText(ratio.log_ratio),
           RatioText(ratio.IntervalLow()),
           RatioText(ratio.IntervalHigh()),
-          Number(ratio.log10_nfa, "%.1f"),
+          Format("%.1f", ratio.log10_nfa),
           Support(ratio.points),
           Support(ratio.lines),
           Support(ratio.coplanar),
           Information(ratio),
           ratio.second_mode
               ? RatioText(ratio.second_mode->log_ratio) + " (" +
-                    Number(ratio.second_mode->log10_nfa, "%.1f") + ")"
+                    Format("%.1f", ratio.second_mode->log10_nfa) + ")"
               : none,
           verdict};
 }
