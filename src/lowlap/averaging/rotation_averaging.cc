@@ -5,6 +5,7 @@
 
 #include "lowlap/averaging/cycle_support.h"
 #include "lowlap/averaging/difference_solver.h"
+#include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
 
@@ -126,6 +127,7 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
   const Eigen::Index count = static_cast<Eigen::Index>(measurements.size());
   Eigen::VectorXd weights(count);
   Eigen::MatrixXd steps(count, 3);
+  SparseSolver solver;
   // L1 has done its work long before half of the iterations.
   const int num_l1_iterations = options.max_iterations / 2;
   enum class Phase { kL1, kTighten, kPolish };
@@ -162,7 +164,7 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
     }
     // exp(-w_j) E exp(w_i) ~ log E + w_i - w_j, so w_j - w_i = log E.
     const auto tangent =
-        SolveDifferences(rotations.size(), edges, weights, steps);
+        SolveDifferences(rotations.size(), edges, weights, steps, &solver);
     if (!tangent) return tl::unexpected<Error>(tangent.error());
     double largest = 0;
     for (std::size_t n = 0; n < rotations.size(); ++n) {
