@@ -54,13 +54,13 @@ struct Rig {
   }
 };
 
-TEST(TrifocalPointRatio, ExactWithoutNoise) {
+TEST(TrifocalPointSolver, ExactWithoutNoise) {
   SyntheticTripletOptions options;
   options.num_points = 200;
   const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 1);
   for (const TrifocalPoint& point : triplet.view.points) {
     const RatioCandidate ratio =
-        TrifocalPointRatio(triplet.view.geometry, point);
+        TrifocalPointSolver(triplet.view.geometry).Ratio(point);
     ASSERT_EQ(ratio.status, CandidateStatus::kValid);
     EXPECT_NEAR(ratio.log_ratio, triplet.true_log_ratio, 1e-9);
     EXPECT_GT(ratio.log_ratio_stddev, 0);
@@ -141,15 +141,19 @@ TEST(TrifocalTau, IsTheMinimumOfABruteForceScan) {
     return best;
   };
   CandidateStatus status;
+  const TrifocalPointSolver solver(g);
   for (const TrifocalPoint& point : triplet.view.points) {
-    const std::optional<double> tau = TrifocalPointTau(g, point, &status);
-    ASSERT_TRUE(tau);
-    const Vec3 x =
+    const RatioCandidate ratio = solver.Ratio(point);
+    ASSERT_EQ(ratio.status, CandidateStatus::kValid);
+    const Vec3 from_i =
         *TriangulateMidpoint(g.cami_from_camj, point.in_j, point.in_i);
-    EXPECT_NEAR(std::log(*tau),
-                scan(point.in_k, g.camk_from_camj.rotation * x,
-                     g.camk_from_camj.translation),
-                2e-4);
+    const Vec3 from_k =
+        *TriangulateMidpoint(g.camk_from_camj, point.in_j, point.in_k);
+    const double ijk = scan(point.in_k, g.camk_from_camj.rotation * from_i,
+                            g.camk_from_camj.translation);
+    const double kji = scan(point.in_i, g.cami_from_camj.rotation * from_k,
+                            g.cami_from_camj.translation);
+    EXPECT_NEAR(ratio.log_ratio, 0.5 * (ijk - kji), 2e-4);
   }
   for (const TrifocalLine& line : triplet.view.lines) {
     const std::optional<double> tau = TrifocalLineTau(g, line, &status);
@@ -182,8 +186,9 @@ TEST(Candidates, SwappingTheEndsNegatesTheLogRatio) {
   };
   for (int n = 0; n < 30; ++n) {
     expect_negated(
-        TrifocalPointRatio(triplet.view.geometry, triplet.view.points[n]),
-        TrifocalPointRatio(swapped.geometry, swapped.points[n]));
+        TrifocalPointSolver(triplet.view.geometry)
+            .Ratio(triplet.view.points[n]),
+        TrifocalPointSolver(swapped.geometry).Ratio(swapped.points[n]));
     expect_negated(
         TrifocalLineRatio(triplet.view.geometry, triplet.view.lines[n]),
         TrifocalLineRatio(swapped.geometry, swapped.lines[n]));
@@ -237,28 +242,30 @@ TEST(Candidates, StandardDeviationsAreThoseOfTheNoise) {
               1.0, 0.08);
 }
 
-TEST(TrifocalPointRatio, PointOnTheBaselineIsDegenerate) {
+TEST(TrifocalPointSolver, PointOnTheBaselineIsDegenerate) {
   Rig rig;
   rig.center_i = Vec3(0, 0, -1);  // the forward motion's baseline is the z axis
   rig.geometry.cami_from_camj = {Mat3::Identity(), -rig.center_i};
-  EXPECT_EQ(TrifocalPointRatio(rig.geometry, rig.Point({0, 0, 4})).status,
-            CandidateStatus::kDegenerate);
+  EXPECT_EQ(
+      TrifocalPointSolver(rig.geometry).Ratio(rig.Point({0, 0, 4})).status,
+      CandidateStatus::kDegenerate);
   // On the line of the other baseline: visible, and without parallax in k.
   Rig other;
   other.center_k = Vec3(0.1, 0, 1);
   other.geometry.camk_from_camj = {Mat3::Identity(),
                                    -other.center_k.normalized()};
-  EXPECT_EQ(TrifocalPointRatio(other.geometry, other.Point(4 * other.center_k))
+  EXPECT_EQ(TrifocalPointSolver(other.geometry)
+                .Ratio(other.Point(4 * other.center_k))
                 .status,
             CandidateStatus::kDegenerate);
 }
 
-TEST(TrifocalPointRatio, NegativeDepthIsToldApart) {
+TEST(TrifocalPointSolver, NegativeDepthIsToldApart) {
   const Rig rig;
   TrifocalPoint point = rig.Point({0.3, 0.2, 5});
   // The parallax of i reversed: the rays meet behind the cameras.
   std::swap(point.in_i, point.in_j);
-  EXPECT_EQ(TrifocalPointRatio(rig.geometry, point).status,
+  EXPECT_EQ(TrifocalPointSolver(rig.geometry).Ratio(point).status,
             CandidateStatus::kNegativeDepth);
 }
 

@@ -50,7 +50,7 @@ TEST(FindPlanePoints, AreTrifocalPointsOfTheSameRatio) {
   ASSERT_FALSE(points.empty());
   for (const PlanePoint& point : points) {
     const RatioCandidate ratio =
-        TrifocalPointRatio(scene.geometry, point.point);
+        TrifocalPointSolver(scene.geometry).Ratio(point.point);
     ASSERT_EQ(ratio.status, CandidateStatus::kValid);
     EXPECT_NEAR(ratio.log_ratio, point.ratio.log_ratio, 1e-6);
   }

@@ -17,7 +17,22 @@ namespace lowlap {
 ///
 /// Degenerate, nullopt: v almost parallel to w (the feature lies on the
 /// baseline or in an epipolar plane), u = 0, or the minimum at infinity.
-std::optional<double> ClosestDirection(const Vec3& u, const Vec3& v,
-                                       const Vec3& w);
+inline std::optional<double> ClosestDirection(const Vec3& u, const Vec3& v,
+                                              const Vec3& w) {
+  constexpr double kParallelSine = 1e-9;
+  constexpr double kSmall = 1e-12;
+  const double uv = u.dot(v), uw = u.dot(w), vw = v.dot(w);
+  const double vv = v.squaredNorm(), ww = w.squaredNorm(), uu = u.squaredNorm();
+  const double cross = v.cross(w).squaredNorm();
+  if (!(uu > 0) || !(cross > kParallelSine * kParallelSine * vv * ww)) {
+    return std::nullopt;
+  }
+  const double numerator = uw * vv - uv * vw;
+  const double denominator = uv * ww - uw * vw;
+  if (denominator * denominator <= kSmall * kSmall * uu * vv * ww * ww) {
+    return std::nullopt;
+  }
+  return numerator / denominator;
+}
 
 }  // namespace lowlap

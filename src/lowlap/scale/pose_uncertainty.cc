@@ -32,18 +32,17 @@ std::vector<WeightedFeature> Sample(
 }
 
 RatioCandidate RatioIn(const TripletGeometry& geometry,
+                       const TrifocalPointSolver& of_points,
                        const TripletView& triplet, const RatioSupport& support,
                        const WeightedFeature& feature) {
   switch (feature.kind) {
     case FeatureKind::kPoint:
-      return TrifocalPointRatio(geometry,
-                                triplet.points[support.PointOf(feature.index)]);
+      return of_points.Ratio(triplet.points[support.PointOf(feature.index)]);
     case FeatureKind::kLine:
       return TrifocalLineRatio(geometry,
                                triplet.lines[support.LineOf(feature.index)]);
     case FeatureKind::kPlanePoint:
-      return TrifocalPointRatio(geometry,
-                                triplet.plane_points[feature.index].point);
+      return of_points.Ratio(triplet.plane_points[feature.index].point);
     case FeatureKind::kCoplanar:
       break;
   }
@@ -94,9 +93,11 @@ double PoseVariance(const TripletView& triplet, const RatioSupport& support,
   if (triplet.pose_perturbations.empty()) return variance;
   const std::vector<WeightedFeature> sample = Sample(features);
   for (const TripletGeometry& geometry : triplet.pose_perturbations) {
+    const TrifocalPointSolver of_points(geometry);
     double sum = 0, weights = 0;
     for (const WeightedFeature& feature : sample) {
-      const RatioCandidate ratio = RatioIn(geometry, triplet, support, feature);
+      const RatioCandidate ratio =
+          RatioIn(geometry, of_points, triplet, support, feature);
       if (ratio.status != CandidateStatus::kValid) continue;
       const double change =
           ratio.log_ratio -

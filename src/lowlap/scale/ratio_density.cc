@@ -12,13 +12,20 @@ constexpr int kKernelRadius = 32;  // the logistic at 8 scales: 3e-4
 constexpr double kMaxRange = 16.0;
 constexpr double kMinRelative = 0.5;
 
+// By distance in steps of the grid.
+std::vector<double> Kernel() {
+  std::vector<double> kernel;
+  for (int offset = 0; offset <= kKernelRadius; ++offset) {
+    const double half = 0.5 * offset * kGridStep / RatioDensity::kSpread;
+    kernel.push_back(1.0 / (std::cosh(half) * std::cosh(half)));
+  }
+  return kernel;
+}
+
 }  // namespace
 
-RatioDensity::RatioDensity(const std::vector<RatioCandidate>& ratios) {
-  if (ratios.empty()) return;
-  std::vector<double> sorted;
-  for (const RatioCandidate& ratio : ratios) sorted.push_back(ratio.log_ratio);
-  std::sort(sorted.begin(), sorted.end());
+RatioDensity::RatioDensity(const std::vector<double>& sorted) {
+  if (sorted.empty()) return;
   const double median = sorted[sorted.size() / 2];
   const double first = std::max(sorted.front(), median - kMaxRange / 2);
   const double last = std::min(sorted.back(), median + kMaxRange / 2);
@@ -35,11 +42,7 @@ RatioDensity::RatioDensity(const std::vector<RatioCandidate>& ratios) {
     mass[node] += node + 1 - at;
     mass[node + 1] += at - node;
   }
-  std::vector<double> kernel;
-  for (int offset = 0; offset <= kKernelRadius; ++offset) {
-    const double half = 0.5 * offset * kGridStep / kSpread;
-    kernel.push_back(1.0 / (std::cosh(half) * std::cosh(half)));
-  }
+  static const std::vector<double> kernel = Kernel();
   std::vector<double> density(num_nodes, 0.0);
   for (int node = 0; node < num_nodes; ++node) {
     if (mass[node] == 0) continue;

@@ -2,8 +2,6 @@
 
 #include <vector>
 
-#include "lowlap/scale/triplet_geometry.h"
-
 namespace lowlap {
 
 /// How dense the log ratios of one kind of feature are, as unrelated ones: the
@@ -15,7 +13,7 @@ class RatioDensity {
   static constexpr double kSpread = 0.25;
 
   RatioDensity() = default;
-  explicit RatioDensity(const std::vector<RatioCandidate>& ratios);
+  explicit RatioDensity(const std::vector<double>& sorted);
 
   /// log10 of the density at a log ratio over the mean density at the smoothed
   /// ratios. Not below that of half the mean, since little is known of the

@@ -10,14 +10,10 @@ namespace {
 // Ratios at which the features of one kind are unrelated to the hypothesis:
 // the kind's own ratios by rank, each displaced both ways by quantiles of a
 // logistic, in an order that is the same read from either end.
-std::vector<double> BackgroundRatios(
-    const std::vector<RatioCandidate>& ratios) {
+std::vector<double> BackgroundRatios(const std::vector<double>& sorted) {
   constexpr int kErrorsWanted = 16384;
   constexpr double kGolden = 0.61803398874989485;
-  const int n = static_cast<int>(ratios.size());
-  std::vector<double> sorted;
-  for (const RatioCandidate& ratio : ratios) sorted.push_back(ratio.log_ratio);
-  std::sort(sorted.begin(), sorted.end());
+  const int n = static_cast<int>(sorted.size());
   const int draws = std::clamp(kErrorsWanted / (2 * n), 16, 256);
   std::vector<double> background;
   for (int m = 0; m < draws; ++m) {
@@ -115,10 +111,12 @@ void RatioNfaCriterion::MeasureBackground(const TripletView& triplet) {
   const auto measure = [&](FeatureKind kind, int num_features,
                            Background* background) {
     if (num_features == 0) return;
-    background->density = RatioDensity(support_.Ratios(kind));
+    const std::vector<double> sorted =
+        support_.SortedLogRatios(kind, num_features);
+    background->density = RatioDensity(sorted);
     LadderSums sums{};
     double num_errors = 0;
-    for (const double log_ratio : BackgroundRatios(support_.Ratios(kind))) {
+    for (const double log_ratio : BackgroundRatios(sorted)) {
       add(kind == FeatureKind::kPoint
               ? support_.CountPoints(log_ratio, &workspace)
           : kind == FeatureKind::kLine
@@ -134,17 +132,15 @@ void RatioNfaCriterion::MeasureBackground(const TripletView& triplet) {
   measure(FeatureKind::kPlanePoint, support_.num_plane_points(),
           &plane_points_);
 
-  const std::vector<RatioCandidate>& all =
-      support_.Ratios(FeatureKind::kCoplanar);
   for (int t = 0; t < kPairTiers; ++t) {
     const PairTier& tier = support_.Tier(t);
     if (tier.num_pairs == 0) continue;
-    const std::vector<RatioCandidate> ratios(all.begin(),
-                                             all.begin() + tier.num_pairs);
-    pairs_[t].density = RatioDensity(ratios);
+    const std::vector<double> sorted =
+        support_.SortedLogRatios(FeatureKind::kCoplanar, tier.num_pairs);
+    pairs_[t].density = RatioDensity(sorted);
     LadderSums first{}, last{};
     double num_draws = 0;
-    for (const double log_ratio : BackgroundRatios(ratios)) {
+    for (const double log_ratio : BackgroundRatios(sorted)) {
       const PairCounts counts =
           support_.CountPairs(log_ratio, t, &workspace)[t];
       add(counts.first, &first);

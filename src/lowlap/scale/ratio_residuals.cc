@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "lowlap/geometry/plucker_line.h"
-#include "lowlap/geometry/triangulation.h"
 #include "lowlap/scale/coplanar_ratio.h"
 #include "lowlap/scale/trifocal_line.h"
 
@@ -41,8 +40,8 @@ auto Clamped(const Column& turn, int count, float low, float high) {
 // (v + tau w) as a projection into a view that observes `observed`.
 void PushPointSide(Column* column, const Vec3& v, const Vec3& w,
                    const Vec3& observed, double focal_px, double tau) {
-  const double depth = v.z() + tau * w.z();
-  const Vec3 v1 = v / depth, w1 = w / depth;
+  const double inverse_depth = 1.0 / (v.z() + tau * w.z());
+  const Vec3 v1 = inverse_depth * v, w1 = inverse_depth * w;
   const Vec2 a = focal_px * (v1 - observed * v1.z()).head<2>();
   const Vec2 b = focal_px * (w1 - observed * w1.z()).head<2>();
   Push(column[0], a.x());
@@ -58,11 +57,20 @@ void PushPointSide(Column* column, const Vec3& v, const Vec3& w,
 }
 
 template <class Tau>
-auto PointSideAt(const Column* c, const Tau& tau) {
+auto PointDistanceAt(const Column* c, const Tau& tau) {
   return ((View(c[0]) + tau * View(c[1])).square() +
           (View(c[2]) + tau * View(c[3])).square())
-             .sqrt() /
-         (View(c[4]) + tau * View(c[5])).cwiseMax(kMinDepth);
+      .sqrt();
+}
+
+template <class Tau>
+auto PointDepthAt(const Column* c, const Tau& tau) {
+  return (View(c[4]) + tau * View(c[5])).cwiseMax(kMinDepth);
+}
+
+template <class Tau>
+auto PointSideAt(const Column* c, const Tau& tau) {
+  return PointDistanceAt(c, tau) / PointDepthAt(c, tau);
 }
 
 float PointSideOf(const Column* c, float tau, int n) {
@@ -170,26 +178,34 @@ void Widen(int count, float* least_px, float* most_px) {
 
 }  // namespace
 
+void PointResiduals::Reserve(int count) {
+  for (Column& column : column_) column.reserve(count);
+}
+
 void PointResiduals::Add(const TripletGeometry& geometry,
-                         const TrifocalPoint& point, double log_ratio) {
+                         const TrifocalPoint& point,
+                         const TrifocalMidpoints& midpoints, double log_ratio) {
   const double tau = std::exp(log_ratio);
   const RigidTransform& cami = geometry.cami_from_camj;
   const RigidTransform& camk = geometry.camk_from_camj;
-  const Vec3 from_i = TriangulateMidpoint(cami, point.in_j, point.in_i)
-                          .value_or(Vec3(Vec3::Zero()));
-  const Vec3 from_k = TriangulateMidpoint(camk, point.in_j, point.in_k)
-                          .value_or(Vec3(Vec3::Zero()));
-  PushPointSide(column_, camk.rotation * from_i, camk.translation, point.in_k,
-                geometry.focal_k_px, tau);
+  PushPointSide(column_, camk.rotation * midpoints.from_i, camk.translation,
+                point.in_k, geometry.focal_k_px, tau);
   // The scene in i times tau: the projection is the same.
-  PushPointSide(column_ + kSide, cami.translation, cami.rotation * from_k,
-                point.in_i, geometry.focal_i_px, tau);
+  PushPointSide(column_ + kSide, cami.translation,
+                cami.rotation * midpoints.from_k, point.in_i,
+                geometry.focal_i_px, tau);
 }
 
 void PointResiduals::Evaluate(double tau, float* errors_px) const {
   const float t = static_cast<float>(tau);
+  const Column* const c = column_;
+  const Column* const d = column_ + kSide;
+  // The mean of two quotients with one division.
   Eigen::Map<Eigen::ArrayXf>(errors_px, size()) =
-      0.5f * (PointSideAt(column_, t) + PointSideAt(column_ + kSide, t));
+      0.5f *
+      (PointDistanceAt(c, t) * PointDepthAt(d, t) +
+       PointDistanceAt(d, t) * PointDepthAt(c, t)) /
+      (PointDepthAt(c, t) * PointDepthAt(d, t));
 }
 
 float PointResiduals::ErrorOf(double tau, int index) const {

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "lowlap/scale/coplanar_candidates.h"
+#include "lowlap/scale/trifocal_point.h"
 #include "lowlap/scale/triplet_geometry.h"
 
 namespace lowlap {
@@ -30,9 +31,10 @@ inline constexpr int kMaxTurns = 4;
 /// the mean of the two (Salaün et al. 2017, section 5).
 class PointResiduals {
  public:
+  void Reserve(int count);
   /// The point's ratio must be kValid.
   void Add(const TripletGeometry& geometry, const TrifocalPoint& point,
-           double log_ratio);
+           const TrifocalMidpoints& midpoints, double log_ratio);
   int size() const { return static_cast<int>(column_[0].size()); }
   /// Writes size() errors.
   void Evaluate(double tau, float* errors_px) const;

@@ -61,12 +61,16 @@ RatioSupport::RatioSupport(const TripletView& triplet,
 }
 
 void RatioSupport::AddPoints(const TripletView& triplet) {
+  const TrifocalPointSolver solver(triplet.geometry);
+  points_.Reserve(static_cast<int>(triplet.points.size()));
   for (std::size_t n = 0; n < triplet.points.size(); ++n) {
     const TrifocalPoint& point = triplet.points[n];
-    const RatioCandidate ratio = TrifocalPointRatio(triplet.geometry, point);
+    RatioCandidate ratio;
+    const auto midpoints = solver.Midpoints(point, &ratio.status);
+    if (midpoints) ratio = solver.Ratio(point, *midpoints);
     num_rejected_negative_ += ratio.status == CandidateStatus::kNegativeDepth;
     if (ratio.status != CandidateStatus::kValid) continue;
-    points_.Add(triplet.geometry, point, ratio.log_ratio);
+    points_.Add(triplet.geometry, point, *midpoints, ratio.log_ratio);
     point_ratios_.push_back(ratio);
     point_of_.push_back(static_cast<int>(n));
   }
@@ -109,10 +113,27 @@ void RatioSupport::AddPairs(const TripletView& triplet) {
 }
 
 void RatioSupport::AddPlanePoints(const TripletView& triplet) {
+  const TrifocalPointSolver solver(triplet.geometry);
   for (const PlanePoint& point : triplet.plane_points) {
-    plane_points_.Add(triplet.geometry, point.point, point.ratio.log_ratio);
+    CandidateStatus status;
+    plane_points_.Add(
+        triplet.geometry, point.point,
+        solver.Midpoints(point.point, &status).value_or(TrifocalMidpoints()),
+        point.ratio.log_ratio);
     plane_point_ratios_.push_back(point.ratio);
   }
+}
+
+std::vector<double> RatioSupport::SortedLogRatios(FeatureKind kind,
+                                                  int count) const {
+  std::vector<double> sorted;
+  sorted.reserve(count);
+  for (const Hypothesis& hypothesis : hypotheses_) {
+    if (hypothesis.kind == kind && hypothesis.index < count) {
+      sorted.push_back(hypothesis.log_ratio);
+    }
+  }
+  return sorted;
 }
 
 int RatioSupport::TierOfPair(int index) const {

@@ -56,6 +56,8 @@ class RatioSupport {
 
   /// The features of a kind at their own ratio, in the order of their index.
   const std::vector<RatioCandidate>& Ratios(FeatureKind kind) const;
+  /// The log ratios of the first `count` features of a kind, sorted.
+  std::vector<double> SortedLogRatios(FeatureKind kind, int count) const;
   /// The index of a feature in TripletView::points, or lines.
   int PointOf(int index) const { return point_of_[index]; }
   int LineOf(int index) const { return line_of_[index]; }
