@@ -1,5 +1,6 @@
 #include "lowlap/scale/ratio_refinement.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -14,38 +15,66 @@ constexpr double kPriorWrong = 0.5;
 
 double Square(double value) { return value * value; }
 
+// Features of one group that come in a row.
+struct Run {
+  int group = 0;
+  Eigen::Index begin = 0;
+  Eigen::Index size = 0;
+
+  auto Of(const Eigen::ArrayXd& values) const {
+    return values.segment(begin, size);
+  }
+  Eigen::Map<Eigen::ArrayXd> Of(std::vector<double>* values) const {
+    return {values->data() + begin, size};
+  }
+};
+
 class MixtureFit {
  public:
   MixtureFit(const std::vector<RatioFeature>& features,
              const std::vector<RatioGroup>& groups, double initial)
       : features_(features), groups_(groups) {
+    const Eigen::Index size = static_cast<Eigen::Index>(features.size());
+    log_ratio_.resize(size);
+    stddev_.resize(size);
     int num_first = 0, num_last = 0;
-    for (const RatioFeature& feature : features) {
+    for (Eigen::Index n = 0; n < size; ++n) {
+      const RatioFeature& feature = features[n];
+      log_ratio_[n] = feature.log_ratio;
+      stddev_[n] = feature.log_ratio_stddev;
       num_first = std::max(num_first, feature.first_line + 1);
       num_last = std::max(num_last, feature.last_line + 1);
+      if (runs_.empty() || runs_.back().group != feature.group) {
+        runs_.push_back({feature.group, n, 0});
+      }
+      ++runs_.back().size;
     }
+    precision_ = stddev_.inverse();
     of_first_.resize(num_first);
     of_last_.resize(num_last);
     odds_.resize(groups.size());
     num_right_.resize(groups.size());
     fit_.log_ratio = initial;
+    fit_.probability.resize(features.size());
     fit_.weight.resize(features.size());
-    fit_.multiplicity.resize(features.size());
+    fit_.multiplicity.assign(features.size(), 1.0);
     fit_.degrees.resize(groups.size());
     for (const RatioGroup& group : groups) {
       fit_.noise2.push_back(Square(group.noise));
     }
+    FindDeviations();
     constexpr double kRightAtFirst = 2.5;
-    for (const RatioFeature& feature : features) {
-      fit_.probability.push_back(
-          SquaredDeviation(feature) <
-          Square(kRightAtFirst * groups[feature.group].noise));
+    for (const Run& run : runs_) {
+      run.Of(&fit_.probability) =
+          (run.Of(squared_deviation_) <
+           Square(kRightAtFirst * groups[run.group].noise))
+              .cast<double>();
     }
     FindWeights();
     FindOdds();
   }
 
-  RatioMixture Run() {
+  RatioMixture Fit() {
     constexpr int kMaxIterations = 40;
     constexpr double kAccuracy = 1e-3;  // in standard deviations, and of phi^2
     for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
@@ -62,24 +91,27 @@ class MixtureFit {
   }
 
  private:
-  double SquaredDeviation(const RatioFeature& feature) const {
-    return Square((feature.log_ratio - fit_.log_ratio) /
-                  feature.log_ratio_stddev);
+  // (r / s)^2 of every feature.
+  void FindDeviations() {
+    squared_deviation_ = ((log_ratio_ - fit_.log_ratio) * precision_).square();
   }
 
   void FindProbabilities() {
     constexpr double kRootOf2Pi = 2.5066282746310002;
-    for (std::size_t n = 0; n < features_.size(); ++n) {
-      const RatioFeature& feature = features_[n];
-      const double noise2 = fit_.noise2[feature.group];
-      const double right = std::exp(-0.5 * SquaredDeviation(feature) / noise2) /
-                           (kRootOf2Pi * std::sqrt(noise2));
-      const double wrong = odds_[feature.group] * feature.log_ratio_stddev;
-      fit_.probability[n] = right > 0 ? right / (right + wrong) : 0.0;
+    for (const Run& run : runs_) {
+      const double noise2 = fit_.noise2[run.group];
+      right_ = (run.Of(squared_deviation_) * (-0.5 / noise2)).exp() /
+               (kRootOf2Pi * std::sqrt(noise2));
+      // Neither right nor wrong: far away in a group without wrong features.
+      constexpr double kLeast = std::numeric_limits<double>::min();
+      run.Of(&fit_.probability) =
+          right_ / (right_ + odds_[run.group] * run.Of(stddev_)).max(kLeast);
     }
   }
 
-  void FindWeights() {
+  // By feature, the mean of the numbers of right pairs of its two lines.
+  void FindMultiplicities() {
+    if (of_first_.empty()) return;
     std::fill(of_first_.begin(), of_first_.end(), 0.0);
     std::fill(of_last_.begin(), of_last_.end(), 0.0);
     for (std::size_t n = 0; n < features_.size(); ++n) {
@@ -87,23 +119,26 @@ class MixtureFit {
       of_first_[features_[n].first_line] += fit_.probability[n];
       of_last_[features_[n].last_line] += fit_.probability[n];
     }
+    for (std::size_t n = 0; n < features_.size(); ++n) {
+      if (!features_[n].IsPair()) continue;
+      fit_.multiplicity[n] =
+          std::max(1.0, 0.5 * (of_first_[features_[n].first_line] +
+                               of_last_[features_[n].last_line]));
+    }
+  }
+
+  void FindWeights() {
+    FindMultiplicities();
     std::vector<double> information(groups_.size(), 0.0);
     std::fill(fit_.degrees.begin(), fit_.degrees.end(), 0.0);
     std::fill(num_right_.begin(), num_right_.end(), 0.0);
-    for (std::size_t n = 0; n < features_.size(); ++n) {
-      const RatioFeature& feature = features_[n];
-      double& multiplicity = fit_.multiplicity[n];
-      multiplicity = 1.0;
-      if (feature.IsPair()) {
-        multiplicity = std::max(1.0, 0.5 * (of_first_[feature.first_line] +
-                                            of_last_[feature.last_line]));
-      }
-      const double count = fit_.probability[n] / multiplicity;
-      fit_.weight[n] = count / (fit_.noise2[feature.group] *
-                                Square(feature.log_ratio_stddev));
-      num_right_[feature.group] += fit_.probability[n];
-      fit_.degrees[feature.group] += count;
-      information[feature.group] += fit_.weight[n];
+    for (const Run& run : runs_) {
+      auto weight = run.Of(&fit_.weight);
+      weight = run.Of(&fit_.probability) / run.Of(&fit_.multiplicity);
+      fit_.degrees[run.group] += weight.sum();
+      weight *= run.Of(precision_).square() / fit_.noise2[run.group];
+      information[run.group] += weight.sum();
+      num_right_[run.group] += run.Of(&fit_.probability).sum();
     }
     information_ = 0;
     for (const double of_group : information) information_ += of_group;
@@ -122,10 +157,12 @@ class MixtureFit {
   double MoveToMean() {
     if (!(information_ > 0)) return 0;
     double sum = 0;
-    for (std::size_t n = 0; n < features_.size(); ++n) {
-      sum += fit_.weight[n] * (features_[n].log_ratio - fit_.log_ratio);
+    for (const Run& run : runs_) {
+      sum +=
+          (run.Of(&fit_.weight) * (run.Of(log_ratio_) - fit_.log_ratio)).sum();
     }
     fit_.log_ratio += sum / information_;
+    FindDeviations();
     return std::abs(sum) / std::sqrt(information_);
   }
 
@@ -137,9 +174,9 @@ class MixtureFit {
     for (const RatioGroup& group : groups_) {
       squares.push_back(group.prior_count);
     }
-    for (std::size_t n = 0; n < features_.size(); ++n) {
-      const RatioFeature& feature = features_[n];
-      squares[feature.group] += fit_.probability[n] * SquaredDeviation(feature);
+    for (const Run& run : runs_) {
+      squares[run.group] +=
+          (run.Of(&fit_.probability) * run.Of(squared_deviation_)).sum();
     }
     double change = 0;
     for (std::size_t g = 0; g < groups_.size(); ++g) {
@@ -160,11 +197,10 @@ class MixtureFit {
     for (const RatioGroup& group : groups_) {
       wrong_stddevs.push_back(group.sum_of_stddevs);
     }
-    for (std::size_t n = 0; n < features_.size(); ++n) {
-      const RatioFeature& feature = features_[n];
-      wrong[feature.group] += 1 - fit_.probability[n];
-      wrong_stddevs[feature.group] -=
-          fit_.probability[n] * feature.log_ratio_stddev;
+    for (const Run& run : runs_) {
+      const auto probability = run.Of(&fit_.probability);
+      wrong[run.group] += (1 - probability).sum();
+      wrong_stddevs[run.group] -= (probability * run.Of(stddev_)).sum();
     }
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       const RatioGroup& group = groups_[g];
@@ -180,6 +216,13 @@ class MixtureFit {
 
   const std::vector<RatioFeature>& features_;
   const std::vector<RatioGroup>& groups_;
+  std::vector<Run> runs_;
+  // By feature.
+  Eigen::ArrayXd log_ratio_;
+  Eigen::ArrayXd stddev_;
+  Eigen::ArrayXd precision_;  // 1 / stddev
+  Eigen::ArrayXd squared_deviation_;
+  Eigen::ArrayXd right_;  // density if right, of one run
   RatioMixture fit_;
   double information_ = 0;
   std::vector<double> odds_;
@@ -202,7 +245,7 @@ RefinedRatio RefineRatio(const std::vector<RatioFeature>& features,
     refined.information_share.assign(groups.size(), 0.0);
     return refined;
   }
-  RatioMixture fit = MixtureFit(features, groups, initial).Run();
+  RatioMixture fit = MixtureFit(features, groups, initial).Fit();
   RatioVariance variance = FindRatioVariance(features, groups, fit);
   refined.log_ratio = fit.log_ratio;
   refined.log_ratio_stddev = variance.stddev;
