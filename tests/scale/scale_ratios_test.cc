@@ -7,6 +7,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
+#include "lowlap/scale/planes_by_pair.h"
 #include "lowlap/scale/ratio_profile.h"
 #include "lowlap/scale/triplet_view.h"
 
@@ -134,6 +135,55 @@ TEST(EstimateScaleRatios, PlanePointsHaveNoSayWhereOthersDecide) {
   without.use_coplanar_points = false;
   const auto a = EstimateScaleRatios(row.scene, {}, {});
   const auto b = EstimateScaleRatios(row.scene, without, {});
+  ASSERT_TRUE(a.has_value() && b.has_value());
+  EXPECT_TRUE(*a == *b);
+}
+
+// Views 0, 1, 2 and two pairs, which match points of the middle view alone: the
+// first those left of 600 pixels, the second those right of `begin_px`.
+Scene TwoPairs(double begin_px) {
+  Scene scene = RowOfViews().scene;
+  RelativePose first = *scene.FindRelativePose(0, 1);
+  RelativePose last = *scene.FindRelativePose(1, 2);
+  const std::vector<Vec2>& in_middle = scene.features.at(1).points_px;
+  for (RelativePose* pose : {&first, &last}) {
+    pose->line_inliers.clear();
+    pose->point_inliers.clear();
+  }
+  for (FeatureIndex n = 0; n < in_middle.size(); ++n) {
+    const double x = in_middle[n].x();
+    if (x < 600 && n % 2 == 0) first.point_inliers.push_back({n, n});
+    if (x > begin_px && n % 2 == 1) last.point_inliers.push_back({n, n});
+  }
+  scene.relative_poses = {{first.views, first}, {last.views, last}};
+  return scene;
+}
+
+TEST(PairsOverlap, WhereverThereArePlanePoints) {
+  int num_apart = 0, num_with_plane_points = 0;
+  for (const double begin_px : {-100.0, 200.0, 400.0, 600.0, 700.0}) {
+    const Scene scene = TwoPairs(begin_px);
+    const NormalizedFeaturesByView features = NormalizeAllFeatures(scene);
+    const ViewTriplet views{0, 1, 2};
+    const bool overlap = PairsOverlap(scene, features, views);
+    EXPECT_EQ(overlap, begin_px < 600);
+    const auto triplet = MakeTripletView(scene, features, views, {});
+    ASSERT_TRUE(triplet.has_value());
+    const bool has_plane_points = !triplet->plane_points.empty();
+    EXPECT_TRUE(overlap || !has_plane_points);
+    num_with_plane_points += has_plane_points;
+    num_apart += !overlap;
+  }
+  EXPECT_GE(num_with_plane_points, 2);
+  EXPECT_EQ(num_apart, 2);
+}
+
+TEST(EstimateScaleRatios, PairsThatDoNotOverlapPayForNoSecondTest) {
+  const Scene scene = TwoPairs(600);
+  ScaleOptions without;
+  without.use_coplanar_points = false;
+  const auto a = EstimateScaleRatios(scene, {}, {});
+  const auto b = EstimateScaleRatios(scene, without, {});
   ASSERT_TRUE(a.has_value() && b.has_value());
   EXPECT_TRUE(*a == *b);
 }

@@ -153,20 +153,20 @@ class PlaneSearch {
     constexpr int kIterations = 3;
     constexpr double kCauchy = 2.0;  // in standard deviations
     if (static_cast<int>(inliers.size()) <= kPlaneSize) return false;
-    bool first = true;
     for (int iteration = 0; iteration < kIterations; ++iteration) {
       Mat3 information = Mat3::Zero();
       Vec3 right = Vec3::Zero();
       double squares = 0, weights = 0;
       for (const int n : inliers) {
         const DepthSample& sample = samples_[n];
+        const double precision = 1.0 / sample.stddev;
         const double residual =
-            first ? 0.0
-                  : (sample.inverse_depth - plane->InverseDepth(sample.ray)) /
-                        sample.stddev;
+            iteration == 0 ? 0.0
+                           : precision * (sample.inverse_depth -
+                                          plane->InverseDepth(sample.ray));
         const double robust =
             1.0 / (1.0 + residual * residual / (kCauchy * kCauchy));
-        const double weight = robust / (sample.stddev * sample.stddev);
+        const double weight = robust * precision * precision;
         information += weight * sample.ray * sample.ray.transpose();
         right += weight * sample.inverse_depth * sample.ray;
         squares += robust * residual * residual;
@@ -178,10 +178,10 @@ class PlaneSearch {
         return false;
       }
       plane->parameters = solver.solve(right);
+      if (iteration + 1 < kIterations) continue;
       const double excess = squares / std::max(1.0, weights - kPlaneSize);
       plane->covariance =
           std::max(1.0, excess) * solver.solve(Mat3::Identity());
-      first = false;
     }
     return plane->parameters.allFinite() && plane->covariance.allFinite();
   }

@@ -1,8 +1,35 @@
 #include "lowlap/scale/planes_by_pair.h"
 
+#include <Eigen/Geometry>
+
 #include "lowlap/core/parallel.h"
 
 namespace lowlap {
+namespace {
+
+Eigen::AlignedBox2d BoxOfMatches(const Scene& scene,
+                                 const NormalizedFeatures& in_middle,
+                                 ViewId middle, ViewId neighbor) {
+  Eigen::AlignedBox2d box;
+  const RelativePose* edge = scene.FindRelativePose(middle, neighbor);
+  if (edge == nullptr) return box;
+  const auto index = [&](const FeatureMatch& match) {
+    return edge->views.first == middle ? match.first : match.second;
+  };
+  for (const FeatureMatch& match : edge->point_inliers) {
+    if (index(match) >= in_middle.points.size()) continue;
+    box.extend(in_middle.points[index(match)].head<2>());
+  }
+  for (const FeatureMatch& match : edge->line_inliers) {
+    if (index(match) >= in_middle.segments.size()) continue;
+    const NormalizedSegment& segment = in_middle.segments[index(match)];
+    box.extend(segment.start.head<2>());
+    box.extend(segment.end.head<2>());
+  }
+  return box;
+}
+
+}  // namespace
 
 PairPlanes PlanesOfPair(const Scene& scene,
                         const NormalizedFeaturesByView& features, ViewId middle,
@@ -51,6 +78,15 @@ PairPlanes PlanesOfPair(const Scene& scene,
   return FindPlanes(DepthSamples(UnitTransform(*edge, middle, neighbor),
                                  in_middle->second.focal_px,
                                  in_neighbor->second.focal_px, points, lines));
+}
+
+bool PairsOverlap(const Scene& scene, const NormalizedFeaturesByView& features,
+                  const ViewTriplet& views) {
+  const NormalizedFeatures& in_middle = features.at(views.middle);
+  const auto box = [&](ViewId neighbor) {
+    return BoxOfMatches(scene, in_middle, views.middle, neighbor);
+  };
+  return box(views.first).intersects(box(views.last));
 }
 
 Result<PlanesByPair> FindPlanesByPair(const Scene& scene,

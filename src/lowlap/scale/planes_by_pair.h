@@ -17,8 +17,15 @@ PairPlanes PlanesOfPair(const Scene& scene,
                         const NormalizedFeaturesByView& features, ViewId middle,
                         ViewId neighbor);
 
-/// The same for all pairs that the triplets need, each found once; in parallel.
-/// Errors: kCancelled.
+/// False if the features that the two pairs match lie in disjoint parts of the
+/// middle view (as their bounding boxes tell): no plane of one pair then
+/// extends to a feature of the other, and there are no plane points. The views
+/// must have normalised features.
+bool PairsOverlap(const Scene& scene, const NormalizedFeaturesByView& features,
+                  const ViewTriplet& views);
+
+/// The planes of all pairs that the triplets need, each found once; in
+/// parallel. Errors: kCancelled.
 Result<PlanesByPair> FindPlanesByPair(const Scene& scene,
                                       const NormalizedFeaturesByView& features,
                                       const std::vector<ViewTriplet>& triplets,

@@ -73,7 +73,8 @@ Result<std::vector<Outcome>> TestOnce(const Scene& scene,
 
 /// The same; triplets that are not meaningful by points, lines and pairs are
 /// tested a second time, with points and lines on planes
-/// (ScaleOptions::use_coplanar_points), and pay for it. Outcomes are those of
+/// (ScaleOptions::use_coplanar_points), and pay for it, if there can be any
+/// (PairsOverlap). Outcomes are those of
 /// the last test of each, in the order of the triplets.
 /// Errors: invalid options too.
 template <class Outcome, class Test>
@@ -96,7 +97,8 @@ Result<std::vector<Outcome>> TestTriplets(
   std::vector<ViewTriplet> undecided_triplets;
   for (std::size_t n = 0; n < triplets.size(); ++n) {
     if (RatioOf((*outcomes)[n]).verdict == RatioVerdict::kMeaningful ||
-        !HasFeatures(features, triplets[n])) {
+        !HasFeatures(features, triplets[n]) ||
+        !PairsOverlap(scene, features, triplets[n])) {
       continue;
     }
     undecided.push_back(n);
