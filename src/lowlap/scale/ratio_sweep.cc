@@ -71,7 +71,7 @@ class RatioSweeper {
     for (const double seed : Seeds(low, high)) Try(seed);
     PushAround(best_.log_ratio, low, high);
     const int few =
-        std::max<int>(64, static_cast<int>(support_.hypotheses().size()) / 20);
+        std::max<int>(32, static_cast<int>(support_.hypotheses().size()) / 20);
     while (!windows_.empty()) {
       const Window window = windows_.top();
       windows_.pop();
@@ -143,6 +143,8 @@ class RatioSweeper {
       if (sorted.empty()) continue;
       seeds.push_back(HalfSampleMode(sorted));
       seeds.push_back(sorted[sorted.size() / 2]);
+      // All of one kind: the same again.
+      if (sorted.size() == ratios.back().size()) break;
     }
     if (seeds.empty()) seeds.push_back(0.5 * (low + high));
     return seeds;
@@ -182,8 +184,8 @@ class RatioSweeper {
 
   // Windows that grow with their distance from the best ratio so far.
   void PushAround(double center, double low, double high) {
-    constexpr double kFirst = 2e-3;
-    constexpr double kGrowth = 4;
+    constexpr double kFirst = 1e-3;
+    constexpr double kGrowth = 8;
     for (const int side : {-1, 1}) {
       const double last = side < 0 ? center - low : high - center;
       double near = 0;

@@ -1,5 +1,6 @@
 #include "lowlap/scale/triplet_view.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 
@@ -182,6 +183,8 @@ Result<TripletView> MakeTripletView(const Scene& scene,
   triplet.image_diagonal_px = intrinsic->ImageDiagonal();
 
   if (options.use_points) {
+    triplet.points.reserve(
+        std::min(i.edge->point_inliers.size(), k.edge->point_inliers.size()));
     const auto is_valid = [](const Vec3& point) { return point.z() > 0; };
     Chain(FromMiddle(i.edge->point_inliers, i.middle_is_first),
           FromMiddle(k.edge->point_inliers, k.middle_is_first),
