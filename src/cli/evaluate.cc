@@ -84,6 +84,10 @@ int Evaluate(const Flags& flags) {
     return EvaluateMeasurements(flags, *scene, **truth);
   }
   const PoseEvaluation evaluation = EvaluatePoses(*scene, **truth);
+  if (evaluation.scope == EvaluationScope::kNothing) {
+    return Fail(
+        {ErrorCode::kInsufficientData, evaluation.note, flags.solution, ""});
+  }
   std::printf("%s\n",
               (flags.json ? ToJson(evaluation) : ToText(evaluation)).c_str());
   return 0;

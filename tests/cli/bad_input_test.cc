@@ -110,6 +110,11 @@ TEST_F(BadInput, TruthThatSaysNothing) {
                 "samples/room: no view of the scene has a true pose");
 }
 
+TEST_F(BadInput, SolutionsWithoutCameras) {
+  ExpectRefused("evaluate " + Room() + " " + Truth(),
+                "room.lowlap: fewer than 2 cameras are common");
+}
+
 TEST_F(BadInput, ExcludedViewsThatAreNotThere) {
   for (const char* command : {"inspect ", "diagnose ", "scales "}) {
     ExpectRefused(command + Room() + " --exclude nobody",

@@ -260,11 +260,8 @@ Result<TranslationSolution> GraphScalesAverager::Solve(
     Growth growth(problem, *scales, groups);
     Status status = growth.Start(g);
     if (status) status = growth.Grow();
-    if (status) {
-      status =
-          RefineCenters(problem, growth.placed(), growth.mutable_centers());
-    }
     if (!status) return tl::unexpected<Error>(status.error());
+    RefineCenters(problem, growth.placed(), growth.mutable_centers());
     for (std::size_t view = 0; view < num_views; ++view) {
       if (!growth.placed()[view] || solution.component[view] >= 0) continue;
       solution.component[view] = solution.num_components;

@@ -180,11 +180,11 @@ class Refiner {
 
 }  // namespace
 
-Status RefineCenters(const TranslationProblem& problem,
-                     const std::vector<bool>& placed,
-                     std::vector<Vec3>* centers, int max_iterations) {
+void RefineCenters(const TranslationProblem& problem,
+                   const std::vector<bool>& placed, std::vector<Vec3>* centers,
+                   int max_iterations) {
   const Refiner refiner(problem, placed, *centers);
-  if (refiner.num_rows() == 0) return {};
+  if (refiner.num_rows() == 0) return;
   SparseSolver solver;
   double damping = 1e-4;
   double cost = refiner.Cost(*centers);
@@ -217,7 +217,6 @@ Status RefineCenters(const TranslationProblem& problem,
     }
     if (!improved || relative_decrease < 1e-6) break;
   }
-  return {};
 }
 
 }  // namespace lowlap

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "lowlap/averaging/translation_problem.h"
-#include "lowlap/core/result.h"
 
 namespace lowlap {
 
@@ -23,9 +22,9 @@ namespace lowlap {
 /// is not estimated again: it would shrink with what is given up.
 ///
 /// Where no step can be computed, or none lowers the sum, the centres stay as
-/// they are; that is no error.
-Status RefineCenters(const TranslationProblem& problem,
-                     const std::vector<bool>& placed,
-                     std::vector<Vec3>* centers, int max_iterations = 50);
+/// they are.
+void RefineCenters(const TranslationProblem& problem,
+                   const std::vector<bool>& placed, std::vector<Vec3>* centers,
+                   int max_iterations = 50);
 
 }  // namespace lowlap
