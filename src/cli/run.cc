@@ -137,6 +137,10 @@ int Run(const RunFlags& flags) {
     }
     return Fail(pairs.error());
   }
+  if (scene->relative_poses.empty()) {
+    return Fail({ErrorCode::kInsufficientData, ExplainNoPose(*pairs),
+                 flags.images, ""});
+  }
   summary.pairs = std::move(*pairs);
   return SolveAndWrite(std::move(*scene), flags.solve, std::move(summary),
                        &stages, context, flags.images, flags.output);

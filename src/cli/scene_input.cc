@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "lowlap/pipeline/image_collection.h"
+#include "lowlap/pipeline/relative_poses.h"
 #include "third_party_adapters/onedsfm/problem.h"
 #include "third_party_adapters/openmvg/import.h"
 #include "third_party_adapters/scene_formats.h"
@@ -119,7 +120,7 @@ Result<LoadedScene> LoadMeasuredScene(const SceneInputFlags& flags,
         flags.matches_dir.empty()
             ? "holds no relative poses; for an OpenMVG listing give the "
               "matches folder with -m"
-            : "no pair of views has a relative pose",
+            : ExplainNoPose(loaded->pairs),
         flags.scene);
   }
   return loaded;

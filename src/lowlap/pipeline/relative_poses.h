@@ -1,7 +1,6 @@
 #pragma once
 
 #include <map>
-#include <string>
 #include <vector>
 
 #include "lowlap/core/result.h"
@@ -12,6 +11,7 @@
 #include "lowlap/matching/line_filter.h"
 #include "lowlap/matching/matching.h"
 #include "lowlap/matching/tracks.h"
+#include "lowlap/pipeline/pair_report.h"
 #include "lowlap/scene/scene.h"
 #include "lowlap/two_view/relative_pose_estimator.h"
 
@@ -31,19 +31,6 @@ struct RelativePoseOptions {
   LineTrackOptions line_tracks;
 
   Status Validate() const;
-};
-
-/// What became of one pair.
-struct PairReport {
-  ViewPair views;
-  bool accepted = false;
-  std::string reason;  // why not, if not
-  std::string geometry;
-  int num_point_matches = 0;
-  int num_line_matches = 0;
-  int num_point_inliers = 0;
-  int num_line_inliers = 0;
-  double log10_nfa = 0;
 };
 
 /// Fills scene->relative_poses, point_tracks and line_tracks from putative

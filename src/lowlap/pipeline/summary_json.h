@@ -6,7 +6,7 @@
 
 #include "lowlap/averaging/rigidity.h"
 #include "lowlap/evaluation/pose_errors.h"
-#include "lowlap/pipeline/relative_poses.h"
+#include "lowlap/pipeline/pair_report.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/pipeline/stage_log.h"
 
