@@ -35,7 +35,6 @@ struct Candidate {
   FeatureMatch match;
   LineTransfer transfer;
   double similarity = 0;  // in [0, 1]
-  double score = 0;
 
   // The inverse of the depth at unit offset.
   double Steepness(const Vec2& at) const {
@@ -172,23 +171,24 @@ std::vector<std::vector<Neighbor>> FindNeighbors(
   return neighbors;
 }
 
-void Relax(const NormalizedFeatures& first, double slack,
-           std::vector<Candidate>* candidates) {
+std::vector<internal::ScoredMatch> Relax(
+    const NormalizedFeatures& first, double slack,
+    const std::vector<Candidate>& candidates) {
   std::vector<std::vector<std::size_t>> candidates_of(first.segments.size());
-  for (std::size_t c = 0; c < candidates->size(); ++c) {
-    candidates_of[(*candidates)[c].match.first].push_back(c);
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    candidates_of[candidates[c].match.first].push_back(c);
   }
   const auto neighbors = FindNeighbors(first, candidates_of);
   std::vector<std::vector<std::vector<internal::Support>>> supports(
-      candidates->size());
-  for (std::size_t c = 0; c < candidates->size(); ++c) {
-    const Candidate& candidate = (*candidates)[c];
+      candidates.size());
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const Candidate& candidate = candidates[c];
     for (const Neighbor& n : neighbors[candidate.match.first]) {
       std::vector<internal::Support> list;
       const double surface = kDepthNoise + kDepthSlope * n.distance;
       const double log_depth = candidate.LogDepth(n.here);
       for (const std::size_t o : candidates_of[n.segment]) {
-        const Candidate& other = (*candidates)[o];
+        const Candidate& other = candidates[o];
         const double tolerance =
             std::hypot(surface, slack / candidate.Steepness(n.here),
                        slack / other.Steepness(n.there));
@@ -199,30 +199,22 @@ void Relax(const NormalizedFeatures& first, double slack,
       supports[c].push_back(std::move(list));
     }
   }
-  std::vector<double> scores(candidates->size());
-  for (std::size_t c = 0; c < scores.size(); ++c) {
-    scores[c] = (*candidates)[c].similarity;
-  }
+  std::vector<double> scores;
+  for (const Candidate& c : candidates) scores.push_back(c.similarity);
   scores = internal::RelaxScores(std::move(scores), supports, kHalfSupport,
                                  kIterations);
+  std::vector<internal::ScoredMatch> scored;
   for (std::size_t c = 0; c < scores.size(); ++c) {
-    (*candidates)[c].score = scores[c] * (*candidates)[c].similarity;
+    scored.push_back(
+        {candidates[c].match, scores[c] * candidates[c].similarity});
   }
+  return scored;
 }
 
-// Best first; what is hardly better than a rival is not decided.
+// Best first; a segment goes to all pieces of one edge.
 std::vector<FeatureMatch> Assign(const DescribedLines& first,
                                  const DescribedLines& second,
-                                 std::vector<Candidate> candidates,
-                                 double min_score) {
-  std::sort(candidates.begin(), candidates.end(),
-            [](const Candidate& a, const Candidate& b) {
-              return a.score != b.score ? a.score > b.score : a.match < b.match;
-            });
-  std::vector<internal::ScoredMatch> scored;
-  for (const Candidate& c : candidates) scored.push_back({c.match, c.score});
-  const std::vector<double> rivals =
-      internal::FindRivals(first.segments, second.segments, scored);
+                                 const std::vector<FeatureMatch>& decided) {
   std::vector<std::vector<FeatureIndex>> partners1(first.segments.size());
   std::vector<std::vector<FeatureIndex>> partners2(second.segments.size());
   const auto fits = [](const std::vector<LineSegment>& segments,
@@ -233,17 +225,14 @@ std::vector<FeatureMatch> Assign(const DescribedLines& first,
     });
   };
   std::vector<FeatureMatch> matches;
-  for (std::size_t n = 0; n < candidates.size(); ++n) {
-    const Candidate& c = candidates[n];
-    if (c.score < min_score) break;
-    if (rivals[n] > kMaxRivalShare * c.score ||
-        !fits(second.segments, c.match.second, partners1[c.match.first]) ||
-        !fits(first.segments, c.match.first, partners2[c.match.second])) {
+  for (const FeatureMatch& match : decided) {
+    if (!fits(second.segments, match.second, partners1[match.first]) ||
+        !fits(first.segments, match.first, partners2[match.second])) {
       continue;
     }
-    partners1[c.match.first].push_back(c.match.second);
-    partners2[c.match.second].push_back(c.match.first);
-    matches.push_back(c.match);
+    partners1[match.first].push_back(match.second);
+    partners2[match.second].push_back(match.first);
+    matches.push_back(match);
   }
   std::sort(matches.begin(), matches.end());
   return matches;
@@ -281,14 +270,17 @@ std::vector<FeatureMatch> MatchLinesGuided(
     const NormalizedFeatures& second_normalized,
     const RigidTransform& cam2_from_cam1,
     const std::vector<FeatureMatch>& seeds, const GuidedLineOptions& options) {
-  std::vector<Candidate> candidates =
+  const std::vector<Candidate> candidates =
       CollectCandidates(first, second, first_normalized, second_normalized,
                         cam2_from_cam1, seeds, options);
   if (candidates.empty()) return {};
-  Relax(first_normalized,
-        EpipolarSlack(first_normalized, second_normalized, options),
-        &candidates);
-  return Assign(first, second, std::move(candidates), options.min_score);
+  const double slack =
+      EpipolarSlack(first_normalized, second_normalized, options);
+  return Assign(
+      first, second,
+      internal::DecidedMatches(first.segments, second.segments,
+                               Relax(first_normalized, slack, candidates),
+                               options.min_score, kMaxRivalShare));
 }
 
 }  // namespace lowlap

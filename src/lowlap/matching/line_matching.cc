@@ -30,7 +30,6 @@ constexpr double kMaxRivalShare = 0.9;
 struct Candidate {
   FeatureMatch match;
   double similarity = 0;  // of the descriptors, in (0, 1]
-  double score = 0;
 };
 
 Vec2 Middle(const LineSegment& s) { return 0.5 * (s.start_px + s.end_px); }
@@ -150,42 +149,43 @@ std::vector<std::vector<std::size_t>> FindNeighbors(
 
 // Scores the candidates by relaxation: a neighbour weighs by its similarity and
 // by how well it agrees.
-void Relax(const DescribedLines& first, const DescribedLines& second,
-           std::vector<Candidate>* candidates) {
+std::vector<internal::ScoredMatch> Relax(
+    const DescribedLines& first, const DescribedLines& second,
+    const std::vector<Candidate>& candidates) {
   std::vector<std::vector<std::size_t>> candidates_of(first.segments.size());
-  for (std::size_t c = 0; c < candidates->size(); ++c) {
-    candidates_of[(*candidates)[c].match.first].push_back(c);
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    candidates_of[candidates[c].match.first].push_back(c);
   }
   const auto neighbors = FindNeighbors(first.segments, candidates_of);
   // For every candidate, one list per neighbour.
   std::vector<std::vector<std::vector<internal::Support>>> supports(
-      candidates->size());
-  for (std::size_t c = 0; c < candidates->size(); ++c) {
-    const FeatureMatch& m = (*candidates)[c].match;
+      candidates.size());
+  for (std::size_t c = 0; c < candidates.size(); ++c) {
+    const FeatureMatch& m = candidates[c].match;
     for (const std::size_t n : neighbors[m.first]) {
       std::vector<internal::Support> list;
       for (const std::size_t other : candidates_of[n]) {
-        const FeatureMatch& o = (*candidates)[other].match;
+        const FeatureMatch& o = candidates[other].match;
         if (o.second == m.second) continue;
         const double agreement =
             Agreement(first.segments[m.first], second.segments[m.second],
                       first.segments[o.first], second.segments[o.second]);
         if (agreement > 0) {
-          list.push_back({other, agreement * (*candidates)[other].similarity});
+          list.push_back({other, agreement * candidates[other].similarity});
         }
       }
       supports[c].push_back(std::move(list));
     }
   }
-  std::vector<double> scores(candidates->size());
-  for (std::size_t c = 0; c < scores.size(); ++c) {
-    scores[c] = (*candidates)[c].similarity;
-  }
+  std::vector<double> scores;
+  for (const Candidate& c : candidates) scores.push_back(c.similarity);
   scores = internal::RelaxScores(std::move(scores), supports, kHalfSupport,
                                  kIterations);
+  std::vector<internal::ScoredMatch> scored;
   for (std::size_t c = 0; c < scores.size(); ++c) {
-    (*candidates)[c].score = scores[c];
+    scored.push_back({candidates[c].match, scores[c]});
   }
+  return scored;
 }
 
 }  // namespace
@@ -213,26 +213,17 @@ Status LineMatchOptions::Validate() const {
 std::vector<FeatureMatch> MatchLines(const DescribedLines& first,
                                      const DescribedLines& second,
                                      const LineMatchOptions& options) {
-  std::vector<Candidate> candidates = CollectCandidates(first, second, options);
+  const std::vector<Candidate> candidates =
+      CollectCandidates(first, second, options);
   if (candidates.empty()) return {};
-  Relax(first, second, &candidates);
-  std::sort(candidates.begin(), candidates.end(),
-            [](const Candidate& a, const Candidate& b) {
-              return a.score != b.score ? a.score > b.score : a.match < b.match;
-            });
-  std::vector<internal::ScoredMatch> scored;
-  for (const Candidate& c : candidates) scored.push_back({c.match, c.score});
-  const std::vector<double> rivals =
-      internal::FindRivals(first.segments, second.segments, scored);
   std::vector<bool> used1(first.segments.size()), used2(second.segments.size());
   std::vector<FeatureMatch> matches;
-  for (std::size_t n = 0; n < candidates.size(); ++n) {
-    const Candidate& c = candidates[n];
-    if (c.score < options.min_score) break;
-    if (rivals[n] > kMaxRivalShare * c.score) continue;
-    if (used1[c.match.first] || used2[c.match.second]) continue;
-    used1[c.match.first] = used2[c.match.second] = true;
-    matches.push_back(c.match);
+  for (const FeatureMatch& match : internal::DecidedMatches(
+           first.segments, second.segments, Relax(first, second, candidates),
+           options.min_score, kMaxRivalShare)) {
+    if (used1[match.first] || used2[match.second]) continue;
+    used1[match.first] = used2[match.second] = true;
+    matches.push_back(match);
   }
   std::sort(matches.begin(), matches.end());
   return matches;

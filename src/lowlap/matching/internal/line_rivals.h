@@ -16,11 +16,14 @@ struct ScoredMatch {
   double score = 0;
 };
 
-/// For every match the best score of one that contradicts it: that shares a
-/// segment with it, with partners that are not pieces of one edge; 0 without
-/// such a match. `by_score`: best first.
-std::vector<double> FindRivals(const std::vector<LineSegment>& first,
-                               const std::vector<LineSegment>& second,
-                               const std::vector<ScoredMatch>& by_score);
+/// The matches that score at least `min_score` and are clearly better than what
+/// contradicts them, the best first (ties by match): no rival has more than
+/// `max_rival_share` of the score. A rival shares a segment with the match,
+/// with a partner that is no piece of the same edge.
+std::vector<FeatureMatch> DecidedMatches(const std::vector<LineSegment>& first,
+                                         const std::vector<LineSegment>& second,
+                                         std::vector<ScoredMatch> matches,
+                                         double min_score,
+                                         double max_rival_share);
 
 }  // namespace lowlap::internal
