@@ -18,11 +18,13 @@ Eigen::AlignedBox2d BoxOfMatches(const Scene& scene,
   };
   for (const FeatureMatch& match : edge->point_inliers) {
     if (index(match) >= in_middle.points.size()) continue;
-    box.extend(in_middle.points[index(match)].head<2>());
+    const Vec3& point = in_middle.points[index(match)];
+    if (point.z() > 0) box.extend(point.head<2>());
   }
   for (const FeatureMatch& match : edge->line_inliers) {
     if (index(match) >= in_middle.segments.size()) continue;
     const NormalizedSegment& segment = in_middle.segments[index(match)];
+    if (!segment.IsValid()) continue;
     box.extend(segment.start.head<2>());
     box.extend(segment.end.head<2>());
   }

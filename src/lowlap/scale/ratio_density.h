@@ -13,6 +13,7 @@ class RatioDensity {
   static constexpr double kSpread = 0.25;
 
   RatioDensity() = default;
+  /// Of sorted log ratios.
   explicit RatioDensity(const std::vector<double>& sorted);
 
   /// log10 of the density at a log ratio over the mean density at the smoothed
