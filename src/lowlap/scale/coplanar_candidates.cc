@@ -1,13 +1,14 @@
 #include "lowlap/scale/coplanar_candidates.h"
 
+#include <Eigen/Core>
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <optional>
 #include <tuple>
 #include <utility>
 
 #include "lowlap/scale/coplanar_ratio.h"
+#include "lowlap/scale/least_first.h"
 #include "lowlap/scale/trifocal_line.h"
 
 namespace lowlap {
@@ -37,28 +38,38 @@ double Cross2(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }
 
-// A line that can be used, with the disc around its segment in the middle view.
-struct UsableLine {
-  int index = 0;
-  Vec2 center = Vec2::Zero();
-  double radius = 0;
+// The lines of one list that can be used, with the discs around their segments
+// in the middle view.
+struct UsableLines {
+  std::vector<int> indices;
+  std::vector<CoplanarLine> lines;
+  Eigen::ArrayXd x, y, radius;
+
+  int size() const { return static_cast<int>(indices.size()); }
 };
 
-std::vector<UsableLine> UsableLines(const RigidTransform& camn_from_camj,
-                                    const std::vector<MatchedLine>& lines,
-                                    int* num_negative) {
-  std::vector<UsableLine> usable;
+UsableLines FindUsable(const RigidTransform& camn_from_camj, double focal_n_px,
+                       double focal_j_px, const std::vector<MatchedLine>& lines,
+                       int* num_negative) {
+  UsableLines usable;
   for (std::size_t n = 0; n < lines.size(); ++n) {
     CandidateStatus status;
-    const NormalizedSegment& in_j = lines[n].in_middle.segment;
-    if (!LineInMiddle(camn_from_camj, in_j, lines[n].in_neighbor.segment,
-                      &status)) {
+    if (!LineInMiddle(camn_from_camj, lines[n].in_middle.segment,
+                      lines[n].in_neighbor.segment, &status)) {
       *num_negative += status == CandidateStatus::kNegativeDepth;
       continue;
     }
-    usable.push_back({static_cast<int>(n),
-                      0.5 * (in_j.start + in_j.end).head<2>(),
-                      0.5 * (in_j.end - in_j.start).head<2>().norm()});
+    usable.indices.push_back(static_cast<int>(n));
+    usable.lines.emplace_back(camn_from_camj, focal_n_px, focal_j_px, lines[n]);
+  }
+  usable.x.resize(usable.size());
+  usable.y.resize(usable.size());
+  usable.radius.resize(usable.size());
+  for (int n = 0; n < usable.size(); ++n) {
+    const NormalizedSegment& in_j = lines[usable.indices[n]].in_middle.segment;
+    usable.x(n) = 0.5 * (in_j.start.x() + in_j.end.x());
+    usable.y(n) = 0.5 * (in_j.start.y() + in_j.end.y());
+    usable.radius(n) = 0.5 * (in_j.end - in_j.start).head<2>().norm();
   }
   return usable;
 }
@@ -75,28 +86,39 @@ class NeighborSearch {
         lines_jk_(lines_jk),
         num_neighbors_(num_neighbors) {}
 
-  // The nearest lines of `others` for one line of the other list.
-  void Visit(const UsableLine& line, bool line_is_first,
-             const std::vector<UsableLine>& others) {
-    bounds_.clear();
-    for (std::size_t n = 0; n < others.size(); ++n) {
-      const double bound = (others[n].center - line.center).norm() -
-                           others[n].radius - line.radius;
-      bounds_.emplace_back(bound, static_cast<int>(n));
+  // For each line of `first` the nearest ones of `last`, and the other way.
+  void Run(const UsableLines& first, const UsableLines& last) {
+    for (int n = 0; n < first.size(); ++n) {
+      Visit(first, n, last,
+            [&](int other) { Consider(first, n, last, other); });
     }
-    const auto later = std::greater<std::pair<double, int>>();
-    std::make_heap(bounds_.begin(), bounds_.end(), later);
+    for (int n = 0; n < last.size(); ++n) {
+      Visit(last, n, first,
+            [&](int other) { Consider(first, other, last, n); });
+    }
+  }
+
+  std::vector<CoplanarPairCandidate> TakeResult() { return std::move(result_); }
+  std::vector<PairIndex> TakeNegative() { return std::move(negative_); }
+
+ private:
+  // The nearest lines of `others` for line `n` of `lines`; look(other)
+  // considers one of them.
+  template <class Look>
+  void Visit(const UsableLines& lines, int n, const UsableLines& others,
+             const Look& look) {
+    bounds_.Reset(
+        ((others.x - lines.x(n)).square() + (others.y - lines.y(n)).square())
+            .sqrt() -
+        others.radius - lines.radius(n));
     nearest_.clear();
-    while (!bounds_.empty()) {
-      const auto [bound, n] = bounds_.front();
+    for (; const auto* least = bounds_.Front(); bounds_.Pop()) {
+      const auto& [bound, other] = *least;
       if (static_cast<int>(nearest_.size()) == num_neighbors_ &&
           bound > nearest_.back().distance_px) {
         break;
       }
-      std::pop_heap(bounds_.begin(), bounds_.end(), later);
-      bounds_.pop_back();
-      Consider(line_is_first ? PairIndex{line.index, others[n].index}
-                             : PairIndex{others[n].index, line.index});
+      look(other);
     }
     for (CoplanarPairCandidate& pair : nearest_) {
       pair.distance_px *= geometry_.focal_j_px;
@@ -108,12 +130,10 @@ class NeighborSearch {
     }
   }
 
-  std::vector<CoplanarPairCandidate> TakeResult() { return std::move(result_); }
-  std::vector<PairIndex> TakeNegative() { return std::move(negative_); }
-
- private:
   // Inserts the pair among the nearest, whose distances are normalised here.
-  void Consider(const PairIndex& index) {
+  void Consider(const UsableLines& first, int n_first, const UsableLines& last,
+                int n_last) {
+    const PairIndex index{first.indices[n_first], last.indices[n_last]};
     const MatchedLine& a = lines_ij_[index.first];
     const MatchedLine& b = lines_jk_[index.second];
     if (a.segment_in_middle == b.segment_in_middle) return;
@@ -124,7 +144,7 @@ class NeighborSearch {
         SegmentDistance(a.in_middle.segment, b.in_middle.segment);
     const bool is_full = static_cast<int>(nearest_.size()) == num_neighbors_;
     if (is_full && pair.distance_px > nearest_.back().distance_px) return;
-    pair.ratio = CoplanarRatio(geometry_, a, b);
+    pair.ratio = CoplanarRatio(first.lines[n_first], last.lines[n_last]);
     if (pair.ratio.status == CandidateStatus::kNegativeDepth) {
       negative_.push_back(index);
     }
@@ -146,7 +166,7 @@ class NeighborSearch {
   const std::vector<MatchedLine>& lines_ij_;
   const std::vector<MatchedLine>& lines_jk_;
   const int num_neighbors_;
-  std::vector<std::pair<double, int>> bounds_;  // a heap, least bound first
+  LeastFirst bounds_;
   std::vector<CoplanarPairCandidate> nearest_;
   std::vector<CoplanarPairCandidate> result_;
   std::vector<PairIndex> negative_;
@@ -171,13 +191,13 @@ CoplanarPairCandidates FindCoplanarCandidates(
     const TripletGeometry& geometry, const std::vector<MatchedLine>& lines_ij,
     const std::vector<MatchedLine>& lines_jk, int num_neighbors) {
   CoplanarPairCandidates candidates;
-  const std::vector<UsableLine> first = UsableLines(
-      geometry.cami_from_camj, lines_ij, &candidates.num_rejected_negative);
-  const std::vector<UsableLine> last = UsableLines(
-      geometry.camk_from_camj, lines_jk, &candidates.num_rejected_negative);
   NeighborSearch search(geometry, lines_ij, lines_jk, num_neighbors);
-  for (const UsableLine& line : first) search.Visit(line, true, last);
-  for (const UsableLine& line : last) search.Visit(line, false, first);
+  search.Run(FindUsable(geometry.cami_from_camj, geometry.focal_i_px,
+                        geometry.focal_j_px, lines_ij,
+                        &candidates.num_rejected_negative),
+             FindUsable(geometry.camk_from_camj, geometry.focal_k_px,
+                        geometry.focal_j_px, lines_jk,
+                        &candidates.num_rejected_negative));
 
   candidates.pairs = search.TakeResult();
   const auto key = [](const CoplanarPairCandidate& pair) {

@@ -38,6 +38,25 @@ std::optional<Vec3> CrossingInMiddle(const NormalizedSegment& a,
 RatioCandidate CoplanarRatio(const TripletGeometry& geometry,
                              const MatchedLine& a, const MatchedLine& b);
 
+/// A line of (i, j) or of (j, k), with what does not depend on its partner.
+struct CoplanarLine {
+  /// `camn_from_camj` at unit baseline, n being the line's neighbour.
+  CoplanarLine(const RigidTransform& camn_from_camj, double focal_n_px,
+               double focal_j_px, const MatchedLine& line);
+
+  Vec3 normal;  // l, in the middle view
+  Vec3 center;  // b, of the neighbour in the frame of camera j
+  Vec3 q;
+  double qb = 0;
+  /// What start and end of the segment add to the normal, times the gradient
+  /// with respect to it: in the neighbour (for q) and in the middle view.
+  std::array<Vec3, 2> move_in_neighbor;
+  std::array<Vec3, 2> move_in_middle;
+};
+
+/// The same for many pairs of some lines.
+RatioCandidate CoplanarRatio(const CoplanarLine& a, const CoplanarLine& b);
+
 /// How the log ratio of a pair moves when an end point of a line moves across
 /// its segment by one standard deviation: start and end in the neighbour, start
 /// and end in the middle view. Pairs that share a line share its noise. The sum
