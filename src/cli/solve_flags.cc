@@ -280,9 +280,14 @@ Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
                                                    const Scene& scene) {
   if (path.empty()) return std::optional<GroundTruth>();
   if (std::filesystem::is_regular_file(path)) {
-    const auto truth = ReadScene(path);
-    if (!truth) return tl::unexpected<Error>(truth.error());
-    return KnownTruth(GroundTruthFromScene(*truth, scene), scene, path);
+    const auto solved = ReadScene(path);
+    if (!solved) return tl::unexpected<Error>(solved.error());
+    auto truth = GroundTruthFromScene(*solved, scene);
+    if (!truth) {
+      truth.error().file = path;
+      return tl::unexpected<Error>(truth.error());
+    }
+    return KnownTruth(std::move(*truth), scene, path);
   }
   if (onedsfm::IsProblemFolder(path)) {
     auto truth = onedsfm::ReadTruePoses(path);

@@ -60,9 +60,10 @@ Status SetRefinement(const std::string& parts, Scene* scene,
 /// What became of refined intrinsics, a line each.
 void PrintIntrinsics(const Scene& before, const Scene& after);
 
-/// The true poses of a Strecha folder, matched by image name, or of a scene
-/// file or a problem folder of 1DSfM, by view id; empty if `path` is.
-/// kInsufficientData if no view of the scene is among them.
+/// The true poses of a Strecha folder, matched by image name, of a scene file,
+/// by name or by id (GroundTruthFromScene), or of a problem folder of 1DSfM, by
+/// view id; empty if `path` is. kInsufficientData if no view of the scene is
+/// among them.
 Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
                                                    const Scene& scene);
 

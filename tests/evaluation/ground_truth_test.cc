@@ -95,10 +95,20 @@ TEST(GroundTruthFromScene, GoesByNameWhereNamesTell) {
   const Scene scene = SceneOf({{"", "b.jpg"}, {"", "a.jpg"}});
   Scene truth = SceneOf({{"", "a.jpg"}, {"", "b.jpg"}, {"", "c.jpg"}});
   PoseEveryView(&truth);
-  const GroundTruth by_name = GroundTruthFromScene(truth, scene);
-  ASSERT_EQ(by_name.size(), 2u);
-  EXPECT_EQ(by_name.at(0).center.x(), 1);
-  EXPECT_EQ(by_name.at(1).center.x(), 0);
+  const auto by_name = GroundTruthFromScene(truth, scene);
+  ASSERT_TRUE(by_name.has_value());
+  ASSERT_EQ(by_name->size(), 2u);
+  EXPECT_EQ(by_name->at(0).center.x(), 1);
+  EXPECT_EQ(by_name->at(1).center.x(), 0);
+}
+
+TEST(GroundTruthFromScene, DoesNotGuessWhichOfTwoViewsIsMeant) {
+  const Scene scene = SceneOf({{"left", "1.jpg"}, {"right", "1.jpg"}});
+  Scene truth = SceneOf({{"", "1.jpg"}, {"", "2.jpg"}});
+  PoseEveryView(&truth);
+  const auto ambiguous = GroundTruthFromScene(truth, scene);
+  ASSERT_FALSE(ambiguous.has_value());
+  EXPECT_EQ(ambiguous.error().code, ErrorCode::kInvalidScene);
 }
 
 TEST(GroundTruthFromScene, GoesByIdWhereNamesDoNotTell) {
@@ -108,9 +118,10 @@ TEST(GroundTruthFromScene, GoesByIdWhereNamesDoNotTell) {
     Scene truth = SceneOf({{"", other}, {"", other}});
     if (other[0] == 'c') truth.views.at(1).filename = "d.jpg";
     PoseEveryView(&truth);
-    const GroundTruth by_id = GroundTruthFromScene(truth, scene);
-    ASSERT_EQ(by_id.size(), 2u);
-    EXPECT_EQ(by_id.at(0).center.x(), 0);
+    const auto by_id = GroundTruthFromScene(truth, scene);
+    ASSERT_TRUE(by_id.has_value());
+    ASSERT_EQ(by_id->size(), 2u);
+    EXPECT_EQ(by_id->at(0).center.x(), 0);
   }
 }
 

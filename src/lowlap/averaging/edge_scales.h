@@ -30,8 +30,8 @@ struct EdgeScales {
 ///   sum (1 + log(1 - log10 NFA)) log(1 + residual^2)
 /// is taken; beyond 10,000 ratios only the second start is tried. On a chain
 /// both are the paper's recursion, exactly. Gauge: one edge of every component
-/// has length 1. The problem must be valid
-/// (ValidateProblem). kNumerical if a factorisation fails.
+/// has length 1. The problem must be valid (ValidateProblem). kNumerical if a
+/// factorisation fails.
 Result<EdgeScales> AverageEdgeScales(const TranslationProblem& problem,
                                      int max_iterations = 30);
 

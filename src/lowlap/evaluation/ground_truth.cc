@@ -78,14 +78,19 @@ GroundTruth GroundTruthFromScene(const Scene& truth) {
   return result;
 }
 
-GroundTruth GroundTruthFromScene(const Scene& truth, const Scene& scene) {
-  const GroundTruth by_id = GroundTruthFromScene(truth);
+Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
+                                         const Scene& scene) {
+  GroundTruth by_id = GroundTruthFromScene(truth);
   std::map<std::string, Pose> by_name;
   for (const auto& [id, pose] : by_id) {
     by_name.emplace(NamesOf(truth.views.at(id)).front(), pose);
   }
   if (by_name.size() < by_id.size()) return by_id;
-  return GroundTruthByName(scene, by_name).value_or(by_id);
+  auto named = GroundTruthByName(scene, by_name);
+  if (!named && named.error().code == ErrorCode::kInsufficientData) {
+    return by_id;
+  }
+  return named;
 }
 
 }  // namespace lowlap

@@ -26,6 +26,8 @@ GroundTruth GroundTruthFromScene(const Scene& truth);
 
 /// The same for the views of another scene: by image name if no two of its
 /// posed views share one and a name occurs in the other scene, else by view id.
-GroundTruth GroundTruthFromScene(const Scene& truth, const Scene& scene);
+/// kInvalidScene if a name fits two views of the other scene equally well.
+Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
+                                         const Scene& scene);
 
 }  // namespace lowlap
