@@ -8,6 +8,7 @@
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/scale/scale_ratios.h"
+#include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap {

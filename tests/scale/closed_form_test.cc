@@ -6,11 +6,13 @@
 #include <cmath>
 #include <optional>
 
+#include "lowlap/core/random.h"
 #include "lowlap/geometry/closest_direction.h"
 #include "lowlap/geometry/triangulation.h"
 #include "lowlap/scale/coplanar_ratio.h"
 #include "lowlap/scale/trifocal_line.h"
 #include "lowlap/scale/trifocal_point.h"
+#include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap {

@@ -9,11 +9,13 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/core/random.h"
 #include "lowlap/geometry/triangulation.h"
 #include "lowlap/scale/coplanar_ratio.h"
 #include "lowlap/scale/ratio_residuals.h"
 #include "lowlap/scale/ratio_support.h"
 #include "lowlap/scale/trifocal_line.h"
+#include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap {

@@ -3,8 +3,10 @@
 #include <vector>
 
 #include "lowlap/core/random.h"
+#include "lowlap/geometry/rotation.h"
 #include "lowlap/scale/plane_points.h"
 #include "lowlap/scale/triplet_view.h"
+#include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap::testing {
