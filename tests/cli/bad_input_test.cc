@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cli_fixture.h"
+#include "support/data_folder.h"
 
 namespace lowlap {
 namespace {
@@ -104,8 +105,7 @@ TEST_F(BadInput, TruthThatSaysNothing) {
   ExpectRefused("subsets --drop 1 " + Room() + gt + Out(), says);
   ExpectRefused("evaluate " + Truth() + gt, says);
   // A folder of true cameras of other images.
-  const std::string other =
-      std::string(LOWLAP_SOURCE_DIR) + "/sfm_data/samples/room";
+  const std::string other = SourceFolder() + "/sfm_data/samples/room";
   ExpectRefused("evaluate " + Truth() + " " + other,
                 "samples/room: no view of the scene has a true pose");
 }

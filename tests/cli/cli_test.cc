@@ -13,6 +13,7 @@
 #include "cli_fixture.h"
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/io/scene_json.h"
+#include "support/data_folder.h"
 
 namespace lowlap {
 namespace {
@@ -22,7 +23,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 std::string RoomImages() {
-  return std::string(LOWLAP_SOURCE_DIR) + "/sfm_data/samples/room/images";
+  return SourceFolder() + "/sfm_data/samples/room/images";
 }
 
 TEST_F(Cli, HelpNamesEveryCommand) {

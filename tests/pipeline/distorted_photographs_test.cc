@@ -12,6 +12,7 @@
 #include "lowlap/evaluation/relative_errors.h"
 #include "lowlap/pipeline/calibrate_images.h"
 #include "lowlap/pipeline/image_collection.h"
+#include "support/data_folder.h"
 #include "support/matchers.h"
 #include "third_party_adapters/strecha/strecha.h"
 
@@ -21,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::IsOk;
 
-const char kRoom[] = LOWLAP_SOURCE_DIR "/sfm_data/samples/room";
+std::string Room() { return SourceFolder() + "/sfm_data/samples/room"; }
 
 // The lens that shows the corners of the pinhole's photograph in its own.
 Intrinsic Distorted(const Intrinsic& pinhole, double k1) {
@@ -68,7 +69,7 @@ Quality Measure(Scene scene) {
     quality.points += pose.point_inliers.size();
     quality.lines += pose.line_inliers.size();
   }
-  const auto truth = strecha::ReadGroundTruth(kRoom);
+  const auto truth = strecha::ReadGroundTruth(Room());
   EXPECT_THAT(truth, IsOk());
   const RelativePoseEvaluation errors =
       EvaluateRelativePoses(scene, *GroundTruthByName(scene, *truth));
@@ -89,9 +90,9 @@ TEST(DistortedPhotographs, AreMeasuredAsWellAsStraightOnes) {
   fs::create_directories(folder);
   IntrinsicSource source;
   source.calibration =
-      *strecha::ReadCalibrationMatrix(std::string(kRoom) + "/images/K.txt");
+      *strecha::ReadCalibrationMatrix(Room() + "/images/K.txt");
   const auto straight =
-      SceneFromImages(std::string(kRoom) + "/images", source, {});
+      SceneFromImages(Room() + "/images", source, {});
   ASSERT_THAT(straight, IsOk());
   const Intrinsic pinhole = straight->intrinsics.at(0);
   const Intrinsic lens = Distorted(pinhole, -0.2);

@@ -10,6 +10,7 @@
 #include "lowlap/pipeline/calibrate_images.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/scene/normalized_features.h"
+#include "support/data_folder.h"
 #include "support/matchers.h"
 #include "third_party_adapters/strecha/strecha.h"
 
@@ -18,7 +19,7 @@ namespace {
 
 using testing::IsOk;
 
-const char kRoom[] = LOWLAP_SOURCE_DIR "/sfm_data/samples/room";
+std::string Room() { return SourceFolder() + "/sfm_data/samples/room"; }
 
 // Sampson distances of all point inliers under the true poses.
 std::vector<double> TrueResidualsPx(const Scene& scene,
@@ -47,9 +48,9 @@ std::vector<double> TrueResidualsPx(const Scene& scene,
 TEST(RefinePoints, BringsMatchesNearerToTheTrueGeometry) {
   IntrinsicSource source;
   source.calibration =
-      *strecha::ReadCalibrationMatrix(std::string(kRoom) + "/images/K.txt");
+      *strecha::ReadCalibrationMatrix(Room() + "/images/K.txt");
   const auto scene =
-      SceneFromImages(std::string(kRoom) + "/images", source, {});
+      SceneFromImages(Room() + "/images", source, {});
   ASSERT_THAT(scene, IsOk());
   FrontEndOptions options;
   options.pairs = "chain";
@@ -76,7 +77,7 @@ TEST(RefinePoints, BringsMatchesNearerToTheTrueGeometry) {
               IsOk());
   EXPECT_TRUE(other_threads == refined);
 
-  const auto poses = strecha::ReadGroundTruth(kRoom);
+  const auto poses = strecha::ReadGroundTruth(Room());
   ASSERT_THAT(poses, IsOk());
   const auto truth = GroundTruthByName(*scene, *poses);
   ASSERT_THAT(truth, IsOk());

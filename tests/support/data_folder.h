@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdlib>
-#include <filesystem>
 #include <string>
 
 namespace lowlap {
@@ -9,14 +7,9 @@ namespace lowlap {
 /// The folder with the photographs and reference solutions that slow tests
 /// measure on: the environment variable LOWLAP_DATA, or shared/data beside the
 /// source folder. Empty if there is none.
-inline std::string DataFolder() {
-  const char* given = std::getenv("LOWLAP_DATA");
-  const std::filesystem::path folder =
-      given
-          ? std::filesystem::path(given)
-          : std::filesystem::path(LOWLAP_SOURCE_DIR) / ".." / "shared" / "data";
-  std::error_code ignored;
-  return std::filesystem::is_directory(folder, ignored) ? folder.string() : "";
-}
+std::string DataFolder();
+
+/// The folder of the sources, for the samples that come with them.
+std::string SourceFolder();
 
 }  // namespace lowlap
