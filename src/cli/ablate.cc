@@ -5,8 +5,8 @@
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
 #include "lowlap/averaging/strategies.h"
-#include "lowlap/pipeline/ablation.h"
 #include "lowlap/pipeline/output_folder.h"
+#include "lowlap/study/ablation.h"
 
 namespace lowlap::cli {
 namespace {

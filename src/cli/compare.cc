@@ -5,8 +5,8 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
-#include "lowlap/pipeline/comparison_output.h"
 #include "lowlap/pipeline/output_folder.h"
+#include "lowlap/study/comparison_output.h"
 
 namespace lowlap::cli {
 namespace {

@@ -7,11 +7,11 @@
 #include "cli/command.h"
 #include "cli/result_file.h"
 #include "lowlap/pipeline/output_folder.h"
-#include "lowlap/pipeline/robustness_output.h"
-#include "lowlap/pipeline/robustness_study.h"
-#include "lowlap/pipeline/robustness_summary.h"
-#include "lowlap/pipeline/robustness_table.h"
 #include "lowlap/report/table_text.h"
+#include "lowlap/study/robustness/output.h"
+#include "lowlap/study/robustness/study.h"
+#include "lowlap/study/robustness/summary.h"
+#include "lowlap/study/robustness/table.h"
 
 namespace lowlap::cli {
 namespace {

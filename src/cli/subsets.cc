@@ -17,9 +17,9 @@
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/pipeline/output_folder.h"
 #include "lowlap/pipeline/scene_reduction.h"
-#include "lowlap/pipeline/subset_runs.h"
-#include "lowlap/pipeline/subset_table.h"
 #include "lowlap/report/table_text.h"
+#include "lowlap/study/subset_runs.h"
+#include "lowlap/study/subset_table.h"
 
 namespace lowlap::cli {
 namespace {

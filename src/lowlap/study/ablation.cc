@@ -1,0 +1,181 @@
+#include "lowlap/study/ablation.h"
+
+#include <cstddef>
+#include <iterator>
+#include <utility>
+
+#include "lowlap/evaluation/relative_errors.h"
+#include "lowlap/report/table_text.h"
+
+namespace lowlap {
+namespace {
+
+struct Kinds {
+  const char* name;
+  bool points, lines, coplanar;
+};
+
+constexpr Kinds kKinds[] = {{"points", true, false, false},
+                            {"lines", false, true, false},
+                            {"points + lines", true, true, false},
+                            {"coplanar", false, false, true},
+                            {"all", true, true, true}};
+
+AblationCase MakeCase(std::string name, const Kinds& kinds,
+                      ScaleCriterion criterion, ScaleOptions scale) {
+  AblationCase made;
+  made.name = std::move(name);
+  scale.use_points = kinds.points;
+  scale.use_lines = kinds.lines;
+  scale.use_coplanar = kinds.coplanar;
+  scale.criterion = criterion;
+  made.scale = scale;
+  return made;
+}
+
+/// Runs cases from a common start.
+class Runner {
+ public:
+  Runner(const Scene& scene, const SolveStart& start, const GroundTruth& truth,
+         const SolveOptions& options, const RunContext& context)
+      : scene_(scene),
+        start_(start),
+        truth_(truth),
+        options_(options),
+        context_(context) {}
+
+  /// Ratios and poses; returns the scene as solved.
+  Scene Run(AblationCase* entry) const {
+    Scene scene = scene_;
+    StageLog stages;
+    SolveOptions options = options_;
+    options.scale = entry->scale;
+    const Status status = Solve(options, &scene, entry, &stages);
+    if (!status) entry->failure = status.error();
+    entry->costs = stages.stages();
+    return scene;
+  }
+
+  /// The bundle adjustment of a solved case.
+  AblationCase Adjust(const AblationCase& solved, Scene scene) const {
+    AblationCase entry = solved;
+    entry.name += " + adjustment";
+    entry.adjusted = true;
+    if (entry.failure) return entry;
+    StageLog stages;
+    SolveOptions options = options_;
+    options.adjust = true;
+    const auto refined = RefineSolution(&scene, options, context_, &stages);
+    if (refined) {
+      entry.errors = EvaluatePoses(scene, truth_);
+    } else {
+      entry.failure = refined.error();
+      entry.errors = {};
+      entry.num_placed = 0;
+    }
+    for (const StageCost& cost : stages.stages()) entry.costs.push_back(cost);
+    return entry;
+  }
+
+ private:
+  Status Solve(const SolveOptions& options, Scene* scene, AblationCase* entry,
+               StageLog* stages) const {
+    const auto ratios =
+        EstimateBelievedRatios(scene, start_, options, context_, stages);
+    if (!ratios) return tl::unexpected<Error>(ratios.error());
+    entry->ratios = *ratios;
+    entry->abs_log_ratio = EvaluateScaleRatios(*scene, truth_).abs_log_error;
+    const auto poses =
+        ComposePoses(scene, start_.rotations, options.poses, context_, stages);
+    if (!poses) return tl::unexpected<Error>(poses.error());
+    entry->num_placed = poses->num_placed;
+    entry->errors = EvaluatePoses(*scene, truth_);
+    return {};
+  }
+
+  const Scene& scene_;
+  const SolveStart& start_;
+  const GroundTruth& truth_;
+  const SolveOptions& options_;
+  const RunContext& context_;
+};
+
+bool IsCancelled(const AblationCase& entry) {
+  return entry.failure && entry.failure->code == ErrorCode::kCancelled;
+}
+
+}  // namespace
+
+Status AblationOptions::Validate() const {
+  if (const Status valid = solve.Validate(); !valid) return valid;
+  for (const double threshold_px : thresholds_px) {
+    if (!(threshold_px > 0)) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "ablation: thresholds must be positive");
+    }
+  }
+  return {};
+}
+
+Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
+                        const AblationOptions& options,
+                        const RunContext& context) {
+  if (const Status valid = options.Validate(); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  std::size_t num_true = 0;
+  for (const auto& entry : scene.views) num_true += truth.count(entry.first);
+  if (num_true < 3) {
+    return MakeError(ErrorCode::kInsufficientData,
+                     "ablation: positions can be judged against three true "
+                     "cameras or more; there are " +
+                         std::to_string(num_true));
+  }
+  Scene start_scene = scene;
+  StageLog stages;
+  const auto start =
+      StartSolution(&start_scene, options.solve, context, &stages);
+  if (!start) return tl::unexpected<Error>(start.error());
+
+  const Kinds& all = kKinds[std::size(kKinds) - 1];
+  Ablation ablation;
+  ablation.num_views = static_cast<int>(scene.views.size());
+  for (const double threshold_px : options.thresholds_px) {
+    ablation.criteria.push_back(MakeCase(NumberText(threshold_px, 6) + " px",
+                                         all, ScaleCriterion::kFixedThreshold,
+                                         options.solve.scale));
+    ablation.criteria.back().scale.threshold_px = threshold_px;
+  }
+  for (const Kinds& kinds : kKinds) {
+    ablation.features.push_back(MakeCase(
+        kinds.name, kinds, ScaleCriterion::kAContrario, options.solve.scale));
+  }
+
+  const Runner runner(start_scene, *start, truth, options.solve, context);
+  const std::size_t total =
+      ablation.criteria.size() + ablation.features.size() + 1;
+  std::size_t done = 0;
+  Scene solved;
+  for (std::vector<AblationCase>* table :
+       {&ablation.criteria, &ablation.features}) {
+    for (AblationCase& entry : *table) {
+      if (!context.Progress("cases", done++, total)) {
+        return MakeError(ErrorCode::kCancelled, "stopped", {}, "cases");
+      }
+      solved = runner.Run(&entry);
+      if (IsCancelled(entry)) return tl::unexpected<Error>(*entry.failure);
+    }
+  }
+  // The last case is the one with all features.
+  ablation.criteria.push_back(ablation.features.back());
+  ablation.criteria.back().name = "a contrario";
+  ablation.features.push_back(
+      runner.Adjust(ablation.features.back(), std::move(solved)));
+  if (IsCancelled(ablation.features.back())) {
+    return tl::unexpected<Error>(*ablation.features.back().failure);
+  }
+  context.Progress("cases", total, total);
+  return ablation;
+}
+
+}  // namespace lowlap

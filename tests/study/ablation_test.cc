@@ -1,0 +1,163 @@
+#include "lowlap/study/ablation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "lowlap/synthetic/synthetic_scene.h"
+#include "read_csv.h"
+
+namespace lowlap {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+SyntheticScene NoisyRoom() {
+  SyntheticOptions options;
+  options.num_views = 8;
+  options.pairs = "window:2";
+  options.noise_px = 0.5;
+  options.rotation_noise_deg = 0.1;
+  options.direction_noise_deg = 0.3;
+  return *Simulate(options);
+}
+
+const AblationCase& Find(const std::vector<AblationCase>& cases,
+                         const std::string& name) {
+  for (const AblationCase& entry : cases) {
+    if (entry.name == name) return entry;
+  }
+  ADD_FAILURE() << name << " is missing";
+  return cases.front();
+}
+
+std::vector<std::string> NamesOf(const std::vector<AblationCase>& cases) {
+  std::vector<std::string> names;
+  for (const AblationCase& entry : cases) names.push_back(entry.name);
+  return names;
+}
+
+TEST(Ablation, HasTheCasesOfThePaper) {
+  const SyntheticScene room = NoisyRoom();
+  const auto ablation = Ablate(room.scene, room.true_poses, {}, RunContext());
+  ASSERT_TRUE(ablation) << ablation.error().ToString();
+  EXPECT_THAT(NamesOf(ablation->criteria),
+              testing::ElementsAre("0.5 px", "1 px", "3 px", "6 px", "9 px",
+                                   "a contrario"));
+  EXPECT_THAT(NamesOf(ablation->features),
+              testing::ElementsAre("points", "lines", "points + lines",
+                                   "coplanar", "all", "all + adjustment"));
+  for (const auto* cases : {&ablation->criteria, &ablation->features}) {
+    for (const AblationCase& entry : *cases) {
+      SCOPED_TRACE(entry.name);
+      EXPECT_FALSE(entry.failure);
+      EXPECT_EQ(entry.num_placed, 8);
+      EXPECT_LT(entry.errors.position.mean, 0.2);
+      EXPECT_GT(entry.ratios.num_meaningful, 0);
+      EXPECT_GT(entry.abs_log_ratio.count, 0);
+    }
+  }
+  // The shared case, and what is varied in the others.
+  const AblationCase& all = Find(ablation->features, "all");
+  EXPECT_EQ(all.errors.position.mean,
+            Find(ablation->criteria, "a contrario").errors.position.mean);
+  EXPECT_NE(all.errors.position.mean,
+            Find(ablation->criteria, "9 px").errors.position.mean);
+  EXPECT_FALSE(Find(ablation->features, "coplanar").scale.use_points);
+  const AblationCase& adjusted = Find(ablation->features, "all + adjustment");
+  EXPECT_TRUE(adjusted.adjusted);
+  EXPECT_LT(adjusted.errors.position.mean, all.errors.position.mean);
+}
+
+// Kinds that see nothing are cases without a solution, not errors.
+TEST(Ablation, KindsWithoutFeaturesSayThatNothingIsPlaced) {
+  SyntheticOptions simulation;
+  simulation.num_views = 6;
+  simulation.pairs = "chain";
+  simulation.trifocal_point_share = simulation.trifocal_line_share = 0;
+  const SyntheticScene chain = *Simulate(simulation);
+  AblationOptions options;
+  options.thresholds_px = {3};
+  const auto ablation =
+      Ablate(chain.scene, chain.true_poses, options, RunContext());
+  ASSERT_TRUE(ablation) << ablation.error().ToString();
+  EXPECT_EQ(ablation->criteria.size(), 2u);
+  EXPECT_EQ(Find(ablation->features, "coplanar").num_placed, 6);
+  EXPECT_LT(Find(ablation->features, "all + adjustment").errors.position.max,
+            1e-3);
+  const AblationCase& points = Find(ablation->features, "points");
+  EXPECT_EQ(points.ratios.num_meaningful, 0);
+  EXPECT_LE(points.num_placed, 2);
+  EXPECT_THAT(ToText(*ablation), HasSubstr("0/4"));
+}
+
+TEST(Ablation, TablesHoldEveryCase) {
+  const SyntheticScene room = NoisyRoom();
+  AblationOptions options;
+  options.thresholds_px = {2.5};
+  const auto ablation =
+      Ablate(room.scene, room.true_poses, options, RunContext());
+  ASSERT_TRUE(ablation) << ablation.error().ToString();
+  const auto records = ReadCsv(ToCsv(*ablation));
+  ASSERT_EQ(records.size(), 2u + 6u);
+  EXPECT_EQ(records[0].at("case"), "2.5 px");
+  EXPECT_EQ(records[0].at("criterion"), "fixed threshold");
+  EXPECT_EQ(records[0].at("threshold_px"), "2.5");
+  EXPECT_EQ(records[1].at("threshold_px"), "");
+  EXPECT_EQ(records[4].at("features"), "points+lines");
+  EXPECT_EQ(records[7].at("adjusted"), "yes");
+  EXPECT_NEAR(std::atof(records[2].at("position_error_mean").c_str()),
+              ablation->features[0].errors.position.mean, 1e-8);
+  const auto json = nlohmann::json::parse(ToJson(*ablation));
+  EXPECT_EQ(json.at("criteria").size(), 2u);
+  EXPECT_EQ(json.at("features").at(5).at("case"), "all + adjustment");
+  const std::string text = ToText(*ablation);
+  for (const char* part : {"2.5 px", "a contrario", "points + lines",
+                           "mean position error", "cameras placed", "8/8"}) {
+    EXPECT_THAT(text, HasSubstr(part));
+  }
+}
+
+TEST(Ablation, OptionsAndTruthAreChecked) {
+  const SyntheticScene room = NoisyRoom();
+  AblationOptions options;
+  options.thresholds_px = {1, 0};
+  auto ablation = Ablate(room.scene, room.true_poses, options, RunContext());
+  ASSERT_FALSE(ablation);
+  EXPECT_EQ(ablation.error().code, ErrorCode::kInvalidArgument);
+  GroundTruth two = room.true_poses;
+  while (two.size() > 2) two.erase(two.begin());
+  ablation = Ablate(room.scene, two, {}, RunContext());
+  ASSERT_FALSE(ablation);
+  EXPECT_EQ(ablation.error().code, ErrorCode::kInsufficientData);
+}
+
+TEST(Ablation, FilesAreWrittenOrTheFolderIsNamed) {
+  const fs::path folder = fs::temp_directory_path() /
+                          ("lowlap_ablate_" + std::to_string(::getpid()));
+  fs::remove_all(folder);
+  Ablation ablation;
+  ablation.criteria.resize(1);
+  ablation.features.resize(1);
+  ASSERT_TRUE(WriteAblation(ablation, folder.string()));
+  for (const char* name :
+       {"ablate.csv", "ablate.json", "criteria.svg", "features.svg"}) {
+    EXPECT_TRUE(fs::exists(folder / name)) << name;
+  }
+  std::ofstream(folder / "file") << "in the way";
+  const Status refused = WriteAblation(ablation, (folder / "file").string());
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, ErrorCode::kIo);
+  fs::remove_all(folder);
+}
+
+}  // namespace
+}  // namespace lowlap
