@@ -34,7 +34,7 @@ StageLog::Scope::Scope(StageLog* log, std::string name)
 StageLog::Scope::~Scope() {
   cost_.wall_s = WallSeconds() - wall_start_s_;
   cost_.cpu_s = CpuSeconds() - cpu_start_s_;
-  log_->stages_.push_back(std::move(cost_));
+  if (log_ != nullptr) log_->stages_.push_back(std::move(cost_));
 }
 
 double PeakMemoryMb() {

@@ -17,7 +17,7 @@ struct StageCost {
 /// Collects the cost of the stages of a run, in order.
 class StageLog {
  public:
-  /// Times a stage from construction to destruction.
+  /// Times a stage from construction to destruction; `log` may be null.
   class Scope {
    public:
     Scope(StageLog* log, std::string name);
