@@ -10,9 +10,9 @@ set_target_properties(lowlap_all PROPERTIES EXPORT_NAME lowlap)
 
 set(lowlap_package_dir "${CMAKE_INSTALL_LIBDIR}/cmake/lowlap")
 install(TARGETS lowlap_all ${libraries} EXPORT lowlapTargets
-        ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}")
+        ARCHIVE DESTINATION "${CMAKE_INSTALL_LIBDIR}" COMPONENT development)
 install(EXPORT lowlapTargets NAMESPACE lowlap::
-        DESTINATION "${lowlap_package_dir}")
+        DESTINATION "${lowlap_package_dir}" COMPONENT development)
 configure_package_config_file(
   "${CMAKE_CURRENT_LIST_DIR}/lowlapConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/lowlapConfig.cmake"
@@ -22,4 +22,4 @@ write_basic_package_version_file("${PROJECT_BINARY_DIR}/lowlapConfigVersion.cmak
                                  COMPATIBILITY SameMinorVersion)
 install(FILES "${PROJECT_BINARY_DIR}/lowlapConfig.cmake"
               "${PROJECT_BINARY_DIR}/lowlapConfigVersion.cmake"
-        DESTINATION "${lowlap_package_dir}")
+        DESTINATION "${lowlap_package_dir}" COMPONENT development)

@@ -36,6 +36,7 @@ function(lowlap_library name)
   string(REGEX REPLACE "^src/" "" folder "${folder}")
   install(DIRECTORY "${CMAKE_CURRENT_SOURCE_DIR}/"
           DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}/${folder}"
+          COMPONENT development
           FILES_MATCHING PATTERN "*.h" PATTERN "internal" EXCLUDE)
 endfunction()
 

@@ -5,7 +5,7 @@
 namespace lowlap {
 
 /// A small seeded generator (SplitMix64, Steele et al. 2014) with draws that
-/// are the same on every platform, unlike the distributions of <random>.
+/// are the same on every platform, unlike those of the standard library.
 class Random {
  public:
   explicit Random(std::uint64_t seed) : state_(seed) {}

@@ -8,7 +8,7 @@
 
 namespace lowlap {
 
-/// A feature of a view: an index into ViewFeatures::points_px or ::segments.
+/// A feature of a view: an index into the points or segments of ViewFeatures.
 struct FeatureRef {
   ViewId view = kInvalidId;
   FeatureIndex feature = kInvalidId;
