@@ -8,6 +8,7 @@
 #include "lowlap/averaging/rigidity.h"
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/pipeline/summary_json.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap::cli {
 namespace {
@@ -95,10 +96,10 @@ int Inspect(const Flags& flags) {
   const auto loaded = LoadScene(flags.input, context, &stages);
   if (!loaded) return Fail(loaded.error());
   const Scene& scene = loaded->scene;
-  const RigidityReport by_directions = AnalyzeRigidity(scene);
-  RigidityOptions triplet_rule;
-  triplet_rule.rule = RigidityRule::kTriplets;
-  const RigidityReport by_triplets = AnalyzeRigidity(scene, triplet_rule);
+  const RigidityReport by_directions = AnalyzeRigidity(ViewGraph(scene));
+  constexpr int kMinSharedTracks = 30;
+  const RigidityReport by_triplets =
+      AnalyzeTripletRigidity(scene, kMinSharedTracks);
   if (!flags.json.empty()) {
     const Status written =
         WriteFileAtomically(flags.json, [&](std::ostream& out) -> Status {
@@ -118,7 +119,7 @@ int Inspect(const Flags& flags) {
   std::printf(
       "\nviews that share a scale through triplets with at least %d "
       "common point tracks (what averaging over triplets uses):\n",
-      triplet_rule.min_shared_tracks);
+      kMinSharedTracks);
   PrintGroups(by_triplets, scene);
   if (!by_triplets.isolated_views.empty()) {
     std::printf("  in no such triplet: %s\n",

@@ -15,6 +15,7 @@
 #include "lowlap/pipeline/summary_json.h"
 #include "lowlap/scale/ratio_profile.h"
 #include "lowlap/scale/scale_ratios.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap::cli {
 namespace {
@@ -112,7 +113,8 @@ int Scales(const Flags& flags) {
   }
   if (!flags.profile.empty()) {
     const auto profiles = ProfileScaleRatios(
-        loaded->scene, FindTriplets(loaded->scene), *options, context);
+        loaded->scene, FindTriplets(ViewGraph(loaded->scene)), *options,
+        context);
     if (!profiles) return Fail(profiles.error());
     const Status written = WriteProfiles(flags.profile, *profiles);
     if (!written) return Fail(written.error());

@@ -16,9 +16,13 @@ Scene SceneWithEdges(ViewId num_views, const std::vector<ViewPair>& edges) {
   return scene;
 }
 
+ViewGraph Graph(ViewId num_views, const std::vector<ViewPair>& edges) {
+  return ViewGraph(SceneWithEdges(num_views, edges));
+}
+
 TEST(AnalyzeRigidity, TwoTrianglesThatShareOneView) {
   const RigidityReport report = AnalyzeRigidity(
-      SceneWithEdges(5, {{0, 1}, {0, 2}, {1, 2}, {2, 3}, {2, 4}, {3, 4}}));
+      Graph(5, {{0, 1}, {0, 2}, {1, 2}, {2, 3}, {2, 4}, {3, 4}}));
   ASSERT_EQ(report.groups.size(), 2u);
   EXPECT_EQ(report.groups[0].views, (std::vector<ViewId>{0, 1, 2}));
   EXPECT_EQ(report.groups[1].views, (std::vector<ViewId>{2, 3, 4}));
@@ -27,62 +31,62 @@ TEST(AnalyzeRigidity, TwoTrianglesThatShareOneView) {
 }
 
 TEST(AnalyzeRigidity, TwoTrianglesThatShareAnEdgeAreOne) {
-  const RigidityReport report = AnalyzeRigidity(
-      SceneWithEdges(4, {{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}}));
+  const RigidityReport report =
+      AnalyzeRigidity(Graph(4, {{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}}));
   EXPECT_EQ(report.groups.size(), 1u);
   EXPECT_TRUE(report.hinges.empty());
 }
 
 TEST(AnalyzeRigidity, EveryEdgeOfAChainFloats) {
   const RigidityReport report =
-      AnalyzeRigidity(SceneWithEdges(4, {{0, 1}, {1, 2}, {2, 3}}));
+      AnalyzeRigidity(Graph(4, {{0, 1}, {1, 2}, {2, 3}}));
   EXPECT_EQ(report.groups.size(), 3u);
   EXPECT_EQ(report.hinges.size(), 2u);
 }
 
 TEST(AnalyzeRigidity, ARectangleInAPlaneIsNotRigid) {
   const RigidityReport report =
-      AnalyzeRigidity(SceneWithEdges(4, {{0, 1}, {1, 2}, {2, 3}, {0, 3}}));
+      AnalyzeRigidity(Graph(4, {{0, 1}, {1, 2}, {2, 3}, {0, 3}}));
   EXPECT_EQ(report.groups.size(), 4u);
 }
 
 TEST(AnalyzeRigidity, AGraphWithoutTrianglesMayBeRigid) {
   // K(3,3): 9 edges on 6 views, 2 n - 3, and no triangle.
-  const RigidityReport report = AnalyzeRigidity(SceneWithEdges(6, {{0, 3},
-                                                                   {0, 4},
-                                                                   {0, 5},
-                                                                   {1, 3},
-                                                                   {1, 4},
-                                                                   {1, 5},
-                                                                   {2, 3},
-                                                                   {2, 4},
-                                                                   {2, 5}}));
+  const RigidityReport report = AnalyzeRigidity(Graph(6, {{0, 3},
+                                                          {0, 4},
+                                                          {0, 5},
+                                                          {1, 3},
+                                                          {1, 4},
+                                                          {1, 5},
+                                                          {2, 3},
+                                                          {2, 4},
+                                                          {2, 5}}));
   EXPECT_EQ(report.groups.size(), 1u);
 }
 
 TEST(AnalyzeRigidity, ThreeGroupsInARingOfHingesAreOne) {
   // Triangles 0-1-2, 2-3-4, 4-5-0 meet in 2, 4, 0: a triangle of groups.
-  const RigidityReport report = AnalyzeRigidity(SceneWithEdges(6, {{0, 1},
-                                                                   {0, 2},
-                                                                   {1, 2},
-                                                                   {2, 3},
-                                                                   {2, 4},
-                                                                   {3, 4},
-                                                                   {4, 5},
-                                                                   {0, 4},
-                                                                   {0, 5}}));
+  const RigidityReport report = AnalyzeRigidity(Graph(6, {{0, 1},
+                                                          {0, 2},
+                                                          {1, 2},
+                                                          {2, 3},
+                                                          {2, 4},
+                                                          {3, 4},
+                                                          {4, 5},
+                                                          {0, 4},
+                                                          {0, 5}}));
   EXPECT_EQ(report.groups.size(), 1u);
 }
 
 TEST(AnalyzeRigidity, PartsAndIsolatedViewsAreNamed) {
   const RigidityReport report =
-      AnalyzeRigidity(SceneWithEdges(6, {{0, 1}, {2, 3}, {3, 4}}));
+      AnalyzeRigidity(Graph(6, {{0, 1}, {2, 3}, {3, 4}}));
   ASSERT_EQ(report.connected_components.size(), 2u);
   EXPECT_EQ(report.connected_components[0], (std::vector<ViewId>{2, 3, 4}));
   EXPECT_EQ(report.isolated_views, (std::vector<ViewId>{5}));
 }
 
-TEST(AnalyzeRigidity, TripletsNeedSharedTracks) {
+TEST(AnalyzeTripletRigidity, TripletsNeedSharedTracks) {
   // Directions make one rigid group of two triangles that share an edge; the
   // second triangle shares too few tracks to count as a triplet.
   Scene scene = SceneWithEdges(4, {{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}});
@@ -90,19 +94,16 @@ TEST(AnalyzeRigidity, TripletsNeedSharedTracks) {
     scene.point_tracks[id] = {{0, id}, {1, id}, {2, id}};
     if (id < 29) scene.point_tracks[id].push_back({3, id});
   }
-  RigidityOptions options;
-  options.rule = RigidityRule::kTriplets;
-  RigidityReport report = AnalyzeRigidity(scene, options);
+  RigidityReport report = AnalyzeTripletRigidity(scene);
   ASSERT_EQ(report.groups.size(), 1u);
   EXPECT_EQ(report.groups[0].views, (std::vector<ViewId>{0, 1, 2}));
   EXPECT_EQ(report.isolated_views, (std::vector<ViewId>{3}));
-  options.min_shared_tracks = 29;
-  report = AnalyzeRigidity(scene, options);
+  report = AnalyzeTripletRigidity(scene, 29);
   ASSERT_EQ(report.groups.size(), 1u);
   EXPECT_EQ(report.groups[0].views.size(), 4u);
 }
 
-TEST(AnalyzeRigidity, TripletsThatShareOneViewKeepTheirOwnScale) {
+TEST(AnalyzeTripletRigidity, TripletsThatShareOneViewKeepTheirOwnScale) {
   // A ring of three triplets is rigid by directions, not by triplets.
   Scene scene = SceneWithEdges(
       6,
@@ -114,15 +115,13 @@ TEST(AnalyzeRigidity, TripletsThatShareOneViewKeepTheirOwnScale) {
     std::sort(track.begin(), track.end());
     scene.point_tracks[id] = track;
   }
-  RigidityOptions options;
-  options.rule = RigidityRule::kTriplets;
-  const RigidityReport report = AnalyzeRigidity(scene, options);
+  const RigidityReport report = AnalyzeTripletRigidity(scene);
   EXPECT_EQ(report.groups.size(), 3u);
   EXPECT_EQ(report.hinges.size(), 3u);
 }
 
-TEST(AnalyzeRigidity, AnEmptySceneHasNothing) {
-  const RigidityReport report = AnalyzeRigidity(Scene());
+TEST(AnalyzeRigidity, AnEmptyGraphHasNothing) {
+  const RigidityReport report = AnalyzeRigidity(ViewGraph());
   EXPECT_TRUE(report.groups.empty());
   EXPECT_TRUE(report.hinges.empty());
 }

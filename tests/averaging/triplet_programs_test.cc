@@ -152,7 +152,7 @@ TEST_P(TripletPrograms, NoCentresNearbyAreBetter) {
   AddNoise(0.1, 8, &made.problem);
   TripletProgramOptions options;
   options.max_closure_deg = 45;
-  const auto sets = FindTriplets(made.problem, options);
+  const auto sets = FindTripletBaselines(made.problem, options);
   ASSERT_EQ(sets.size(), 1u);
   const TranslationSolution solution =
       *TripletProgramAverager(GetParam(), options)
@@ -206,11 +206,11 @@ TEST(TripletProgramNorms, TooManyTripletsAreRefusedByNumber) {
       << refused.error().message;
 }
 
-TEST(FindTriplets, BoundsTheirNumberWithoutLosingAConnection) {
+TEST(FindTripletBaselines, BoundsTheirNumberWithoutLosingAConnection) {
   const RandomProblem made = MakeRandomProblem(14, Band(14, 13), 13);
   TripletProgramOptions options;
   options.max_triplets_per_edge = 1;
-  const auto sets = FindTriplets(made.problem, options);
+  const auto sets = FindTripletBaselines(made.problem, options);
   ASSERT_EQ(sets.size(), 1u);
   EXPECT_LT(sets[0].size(), 120u);  // of 364
   std::vector<bool> is_held(made.problem.edges.size(), false);
@@ -220,10 +220,10 @@ TEST(FindTriplets, BoundsTheirNumberWithoutLosingAConnection) {
   EXPECT_EQ(std::count(is_held.begin(), is_held.end(), false), 0);
 }
 
-TEST(FindTriplets, BaselinesAreTheTrueOnesUpToScale) {
+TEST(FindTripletBaselines, BaselinesAreTheTrueOnesUpToScale) {
   const RandomProblem made = MakeRandomProblem(3, Edges{{1, 0}, {1, 2}, {2, 0}},
                                                14, /*with_ratios=*/false);
-  const auto sets = FindTriplets(made.problem, {});
+  const auto sets = FindTripletBaselines(made.problem, {});
   ASSERT_EQ(sets.size(), 1u);
   ASSERT_EQ(sets[0].size(), 1u);
   const TripletMotion& motion = sets[0][0];

@@ -8,6 +8,7 @@
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/scale/scale_ratios.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -64,7 +65,7 @@ MadeScene RingWithATriangle() {
   const auto length = [&](ViewId a, ViewId b) {
     return (made.true_poses.at(a).center - made.true_poses.at(b).center).norm();
   };
-  for (const ViewTriplet& views : FindTriplets(scene)) {
+  for (const ViewTriplet& views : FindTriplets(ViewGraph(scene))) {
     const auto is_closing = [&](ViewId outer) {
       return outer + views.middle == 8 && (outer == 0 || outer == 8);
     };

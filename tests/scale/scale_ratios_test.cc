@@ -10,6 +10,7 @@
 #include "lowlap/scale/planes_by_pair.h"
 #include "lowlap/scale/ratio_profile.h"
 #include "lowlap/scale/triplet_view.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -90,17 +91,6 @@ struct RowOfViews {
                     baseline(views.first, views.middle));
   }
 };
-
-TEST(FindTriplets, AreAllPathsOfTwoEdges) {
-  Scene scene;
-  for (const ViewPair& pair :
-       {ViewPair{1, 2}, ViewPair{2, 5}, ViewPair{1, 5}, ViewPair{5, 9}}) {
-    scene.relative_poses[pair].views = pair;
-  }
-  const std::vector<ViewTriplet> expected = {
-      {1, 2, 5}, {1, 5, 2}, {1, 5, 9}, {2, 1, 5}, {2, 5, 9}};
-  EXPECT_EQ(FindTriplets(scene), expected);
-}
 
 TEST(EstimateScaleRatios, FindsTheRatioOfEveryTriplet) {
   const RowOfViews row;
@@ -204,8 +194,8 @@ TEST(ProfileScaleRatios, AreThoseOfTheEstimatedRatios) {
                    points.end());
     }
     const auto ratios = EstimateScaleRatios(row.scene, {}, {});
-    const auto profiles =
-        ProfileScaleRatios(row.scene, FindTriplets(row.scene), {}, {});
+    const auto profiles = ProfileScaleRatios(
+        row.scene, FindTriplets(ViewGraph(row.scene)), {}, {});
     ASSERT_TRUE(ratios.has_value() && profiles.has_value());
     ASSERT_EQ(profiles->size(), ratios->size());
     int with_nodes = 0;
@@ -341,7 +331,7 @@ TEST(ScaleRatios, ViewsWithoutIntrinsicsHaveNoRatios) {
   ScaleOptions options;
   const auto ratios = EstimateScaleRatios(row.scene, options, RunContext());
   ASSERT_TRUE(ratios) << ratios.error().ToString();
-  ASSERT_EQ(ratios->size(), FindTriplets(row.scene).size());
+  ASSERT_EQ(ratios->size(), FindTriplets(ViewGraph(row.scene)).size());
   for (const ScaleRatio& ratio : *ratios) {
     const bool has_last = ratio.views.middle == 3 || ratio.views.last == 3;
     EXPECT_EQ(ratio.verdict, has_last ? RatioVerdict::kNoCandidates

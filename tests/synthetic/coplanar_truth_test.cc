@@ -12,6 +12,7 @@
 
 #include "lowlap/geometry/plucker_line.h"
 #include "lowlap/scene/normalized_features.h"
+#include "lowlap/scene/view_graph.h"
 #include "support/matchers.h"
 
 namespace lowlap {
@@ -38,7 +39,8 @@ TEST(CoplanarCandidates, WrongShareAsAsked) {
       EXPECT_GT(count.total, 5000);
       EXPECT_NEAR(count.WrongShare(), wanted, 0.01);
       // Enough right ones in every triplet.
-      for (const ViewTriplet& triplet : TripletsOf(synthetic->scene)) {
+      for (const ViewTriplet& triplet :
+           FindTriplets(ViewGraph(synthetic->scene))) {
         const auto candidates = CoplanarCandidates(*synthetic, triplet);
         EXPECT_GT(std::count_if(candidates.begin(), candidates.end(),
                                 [](const auto& c) { return c.is_coplanar; }),
@@ -104,7 +106,7 @@ TEST_P(CandidatesOfKind, RightPairsGiveTheTrueRatioAndWrongOnesDoNot) {
   ASSERT_THAT(synthetic, IsOk());
   const Scene& scene = synthetic->scene;
   int right = 0, wrong = 0, wrong_but_true = 0;
-  for (const ViewTriplet& triplet : TripletsOf(scene)) {
+  for (const ViewTriplet& triplet : FindTriplets(ViewGraph(scene))) {
     const auto first = LinesInMiddle(scene, triplet.middle, triplet.first);
     const auto last = LinesInMiddle(scene, triplet.middle, triplet.last);
     const double truth = *synthetic->TrueLogRatio(triplet);
@@ -156,15 +158,6 @@ TEST(CoplanarCandidates, NoneWithoutThePairs) {
   const Result<SyntheticScene> synthetic = Simulate({});
   ASSERT_THAT(synthetic, IsOk());
   EXPECT_TRUE(CoplanarCandidates(*synthetic, {0, 1, 3}).empty());
-}
-
-TEST(TripletsOf, CycleHasOnePerView) {
-  const Result<SyntheticScene> synthetic = Simulate({});
-  ASSERT_THAT(synthetic, IsOk());
-  const std::vector<ViewTriplet> triplets = TripletsOf(synthetic->scene);
-  ASSERT_EQ(triplets.size(), 12u);
-  EXPECT_EQ(triplets[0], (ViewTriplet{1, 0, 11}));
-  EXPECT_EQ(triplets[1], (ViewTriplet{0, 1, 2}));
 }
 
 }  // namespace

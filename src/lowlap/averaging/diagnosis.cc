@@ -25,25 +25,26 @@ std::map<ViewPair, std::size_t> GroupOfEdge(const RigidityReport& report) {
   return group;
 }
 
-RigidityReport WithRatios(const Scene& scene, const DiagnosisOptions& options,
-                          bool strong_only) {
-  RigidityOptions rigidity;
-  for (const ScaleRatio& ratio : scene.scale_ratios) {
-    if (ratio.verdict == RatioVerdict::kMeaningful &&
-        !(strong_only && IsWeak(ratio, options))) {
-      rigidity.ratios.push_back(ratio.views);
+template <class Predicate>
+RigidityReport WithRatios(const ViewGraph& graph,
+                          const std::vector<ScaleRatio>& ratios,
+                          const Predicate& is_used) {
+  std::vector<ViewTriplet> used;
+  for (const ScaleRatio& ratio : ratios) {
+    if (ratio.verdict == RatioVerdict::kMeaningful && is_used(ratio)) {
+      used.push_back(ratio.views);
     }
   }
-  return AnalyzeRigidity(scene, rigidity);
+  return AnalyzeRigidity(graph, used);
 }
 
-std::vector<std::size_t> WeakRatiosInUse(const Scene& scene,
+std::vector<std::size_t> WeakRatiosInUse(const std::vector<ScaleRatio>& ratios,
                                          const DiagnosisOptions& options,
                                          const RigidityReport& strong) {
   const auto group = GroupOfEdge(strong);
   std::vector<std::size_t> weak;
-  for (std::size_t r = 0; r < scene.scale_ratios.size(); ++r) {
-    const ScaleRatio& ratio = scene.scale_ratios[r];
+  for (std::size_t r = 0; r < ratios.size(); ++r) {
+    const ScaleRatio& ratio = ratios[r];
     const ViewTriplet& views = ratio.views;
     if (ratio.verdict == RatioVerdict::kMeaningful && IsWeak(ratio, options) &&
         group.at(OrderedPair(views.first, views.middle)) !=
@@ -51,7 +52,7 @@ std::vector<std::size_t> WeakRatiosInUse(const Scene& scene,
       weak.push_back(r);
     }
   }
-  SortByEvidence(scene, &weak);
+  SortByEvidence(ratios, &weak);
   return weak;
 }
 
@@ -182,10 +183,8 @@ bool IsWeak(const ScaleRatio& ratio, const DiagnosisOptions& options) {
 
 TripletPrediction PredictTripletAveraging(const Scene& scene,
                                           int min_shared_tracks) {
-  RigidityOptions options;
-  options.rule = RigidityRule::kTriplets;
-  options.min_shared_tracks = min_shared_tracks;
-  const RigidityReport report = AnalyzeRigidity(scene, options);
+  const RigidityReport report =
+      AnalyzeTripletRigidity(scene, min_shared_tracks);
   TripletPrediction prediction;
   if (!report.connected_components.empty()) {
     prediction.kept = report.connected_components.front();
@@ -208,15 +207,16 @@ TripletPrediction PredictTripletAveraging(const Scene& scene,
   return prediction;
 }
 
-Result<Diagnosis> Diagnose(const Scene& scene,
-                           const DiagnosisOptions& options) {
+Result<ScaleDiagnosis> DiagnoseScales(const ViewGraph& graph,
+                                      const std::vector<ScaleRatio>& ratios,
+                                      const DiagnosisOptions& options) {
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
-  for (const ScaleRatio& ratio : scene.scale_ratios) {
+  for (const ScaleRatio& ratio : ratios) {
     const ViewTriplet& v = ratio.views;
     for (const ViewId outer : {v.first, v.last}) {
-      if (scene.FindRelativePose(outer, v.middle) != nullptr) continue;
+      if (graph.FindPair(outer, v.middle)) continue;
       return MakeError(ErrorCode::kInvalidScene,
                        "the scale ratio of views " + std::to_string(v.first) +
                            "-" + std::to_string(v.middle) + "-" +
@@ -224,13 +224,23 @@ Result<Diagnosis> Diagnose(const Scene& scene,
                            " is without one of its relative poses");
     }
   }
-  Diagnosis diagnosis;
-  diagnosis.by_directions = AnalyzeRigidity(scene);
-  diagnosis.by_ratios = WithRatios(scene, options, false);
-  diagnosis.by_strong_ratios = WithRatios(scene, options, true);
+  ScaleDiagnosis diagnosis;
+  diagnosis.by_directions = AnalyzeRigidity(graph);
+  diagnosis.by_ratios =
+      WithRatios(graph, ratios, [](const ScaleRatio&) { return true; });
+  diagnosis.by_strong_ratios = WithRatios(
+      graph, ratios, [&](const ScaleRatio& r) { return !IsWeak(r, options); });
   diagnosis.weak_ratios =
-      WeakRatiosInUse(scene, options, diagnosis.by_strong_ratios);
-  diagnosis.hinges = FindScaleHinges(scene, diagnosis, options);
+      WeakRatiosInUse(ratios, options, diagnosis.by_strong_ratios);
+  diagnosis.hinges = FindScaleHinges(ratios, diagnosis, options);
+  return diagnosis;
+}
+
+Result<Diagnosis> Diagnose(const Scene& scene,
+                           const DiagnosisOptions& options) {
+  auto scales = DiagnoseScales(ViewGraph(scene), scene.scale_ratios, options);
+  if (!scales) return tl::unexpected<Error>(scales.error());
+  Diagnosis diagnosis{std::move(*scales), {}, {}};
   diagnosis.floating = FindFloating(scene, diagnosis.by_ratios);
   diagnosis.by_triplets =
       PredictTripletAveraging(scene, options.min_shared_tracks);

@@ -8,6 +8,7 @@
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
 #include "lowlap/scene/scene.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 
@@ -29,7 +30,7 @@ struct ScaleHinge {
   /// Each part's views without the camera, the largest first.
   std::vector<std::vector<ViewId>> parts;
   /// The ratios across the camera that join parts, as indices into
-  /// Scene::scale_ratios, most meaningful first.
+  /// the scale ratios, most meaningful first.
   std::vector<std::size_t> ratios;
   /// Without those that are too weak to rely on, parts come apart.
   bool is_weak = false;
@@ -47,7 +48,7 @@ struct FloatingPart {
   ViewId near_group = kInvalidId;
   ViewId near_part = kInvalidId;
   /// The best ratio between the two across `meets_in` that was estimated and
-  /// is not meaningful, as an index into Scene::scale_ratios.
+  /// is not meaningful, as an index into the scale ratios.
   std::optional<std::size_t> rejected_ratio;
 };
 
@@ -65,16 +66,20 @@ struct TripletPrediction {
   bool IsGlued() const { return groups.size() > 1; }
 };
 
-struct Diagnosis {
+/// What directions and ratios say about common scales.
+struct ScaleDiagnosis {
   /// Scale groups by directions alone; by directions and ratios.
   RigidityReport by_directions;
   RigidityReport by_ratios;
   /// By directions and those ratios that are strong enough to rely on alone.
   RigidityReport by_strong_ratios;
   /// The weak ratios between groups of by_strong_ratios that are one in
-  /// by_ratios, as indices into Scene::scale_ratios, most meaningful first.
+  /// by_ratios, as indices into the scale ratios, most meaningful first.
   std::vector<std::size_t> weak_ratios;
-  std::vector<ScaleHinge> hinges;      // by camera
+  std::vector<ScaleHinge> hinges;  // by camera
+};
+
+struct Diagnosis : ScaleDiagnosis {
   std::vector<FloatingPart> floating;  // most views first
   TripletPrediction by_triplets;
 
@@ -98,6 +103,12 @@ struct Diagnosis {
 /// the scene does not have.
 Result<Diagnosis> Diagnose(const Scene& scene,
                            const DiagnosisOptions& options = {});
+
+/// The part that needs a graph and ratios alone; ratios whose relative poses
+/// the graph does not have are an error.
+Result<ScaleDiagnosis> DiagnoseScales(const ViewGraph& graph,
+                                      const std::vector<ScaleRatio>& ratios,
+                                      const DiagnosisOptions& options = {});
 
 /// The prediction alone.
 TripletPrediction PredictTripletAveraging(const Scene& scene,

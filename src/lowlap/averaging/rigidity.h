@@ -5,6 +5,7 @@
 
 #include "lowlap/core/ids.h"
 #include "lowlap/scene/scene.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 
@@ -31,41 +32,30 @@ struct RigidityReport {
   std::vector<ViewId> isolated_views;
 };
 
-/// What may join edges into one group.
-enum class RigidityRule {
-  /// The directions of all relative poses (parallel rigidity). The best case:
-  /// it takes every direction for exact.
-  kDirections,
-  /// Triplets of views, each with a scale of its own, joined where they share
-  /// an edge. A triplet counts if its three views share `min_shared_tracks`
-  /// point tracks. This is what averaging over triplets stands on; groups that
-  /// meet in one view have no common scale in it.
-  kTriplets,
-};
-
-struct RigidityOptions {
-  RigidityRule rule = RigidityRule::kDirections;
-  /// For kTriplets; OpenMVG asks for 30.
-  int min_shared_tracks = 30;
-  /// For kDirections: triplets whose two relative poses have a known ratio of
-  /// lengths. Triplets without these relative poses are ignored.
-  std::vector<ViewTriplet> ratios;
-};
-
-/// Which parts of the view graph share a scale, before anything is solved.
+/// Which parts of a view graph share a scale by the directions of their
+/// relative poses (parallel rigidity), before anything is solved. `ratios`:
+/// triplets whose two relative poses have a known ratio of lengths; those
+/// without these relative poses are ignored. The best case: every direction is
+/// exact.
 ///
-/// kDirections: edges belong to one group iff their lengths are proportional in
-/// every solution of C_j - C_i = s_ij d_ij, and s_jk = tau s_ij for the given
-/// ratios. The test is generic: the null space of these equations for random
-/// centres in a plane, since photographs are mostly taken at one height, where
-/// a 4-cycle is not rigid. Triangles and ratios are merged first, so the null
-/// space is computed only for what they leave. Cost: cubic in the number of
-/// these parts that no single view separates; beyond 250 of them only parts
-/// that share two views are merged.
-///
-/// kTriplets: edges outside every counted triplet are left out; their views are
-/// isolated unless another edge holds them.
-RigidityReport AnalyzeRigidity(const Scene& scene,
-                               const RigidityOptions& options = {});
+/// Edges belong to one group iff their lengths are proportional in every
+/// solution of C_j - C_i = s_ij d_ij, and s_jk = tau s_ij for the ratios. The
+/// test is generic: the null space of these equations for random centres in a
+/// plane, since photographs are mostly taken at one height, where a 4-cycle is
+/// not rigid. Triangles and ratios are merged first, so the null space is
+/// computed only for what they leave. Cost: cubic in the number of these parts
+/// that no single view separates; beyond 250 of them only parts that share two
+/// views are merged.
+RigidityReport AnalyzeRigidity(const ViewGraph& graph,
+                               const std::vector<ViewTriplet>& ratios = {});
+
+/// What averaging over triplets stands on: triplets of views, each with a scale
+/// of its own, joined where they share an edge. A triplet counts if its three
+/// views share `min_shared_tracks` point tracks (OpenMVG asks for 30); groups
+/// that meet in one view have no common scale in it. Edges outside every
+/// counted triplet are left out; their views are isolated unless another edge
+/// holds them.
+RigidityReport AnalyzeTripletRigidity(const Scene& scene,
+                                      int min_shared_tracks = 30);
 
 }  // namespace lowlap

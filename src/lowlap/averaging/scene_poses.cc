@@ -63,12 +63,6 @@ int CountPlaced(const TranslationSolution& solution) {
       std::count(solution.component.begin(), solution.component.end(), 0));
 }
 
-std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers) {
-  std::vector<ViewPair> pairs;
-  for (const OutlierEdge& outlier : outliers) pairs.push_back(outlier.views);
-  return pairs;
-}
-
 // Ratios that are not meaningful, but the only ones that something agrees on
 // for a view that has not been placed.
 std::set<ViewTriplet> WeakRatios(const Scene& scene,

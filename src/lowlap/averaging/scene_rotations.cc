@@ -289,6 +289,13 @@ const char* OutlierReasonName(OutlierReason reason) {
   return "";
 }
 
+std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers) {
+  std::vector<ViewPair> pairs;
+  pairs.reserve(outliers.size());
+  for (const OutlierEdge& outlier : outliers) pairs.push_back(outlier.views);
+  return pairs;
+}
+
 Result<SceneRotations> AverageSceneRotations(
     const Scene& scene, const RotationAveragingOptions& options,
     double outlier_reach, double least_false_rad) {

@@ -30,6 +30,8 @@ struct OutlierEdge {
   double error_deg = 0;
 };
 
+std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers);
+
 /// Relative poses that only one loop could check, and that do not close it: one
 /// of them at least is wrong, and nothing tells which.
 struct LoopClosing {

@@ -104,7 +104,7 @@ Result<TranslationSolution> TripletProgramAverager::Solve(
   solution.component.assign(problem.views.size(), -1);
   solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
   for (const std::vector<TripletMotion>& triplets :
-       FindTriplets(problem, options_)) {
+       FindTripletBaselines(problem, options_)) {
     if (const Status fits = CheckSize(Name(), norm_, triplets.size()); !fits) {
       return tl::unexpected<Error>(fits.error());
     }

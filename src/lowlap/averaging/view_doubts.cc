@@ -11,6 +11,7 @@
 #include "lowlap/averaging/internal/scale_hinges.h"
 #include "lowlap/core/median.h"
 #include "lowlap/geometry/rotation.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -63,16 +64,12 @@ class Agreement {
   }
 
   std::vector<ViewDoubt> DoubtfulScales() const {
-    Scene graph;
-    for (const ViewId view : placed_) graph.views[view];
+    std::vector<ViewPair> pairs;
     for (const DirectionEdge& edge : problem_.edges) {
-      const ViewPair views = ViewsOf(edge);
-      if (placed_.count(views.first) > 0 && placed_.count(views.second) > 0) {
-        graph.relative_poses[views].views = views;
-      }
+      if (IsPlaced(edge)) pairs.push_back(ViewsOf(edge));
     }
-    graph.scale_ratios = agreeing_ratios_;
-    const auto diagnosis = Diagnose(graph);
+    const ViewGraph graph(std::move(pairs), {placed_.begin(), placed_.end()});
+    const auto diagnosis = DiagnoseScales(graph, agreeing_ratios_);
     std::vector<ViewDoubt> doubts;
     if (!diagnosis || diagnosis->by_strong_ratios.groups.empty()) return doubts;
     ViewDoubt weak;
@@ -81,7 +78,7 @@ class Agreement {
     std::set_difference(placed_.begin(), placed_.end(), held.views.begin(),
                         held.views.end(), std::back_inserter(weak.views));
     for (const std::size_t r : diagnosis->weak_ratios) {
-      weak.ratios.push_back(graph.scale_ratios[r].views);
+      weak.ratios.push_back(agreeing_ratios_[r].views);
     }
     if (weak.ratios.empty()) {
       // No ratio that agrees joins them; are there any that do not?
@@ -102,7 +99,7 @@ class Agreement {
       doubts.push_back(std::move(weak));
     }
     for (const ScaleHinge& hinge : diagnosis->hinges) {
-      ViewDoubt doubt = ContradictedHinge(graph, hinge);
+      ViewDoubt doubt = ContradictedHinge(hinge);
       if (!doubt.ratios.empty()) doubts.push_back(std::move(doubt));
     }
     return doubts;
@@ -173,15 +170,14 @@ class Agreement {
   }
 
   // Without ratios if those across the hinge agree well enough.
-  ViewDoubt ContradictedHinge(const Scene& graph,
-                              const ScaleHinge& hinge) const {
+  ViewDoubt ContradictedHinge(const ScaleHinge& hinge) const {
     std::map<ViewId, std::size_t> part;
     for (std::size_t p = 0; p < hinge.parts.size(); ++p) {
       for (const ViewId view : hinge.parts[p]) part[view] = p;
     }
     double for_it = 0, against = 0;
     for (const std::size_t r : hinge.ratios) {
-      for_it += Evidence(graph.scale_ratios[r].log10_nfa);
+      for_it += Evidence(agreeing_ratios_[r].log10_nfa);
     }
     ViewDoubt doubt;
     doubt.reason = DoubtReason::kContradictedRatios;

@@ -9,6 +9,7 @@
 
 #include "lowlap/core/parallel.h"
 #include "lowlap/scale/scale_ratios.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -29,7 +30,7 @@ std::array<ViewPair, 2> EdgesOf(const ViewTriplet& views) {
 // The triplets through each pair that has alternatives.
 std::map<ViewPair, std::vector<ViewTriplet>> TripletsToAsk(const Scene& scene) {
   std::map<ViewPair, std::vector<ViewTriplet>> triplets;
-  for (const ViewTriplet& views : FindTriplets(scene)) {
+  for (const ViewTriplet& views : FindTriplets(ViewGraph(scene))) {
     for (const ViewPair& edge : EdgesOf(views)) {
       if (!scene.relative_poses.at(edge).alternatives.empty()) {
         triplets[edge].push_back(views);

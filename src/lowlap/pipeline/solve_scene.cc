@@ -9,6 +9,7 @@
 #include "lowlap/averaging/rigidity.h"
 #include "lowlap/pipeline/decide_motions.h"
 #include "lowlap/scale/scale_ratios.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 
@@ -46,21 +47,8 @@ namespace {
 // part in the solution, so their ratios would be computed for nothing.
 std::vector<ViewTriplet> BelievedTriplets(const Scene& scene,
                                           const SceneRotations& rotations) {
-  std::set<ViewPair> outliers;
-  for (const OutlierEdge& outlier : rotations.outliers) {
-    outliers.insert(outlier.views);
-  }
-  const auto believed = [&](ViewId a, ViewId b) {
-    return outliers.count({std::min(a, b), std::max(a, b)}) == 0;
-  };
-  std::vector<ViewTriplet> triplets;
-  for (const ViewTriplet& views : FindTriplets(scene)) {
-    if (believed(views.first, views.middle) &&
-        believed(views.middle, views.last)) {
-      triplets.push_back(views);
-    }
-  }
-  return triplets;
+  return FindTriplets(
+      ViewGraph(scene).WithoutPairs(PairsOf(rotations.outliers)));
 }
 
 // The ratios of the triplets, in their order; those in `known` are not
@@ -103,15 +91,10 @@ Result<std::vector<ScaleRatio>> CompleteRatios(
 // The number of parts of the placed views that directions alone leave with
 // scales of their own.
 std::size_t CountScaleParts(const Scene& scene, const PoseSummary& summary) {
-  Scene graph;
-  graph.views = scene.views;
-  for (const auto& entry : scene.relative_poses) {
-    graph.relative_poses[entry.first];
-  }
-  for (const OutlierEdge& outlier : summary.outlier_edges) {
-    graph.relative_poses.erase(outlier.views);
-  }
-  return AnalyzeRigidity(WithoutViews(graph, summary.unplaced)).groups.size();
+  return AnalyzeRigidity(ViewGraph(scene)
+                             .WithoutPairs(PairsOf(summary.outlier_edges))
+                             .WithoutViews(summary.unplaced))
+      .groups.size();
 }
 
 }  // namespace

@@ -10,15 +10,13 @@
 
 namespace lowlap {
 
-/// Every path i-j-k of two relative poses, i < k, sorted.
-std::vector<ViewTriplet> FindTriplets(const Scene& scene);
-
-/// The ratio of every triplet of the scene, in the order of FindTriplets,
-/// including those that are not meaningful or have no candidates (see their
-/// verdict). Triplets that are not meaningful by points, lines and pairs are
-/// tested a second time with plane points (ScaleOptions::use_coplanar_points).
-/// Triplets with a view without an intrinsic or features have no candidates.
-/// The same for any number of threads.
+/// The ratio of every triplet of the scene, in the order of FindTriplets
+/// (scene/view_graph.h), including those that are not meaningful or have no
+/// candidates (see their verdict). Triplets that are not meaningful by points,
+/// lines and pairs are tested a second time with plane points
+/// (ScaleOptions::use_coplanar_points). Triplets with a view without an
+/// intrinsic or features have no candidates. The same for any number of
+/// threads.
 ///
 /// Errors: invalid options, those of MakeTripletView, kCancelled.
 Result<std::vector<ScaleRatio>> EstimateScaleRatios(const Scene& scene,

@@ -39,13 +39,6 @@ Result<Averagers> MakeAveragers(const std::vector<std::string>& wanted) {
   return averagers;
 }
 
-std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers) {
-  std::vector<ViewPair> pairs;
-  pairs.reserve(outliers.size());
-  for (const OutlierEdge& outlier : outliers) pairs.push_back(outlier.views);
-  return pairs;
-}
-
 // What all strategies share.
 struct Input {
   const Scene& scene;

@@ -7,6 +7,8 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/scene/view_graph.h"
+
 namespace lowlap {
 namespace {
 
@@ -143,7 +145,8 @@ std::vector<CoplanarCandidate> CoplanarCandidates(
 
 CandidateCount CountCoplanarCandidates(const SyntheticScene& synthetic,
                                        int num_neighbors) {
-  const std::vector<ViewTriplet> triplets = TripletsOf(synthetic.scene);
+  const std::vector<ViewTriplet> triplets =
+      FindTriplets(ViewGraph(synthetic.scene));
   const std::size_t count = std::min(triplets.size(), kMaxTriplets);
   std::map<ViewId, LineOfSegment> lines;
   for (const auto& [id, track] : synthetic.scene.line_tracks) {
@@ -159,23 +162,6 @@ CandidateCount CountCoplanarCandidates(const SyntheticScene& synthetic,
     }
   }
   return result;
-}
-
-std::vector<ViewTriplet> TripletsOf(const Scene& scene) {
-  std::map<ViewId, std::set<ViewId>> neighbors;
-  for (const auto& [pair, edge] : scene.relative_poses) {
-    neighbors[pair.first].insert(pair.second);
-    neighbors[pair.second].insert(pair.first);
-  }
-  std::vector<ViewTriplet> triplets;
-  for (const auto& [middle, views] : neighbors) {
-    for (auto first = views.begin(); first != views.end(); ++first) {
-      for (auto last = std::next(first); last != views.end(); ++last) {
-        triplets.push_back({*first, middle, *last});
-      }
-    }
-  }
-  return triplets;
 }
 
 }  // namespace lowlap

@@ -37,8 +37,4 @@ struct CandidateCount {
 CandidateCount CountCoplanarCandidates(const SyntheticScene& synthetic,
                                        int num_neighbors = 10);
 
-/// Every (first, middle, last) with first < last whose two pairs are in the
-/// scene, ordered by middle view.
-std::vector<ViewTriplet> TripletsOf(const Scene& scene);
-
 }  // namespace lowlap

@@ -8,7 +8,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/synthetic/coplanar_truth.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -60,7 +60,7 @@ Status SimulateRatios(const SimulatedRatioOptions& options,
   std::set<ViewPair> wrong_poses;
   if (options.wrong_beside_wrong_poses) wrong_poses = WrongPoses(*synthetic);
   std::vector<std::pair<std::uint64_t, ScaleRatio>> drawn;
-  for (const ViewTriplet& views : TripletsOf(synthetic->scene)) {
+  for (const ViewTriplet& views : FindTriplets(ViewGraph(synthetic->scene))) {
     const std::optional<double> truth = synthetic->TrueLogRatio(views);
     if (!truth) continue;
     Random random(options.seed, Stream(views));

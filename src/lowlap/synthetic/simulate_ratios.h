@@ -28,7 +28,7 @@ struct SimulatedRatioOptions {
 };
 
 /// Fills scene.scale_ratios with a ratio for every triplet of the scene's
-/// relative poses (TripletsOf) that has a true one, as if features had been
+/// relative poses (FindTriplets) that has a true one, as if features had been
 /// measured: for graphs too large, or of no interest, to carry features. What
 /// is drawn for a triplet does not depend on the others, and a greater
 /// wrong_share makes the same ratios wrong, and more. kInvalidArgument names

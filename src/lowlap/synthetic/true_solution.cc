@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/synthetic/coplanar_truth.h"
+#include "lowlap/scene/view_graph.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
 namespace lowlap {
@@ -21,7 +21,7 @@ std::optional<double> SyntheticScene::TrueLogRatio(
 Scene TrueSolution(const SyntheticScene& synthetic) {
   Scene scene = synthetic.scene;
   scene.poses = synthetic.true_poses;
-  for (const ViewTriplet& triplet : TripletsOf(scene)) {
+  for (const ViewTriplet& triplet : FindTriplets(ViewGraph(scene))) {
     const std::optional<double> log_ratio = synthetic.TrueLogRatio(triplet);
     if (!log_ratio) continue;
     ScaleRatio ratio;

@@ -3,11 +3,11 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "lowlap/core/graph_blocks.h"
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/types.h"
 
@@ -15,7 +15,6 @@ namespace lowlap {
 namespace {
 
 constexpr std::size_t kMaxParts = 250;
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
 struct Part {
   std::size_t edge = 0;  // one of its edges
@@ -70,86 +69,26 @@ bool MergePartsThatShareTwoViews(const std::vector<Part>& parts,
   return merged;
 }
 
-/// Blocks (biconnected components, Hopcroft and Tarjan 1973) of the graph that
-/// joins every part to its shared views, as sets of parts.
-class BlockFinder {
- public:
-  explicit BlockFinder(const std::vector<Part>& parts)
-      : num_parts_(parts.size()), neighbours_(parts.size()) {
-    for (const auto& entry : SharedViews(parts)) {
-      neighbours_.push_back(entry.second);
-      for (const std::size_t p : entry.second) {
-        neighbours_[p].push_back(neighbours_.size() - 1);
-      }
+// Sets of three parts or more that no single view separates: blocks of the
+// graph that joins every part to its shared views.
+std::vector<std::vector<std::size_t>> BlocksOf(const std::vector<Part>& parts) {
+  std::vector<std::vector<std::size_t>> neighbors(parts.size());
+  for (const auto& entry : SharedViews(parts)) {
+    for (const std::size_t p : entry.second) {
+      neighbors[p].push_back(neighbors.size());
     }
+    neighbors.push_back(entry.second);
   }
-
-  std::vector<std::vector<std::size_t>> Find() {
-    order_.assign(neighbours_.size(), kNone);
-    low_.assign(neighbours_.size(), 0);
-    for (std::size_t root = 0; root < num_parts_; ++root) {
-      if (order_[root] == kNone) Walk(root);
-    }
-    return std::move(blocks_);
+  std::vector<std::vector<std::size_t>> blocks = FindBlocks(neighbors);
+  for (std::vector<std::size_t>& block : blocks) {
+    block.erase(std::lower_bound(block.begin(), block.end(), parts.size()),
+                block.end());
   }
-
- private:
-  struct Step {
-    std::size_t node, parent, next;
-  };
-
-  void Walk(std::size_t root) {
-    std::vector<Step> open;
-    const auto enter = [&](std::size_t node, std::size_t parent) {
-      order_[node] = low_[node] = count_++;
-      seen_.push_back(node);
-      open.push_back({node, parent, 0});
-    };
-    enter(root, kNone);
-    while (!open.empty()) {
-      Step& step = open.back();
-      const std::size_t node = step.node, parent = step.parent;
-      if (step.next < neighbours_[node].size()) {
-        const std::size_t other = neighbours_[node][step.next++];
-        if (other == parent) continue;
-        if (order_[other] == kNone) {
-          enter(other, node);
-        } else {
-          low_[node] = std::min(low_[node], order_[other]);
-        }
-        continue;
-      }
-      open.pop_back();
-      if (parent == kNone) continue;
-      low_[parent] = std::min(low_[parent], low_[node]);
-      if (low_[node] >= order_[parent]) Close(node, parent);
-    }
-    seen_.clear();
-  }
-
-  // Everything entered since `node`, and `parent`, are one block.
-  void Close(std::size_t node, std::size_t parent) {
-    std::vector<std::size_t> block;
-    const auto add = [&](std::size_t member) {
-      if (member < num_parts_) block.push_back(member);
-    };
-    add(parent);
-    while (true) {
-      const std::size_t member = seen_.back();
-      seen_.pop_back();
-      add(member);
-      if (member == node) break;
-    }
-    std::sort(block.begin(), block.end());
-    if (block.size() >= 3) blocks_.push_back(std::move(block));
-  }
-
-  std::size_t num_parts_;
-  std::vector<std::vector<std::size_t>> neighbours_;  // parts, then views
-  std::vector<std::size_t> order_, low_, seen_;
-  std::size_t count_ = 0;
-  std::vector<std::vector<std::size_t>> blocks_;
-};
+  blocks.erase(std::remove_if(blocks.begin(), blocks.end(),
+                              [](const auto& b) { return b.size() < 3; }),
+               blocks.end());
+  return blocks;
+}
 
 void MergeByNullSpace(const std::vector<Part>& parts, UnionFind* sets) {
   const Eigen::Index num_parts = static_cast<Eigen::Index>(parts.size());
@@ -201,7 +140,7 @@ void MergeRigidParts(const std::vector<ViewPair>& edges, UnionFind* parts) {
   do {
     list = ListParts(edges, parts);
   } while (MergePartsThatShareTwoViews(list, parts));
-  for (const std::vector<std::size_t>& block : BlockFinder(list).Find()) {
+  for (const std::vector<std::size_t>& block : BlocksOf(list)) {
     if (block.size() > kMaxParts) continue;
     std::vector<Part> members;
     for (const std::size_t p : block) members.push_back(list[p]);

@@ -13,7 +13,7 @@ namespace {
 
 /// A meaningful ratio between two groups of by_directions ("parts").
 struct CrossRatio {
-  std::size_t ratio = 0;  // index into Scene::scale_ratios
+  std::size_t ratio = 0;  // index into the ratios
   ViewId view = kInvalidId;
   std::size_t first_edge = 0, second_edge = 0;
   bool is_weak = false;
@@ -21,9 +21,9 @@ struct CrossRatio {
 
 class HingeFinder {
  public:
-  HingeFinder(const Scene& scene, const Diagnosis& diagnosis,
-              const DiagnosisOptions& options)
-      : scene_(scene), num_parts_(diagnosis.by_directions.groups.size()) {
+  HingeFinder(const std::vector<ScaleRatio>& ratios,
+              const ScaleDiagnosis& diagnosis, const DiagnosisOptions& options)
+      : all_ratios_(ratios), num_parts_(diagnosis.by_directions.groups.size()) {
     std::map<ViewPair, std::size_t> index;
     for (std::size_t p = 0; p < num_parts_; ++p) {
       for (const ViewPair& edge : diagnosis.by_directions.groups[p].edges) {
@@ -38,8 +38,8 @@ class HingeFinder {
         group_[index.at(edge)] = g;
       }
     }
-    for (std::size_t r = 0; r < scene.scale_ratios.size(); ++r) {
-      const ScaleRatio& ratio = scene.scale_ratios[r];
+    for (std::size_t r = 0; r < ratios.size(); ++r) {
+      const ScaleRatio& ratio = ratios[r];
       if (ratio.verdict != RatioVerdict::kMeaningful) continue;
       const ViewTriplet& views = ratio.views;
       const std::size_t a = index.at(OrderedPair(views.first, views.middle));
@@ -135,11 +135,11 @@ class HingeFinder {
         hinge.ratios.push_back(ratio.ratio);
       }
     }
-    SortByEvidence(scene_, &hinge.ratios);
+    SortByEvidence(all_ratios_, &hinge.ratios);
     return hinge;
   }
 
-  const Scene& scene_;
+  const std::vector<ScaleRatio>& all_ratios_;
   std::size_t num_parts_;
   std::vector<ViewPair> edges_;
   std::vector<std::size_t> part_;   // of each edge, in by_directions
@@ -149,22 +149,18 @@ class HingeFinder {
 
 }  // namespace
 
-std::vector<ScaleHinge> FindScaleHinges(const Scene& scene,
-                                        const Diagnosis& diagnosis,
+std::vector<ScaleHinge> FindScaleHinges(const std::vector<ScaleRatio>& ratios,
+                                        const ScaleDiagnosis& diagnosis,
                                         const DiagnosisOptions& options) {
-  return HingeFinder(scene, diagnosis, options).Find();
+  return HingeFinder(ratios, diagnosis, options).Find();
 }
 
-void SortByEvidence(const Scene& scene, std::vector<std::size_t>* ratios) {
-  std::stable_sort(ratios->begin(), ratios->end(),
+void SortByEvidence(const std::vector<ScaleRatio>& ratios,
+                    std::vector<std::size_t>* indices) {
+  std::stable_sort(indices->begin(), indices->end(),
                    [&](std::size_t a, std::size_t b) {
-                     return scene.scale_ratios[a].log10_nfa <
-                            scene.scale_ratios[b].log10_nfa;
+                     return ratios[a].log10_nfa < ratios[b].log10_nfa;
                    });
-}
-
-ViewPair OrderedPair(ViewId a, ViewId b) {
-  return {std::min(a, b), std::max(a, b)};
 }
 
 }  // namespace lowlap

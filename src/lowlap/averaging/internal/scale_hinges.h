@@ -9,13 +9,12 @@ namespace lowlap {
 
 /// The cameras that scale groups hinge on, by camera, from the groups by
 /// directions and by ratios of `diagnosis`.
-std::vector<ScaleHinge> FindScaleHinges(const Scene& scene,
-                                        const Diagnosis& diagnosis,
+std::vector<ScaleHinge> FindScaleHinges(const std::vector<ScaleRatio>& ratios,
+                                        const ScaleDiagnosis& diagnosis,
                                         const DiagnosisOptions& options);
 
 /// Most meaningful first.
-void SortByEvidence(const Scene& scene, std::vector<std::size_t>* ratios);
-
-ViewPair OrderedPair(ViewId a, ViewId b);
+void SortByEvidence(const std::vector<ScaleRatio>& ratios,
+                    std::vector<std::size_t>* indices);
 
 }  // namespace lowlap

@@ -165,7 +165,7 @@ std::vector<TripletMotion> ConsistentTriplets(
 
 }  // namespace
 
-std::vector<std::vector<TripletMotion>> FindTriplets(
+std::vector<std::vector<TripletMotion>> FindTripletBaselines(
     const TranslationProblem& problem, const TripletProgramOptions& options) {
   UnionFind sets(problem.edges.size());
   std::vector<int> count(problem.edges.size(), 0);

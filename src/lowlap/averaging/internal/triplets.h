@@ -24,7 +24,7 @@ struct TripletMotion {
 /// `max_triplets_per_edge` triplets at every one of its edges, those with a
 /// ratio, then those that close best, are kept; none that joins two sets is
 /// dropped.
-std::vector<std::vector<TripletMotion>> FindTriplets(
+std::vector<std::vector<TripletMotion>> FindTripletBaselines(
     const TranslationProblem& problem, const TripletProgramOptions& options);
 
 }  // namespace lowlap
