@@ -6,7 +6,7 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
-#include "lowlap/averaging/diagnosis.h"
+#include "lowlap/averaging/rigidity/diagnosis.h"
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/pipeline/diagnosis_output.h"
 #include "lowlap/scale/scale_ratios.h"

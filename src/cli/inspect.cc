@@ -5,7 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/scene_input.h"
-#include "lowlap/averaging/rigidity.h"
+#include "lowlap/averaging/rigidity/rigidity.h"
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/pipeline/summary_json.h"
 #include "lowlap/scene/view_graph.h"

@@ -5,7 +5,7 @@
 
 #include <ctime>
 
-#include "lowlap/averaging/graph_scales.h"
+#include "lowlap/averaging/strategies/internal/graph_scales.h"
 
 namespace lowlap {
 namespace {

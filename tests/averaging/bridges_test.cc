@@ -1,4 +1,4 @@
-#include "lowlap/averaging/bridges.h"
+#include "lowlap/averaging/rotations/internal/bridges.h"
 
 #include <gtest/gtest.h>
 

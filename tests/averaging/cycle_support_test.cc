@@ -1,4 +1,4 @@
-#include "lowlap/averaging/cycle_support.h"
+#include "lowlap/averaging/rotations/internal/cycle_support.h"
 
 #include <gtest/gtest.h>
 

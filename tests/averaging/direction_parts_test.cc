@@ -1,4 +1,4 @@
-#include "lowlap/averaging/internal/direction_parts.h"
+#include "lowlap/averaging/strategies/internal/direction_parts.h"
 
 #include <gtest/gtest.h>
 

@@ -7,9 +7,9 @@
 #include <cmath>
 
 #include "averaging/random_problem.h"
-#include "lowlap/averaging/internal/angle_objective.h"
-#include "lowlap/averaging/internal/bounded_directions.h"
 #include "lowlap/averaging/strategies.h"
+#include "lowlap/averaging/strategies/internal/angle_objective.h"
+#include "lowlap/averaging/strategies/internal/bounded_directions.h"
 
 namespace lowlap {
 namespace {

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/edge_scales.h"
+#include "lowlap/averaging/scales/internal/edge_scales.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/global_positioning.h"
+#include "lowlap/averaging/strategies/internal/global_positioning.h"
 
 #include <ceres/ceres.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <algorithm>
 
 #include "averaging/ray_problem.h"
-#include "lowlap/averaging/internal/positioning_solver.h"
-#include "lowlap/averaging/internal/track_groups.h"
+#include "lowlap/averaging/strategies/internal/positioning_solver.h"
+#include "lowlap/averaging/strategies/internal/track_groups.h"
 
 namespace lowlap {
 namespace {

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/internal/linear_program.h"
+#include "lowlap/averaging/strategies/internal/linear_program.h"
 
 #include <gtest/gtest.h>
 

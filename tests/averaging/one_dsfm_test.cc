@@ -1,4 +1,4 @@
-#include "lowlap/averaging/one_dsfm.h"
+#include "lowlap/averaging/strategies/internal/one_dsfm.h"
 
 #include <gtest/gtest.h>
 

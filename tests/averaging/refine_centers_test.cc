@@ -1,4 +1,4 @@
-#include "lowlap/averaging/refine_centers.h"
+#include "lowlap/averaging/scales/internal/refine_centers.h"
 
 #include <gtest/gtest.h>
 

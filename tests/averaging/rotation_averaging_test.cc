@@ -1,4 +1,4 @@
-#include "lowlap/averaging/rotation_averaging.h"
+#include "lowlap/averaging/rotations/rotation_averaging.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/scene_rotations.h"
+#include "lowlap/averaging/rotations/scene_rotations.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/track_rays.h"
+#include "lowlap/averaging/internal/track_rays.h"
 
 #include <gtest/gtest.h>
 

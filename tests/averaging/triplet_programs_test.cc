@@ -1,4 +1,4 @@
-#include "lowlap/averaging/triplet_programs.h"
+#include "lowlap/averaging/strategies/internal/triplet_programs.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "averaging/random_problem.h"
-#include "lowlap/averaging/internal/triplets.h"
+#include "lowlap/averaging/strategies/internal/triplet_baselines.h"
 
 namespace lowlap {
 namespace {

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/vertex_order.h"
+#include "lowlap/averaging/strategies/internal/vertex_order.h"
 
 #include <gtest/gtest.h>
 

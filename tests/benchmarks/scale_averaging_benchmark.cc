@@ -4,8 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include "averaging/big_graph.h"
-#include "lowlap/averaging/edge_scales.h"
-#include "lowlap/averaging/graph_scales.h"
+#include "lowlap/averaging/scales/internal/edge_scales.h"
+#include "lowlap/averaging/strategies/internal/graph_scales.h"
 
 namespace lowlap {
 namespace {

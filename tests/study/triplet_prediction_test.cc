@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/averaging/diagnosis.h"
+#include "lowlap/averaging/rigidity/diagnosis.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/relative_poses.h"
 #include "lowlap/study/subset_runs.h"

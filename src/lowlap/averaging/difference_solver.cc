@@ -1,4 +1,4 @@
-#include "lowlap/averaging/difference_solver.h"
+#include "lowlap/averaging/internal/difference_solver.h"
 
 #include <algorithm>
 #include <numeric>

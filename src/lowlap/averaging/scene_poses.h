@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/averaging/rotation_averaging.h"
-#include "lowlap/averaging/scene_rotations.h"
+#include "lowlap/averaging/reliability_warnings.h"
+#include "lowlap/averaging/rotations/rotation_averaging.h"
+#include "lowlap/averaging/rotations/scene_rotations.h"
 #include "lowlap/averaging/translation_problem.h"
-#include "lowlap/averaging/view_doubts.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/scene/scene.h"

@@ -2,17 +2,17 @@
 
 #include <utility>
 
-#include "lowlap/averaging/bata.h"
-#include "lowlap/averaging/global_positioning.h"
-#include "lowlap/averaging/graph_scales.h"
-#include "lowlap/averaging/l2_chordal.h"
-#include "lowlap/averaging/lud.h"
-#include "lowlap/averaging/one_dsfm.h"
-#include "lowlap/averaging/revised_bata.h"
-#include "lowlap/averaging/revised_lud.h"
-#include "lowlap/averaging/scale_chain.h"
-#include "lowlap/averaging/soft_l1.h"
-#include "lowlap/averaging/triplet_programs.h"
+#include "lowlap/averaging/strategies/internal/bata.h"
+#include "lowlap/averaging/strategies/internal/global_positioning.h"
+#include "lowlap/averaging/strategies/internal/graph_scales.h"
+#include "lowlap/averaging/strategies/internal/l2_chordal.h"
+#include "lowlap/averaging/strategies/internal/lud.h"
+#include "lowlap/averaging/strategies/internal/one_dsfm.h"
+#include "lowlap/averaging/strategies/internal/revised_bata.h"
+#include "lowlap/averaging/strategies/internal/revised_lud.h"
+#include "lowlap/averaging/strategies/internal/scale_chain.h"
+#include "lowlap/averaging/strategies/internal/soft_l1.h"
+#include "lowlap/averaging/strategies/internal/triplet_programs.h"
 
 namespace lowlap {
 namespace {

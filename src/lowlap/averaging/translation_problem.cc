@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-#include "lowlap/averaging/track_rays.h"
+#include "lowlap/averaging/internal/track_rays.h"
 
 namespace lowlap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lowlap/averaging/motion_choice.h"
+#include "lowlap/averaging/rotations/pose_hypotheses.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/scale/scale_options.h"

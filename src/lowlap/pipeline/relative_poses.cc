@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/motion_choice.h"
+#include "lowlap/averaging/rotations/pose_hypotheses.h"
 #include "lowlap/core/parallel.h"
 #include "lowlap/scene/normalized_features.h"
 #include "lowlap/two_view/pose_search.h"

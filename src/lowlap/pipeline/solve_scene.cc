@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/averaging/rigidity.h"
+#include "lowlap/averaging/rigidity/rigidity.h"
 #include "lowlap/pipeline/decide_motions.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"

@@ -6,9 +6,9 @@
 
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/structure_builder.h"
-#include "lowlap/averaging/motion_choice.h"
+#include "lowlap/averaging/rotations/pose_hypotheses.h"
+#include "lowlap/averaging/rotations/scene_rotations.h"
 #include "lowlap/averaging/scene_poses.h"
-#include "lowlap/averaging/scene_rotations.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/pipeline/stage_log.h"

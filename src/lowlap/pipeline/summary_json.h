@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/averaging/rigidity.h"
+#include "lowlap/averaging/rigidity/rigidity.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/pipeline/pair_report.h"
 #include "lowlap/pipeline/solve_scene.h"

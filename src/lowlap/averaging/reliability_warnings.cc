@@ -1,0 +1,294 @@
+#include "lowlap/averaging/reliability_warnings.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/scale_articulations.h"
+#include "lowlap/core/median.h"
+#include "lowlap/geometry/rotation.h"
+#include "lowlap/scene/view_graph.h"
+
+namespace lowlap {
+namespace {
+
+double Evidence(double log10_nfa) { return 1 + std::max(0.0, -log10_nfa); }
+
+/// What of the measurements agrees with component 0 of a solution.
+class Agreement {
+ public:
+  Agreement(const Scene& scene, const TranslationProblem& problem,
+            const TranslationSolution& solution, const DoubtOptions& options)
+      : scene_(scene),
+        problem_(problem),
+        solution_(solution),
+        options_(options) {
+    for (std::size_t n = 0; n < problem.views.size(); ++n) {
+      if (solution.component[n] == 0) placed_.insert(problem.views[n]);
+    }
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+      const DirectionEdge& edge = problem.edges[e];
+      if (Agrees(edge)) agreeing_.insert(ViewsOf(edge));
+    }
+    SplitRatios();
+  }
+
+  /// The views that most evidence contradicts.
+  std::vector<ViewDoubt> ContradictedPoses() const {
+    std::map<ViewId, double> balance;
+    std::map<ViewId, std::vector<ViewPair>> against;
+    for (const auto& [views, pose] : scene_.relative_poses) {
+      if (placed_.count(views.first) == 0 || placed_.count(views.second) == 0) {
+        continue;
+      }
+      const bool agrees = agreeing_.count(views) > 0;
+      for (const ViewId view : {views.first, views.second}) {
+        balance[view] += (agrees ? 1 : -1) * Evidence(pose.log10_nfa);
+        if (!agrees) against[view].push_back(views);
+      }
+    }
+    std::vector<ViewDoubt> doubts;
+    for (const auto& [view, value] : balance) {
+      if (value >= 0) continue;
+      ViewDoubt doubt;
+      doubt.reason = DoubtReason::kContradictedPoses;
+      doubt.views = {view};
+      doubt.against = against[view];
+      doubts.push_back(std::move(doubt));
+    }
+    return doubts;
+  }
+
+  std::vector<ViewDoubt> DoubtfulScales() const {
+    std::vector<ViewPair> pairs;
+    for (const DirectionEdge& edge : problem_.edges) {
+      if (IsPlaced(edge)) pairs.push_back(ViewsOf(edge));
+    }
+    const ViewGraph graph(std::move(pairs), {placed_.begin(), placed_.end()});
+    const auto diagnosis = DiagnoseScales(graph, agreeing_ratios_);
+    std::vector<ViewDoubt> doubts;
+    if (!diagnosis || diagnosis->by_strong_ratios.groups.empty()) return doubts;
+    ViewDoubt weak;
+    weak.reason = DoubtReason::kWeakScale;
+    const RigidGroup& held = diagnosis->by_strong_ratios.groups.front();
+    std::set_difference(placed_.begin(), placed_.end(), held.views.begin(),
+                        held.views.end(), std::back_inserter(weak.views));
+    for (const std::size_t r : diagnosis->weak_ratios) {
+      weak.ratios.push_back(agreeing_ratios_[r].views);
+    }
+    if (weak.ratios.empty()) {
+      // No ratio that agrees joins them; are there any that do not?
+      weak.reason = DoubtReason::kContradictedRatios;
+      for (const ScaleRatio& ratio : rejected_ratios_) {
+        const ViewTriplet& v = ratio.views;
+        for (const ViewId outer : {v.first, v.last}) {
+          if (!std::binary_search(weak.views.begin(), weak.views.end(),
+                                  outer)) {
+            continue;
+          }
+          weak.ratios.push_back(v);
+          break;
+        }
+      }
+    }
+    if (!weak.views.empty() && !weak.ratios.empty()) {
+      doubts.push_back(std::move(weak));
+    }
+    for (const ScaleHinge& hinge : diagnosis->hinges) {
+      ViewDoubt doubt = ContradictedHinge(hinge);
+      if (!doubt.ratios.empty()) doubts.push_back(std::move(doubt));
+    }
+    return doubts;
+  }
+
+ private:
+  ViewPair ViewsOf(const DirectionEdge& edge) const {
+    return OrderedPair(problem_.views[edge.first], problem_.views[edge.second]);
+  }
+
+  Vec3 Baseline(const DirectionEdge& edge) const {
+    return solution_.center_in_world[edge.second] -
+           solution_.center_in_world[edge.first];
+  }
+
+  bool IsPlaced(const DirectionEdge& edge) const {
+    return solution_.component[edge.first] == 0 &&
+           solution_.component[edge.second] == 0;
+  }
+
+  bool Agrees(const DirectionEdge& edge) const {
+    if (!IsPlaced(edge)) return false;
+    const Vec3 baseline = Baseline(edge);
+    return baseline.norm() > 0 &&
+           AngleBetween(baseline, edge.direction_in_world) <=
+               options_.reach *
+                   std::max(options_.direction_stddev_rad, edge.stddev_rad);
+  }
+
+  // Ratios are looked up by their edges: the problem does not keep their views.
+  void SplitRatios() {
+    std::map<std::pair<std::size_t, std::size_t>, const RatioMeasurement*> used;
+    for (const RatioMeasurement& ratio : problem_.ratios) {
+      used[{ratio.reference, ratio.target}] = &ratio;
+    }
+    std::map<ViewPair, std::size_t> edge_of;
+    for (std::size_t e = 0; e < problem_.edges.size(); ++e) {
+      edge_of[ViewsOf(problem_.edges[e])] = e;
+    }
+    std::vector<std::pair<const ScaleRatio*, double>> errors;
+    std::vector<double> normalised;
+    for (const ScaleRatio& ratio : scene_.scale_ratios) {
+      if (ratio.verdict != RatioVerdict::kMeaningful) continue;
+      const auto reference =
+          edge_of.find(OrderedPair(ratio.views.first, ratio.views.middle));
+      const auto target =
+          edge_of.find(OrderedPair(ratio.views.middle, ratio.views.last));
+      if (reference == edge_of.end() || target == edge_of.end()) continue;
+      const auto found = used.find({reference->second, target->second});
+      const DirectionEdge& from = problem_.edges[reference->second];
+      const DirectionEdge& to = problem_.edges[target->second];
+      if (found == used.end() || !IsPlaced(from) || !IsPlaced(to)) continue;
+      const double error =
+          std::abs(std::log(Baseline(to).norm() / Baseline(from).norm()) -
+                   ratio.log_ratio);
+      errors.emplace_back(&ratio, error / found->second->stddev);
+      normalised.push_back(errors.back().second);
+    }
+    const double scale = std::max(1.0, 1.4826 * Median(std::move(normalised)));
+    // As DiagnosisOptions::max_stddev: less does not make a ratio useless.
+    constexpr double kTenth = 0.1;
+    for (const auto& [ratio, error] : errors) {
+      const double stddev = std::max(ratio->log_ratio_stddev, 1e-3);
+      const bool agrees =
+          error <= std::max(options_.reach * scale, kTenth / stddev);
+      (agrees ? agreeing_ratios_ : rejected_ratios_).push_back(*ratio);
+    }
+  }
+
+  // Without ratios if those across the hinge agree well enough.
+  ViewDoubt ContradictedHinge(const ScaleHinge& hinge) const {
+    std::map<ViewId, std::size_t> part;
+    for (std::size_t p = 0; p < hinge.parts.size(); ++p) {
+      for (const ViewId view : hinge.parts[p]) part[view] = p;
+    }
+    double for_it = 0, against = 0;
+    for (const std::size_t r : hinge.ratios) {
+      for_it += Evidence(agreeing_ratios_[r].log10_nfa);
+    }
+    ViewDoubt doubt;
+    doubt.reason = DoubtReason::kContradictedRatios;
+    for (const ScaleRatio& ratio : rejected_ratios_) {
+      if (ratio.views.middle != hinge.view) continue;
+      const auto first = part.find(ratio.views.first);
+      const auto last = part.find(ratio.views.last);
+      if (first == part.end() || last == part.end() ||
+          first->second == last->second) {
+        continue;
+      }
+      against += Evidence(ratio.log10_nfa);
+      doubt.ratios.push_back(ratio.views);
+    }
+    if (2 * against <= for_it) doubt.ratios.clear();
+    for (std::size_t p = 1; p < hinge.parts.size(); ++p) {
+      doubt.views.insert(doubt.views.end(), hinge.parts[p].begin(),
+                         hinge.parts[p].end());
+    }
+    std::sort(doubt.views.begin(), doubt.views.end());
+    return doubt;
+  }
+
+  const Scene& scene_;
+  const TranslationProblem& problem_;
+  const TranslationSolution& solution_;
+  const DoubtOptions options_;
+  std::set<ViewId> placed_;
+  std::set<ViewPair> agreeing_;
+  std::vector<ScaleRatio> agreeing_ratios_, rejected_ratios_;
+};
+
+// Adds, per view, the features of the tracks and those of them that landmarks
+// observe.
+struct FeatureCount {
+  std::size_t matched = 0;
+  std::size_t fitting = 0;
+};
+
+template <class Landmarks>
+void CountFeatures(const Scene& scene,
+                   const std::map<std::uint32_t, Track>& tracks,
+                   const Landmarks& landmarks, std::size_t min_views,
+                   std::map<ViewId, FeatureCount>* counts) {
+  for (const auto& [id, track] : tracks) {
+    std::vector<ViewId> views;
+    for (const FeatureRef& ref : track) {
+      // Without an intrinsic nothing of a view can be triangulated.
+      if (scene.FindPose(ref.view) != nullptr &&
+          scene.FindIntrinsic(ref.view) != nullptr) {
+        views.push_back(ref.view);
+      }
+    }
+    if (views.size() < min_views) continue;
+    std::set<ViewId> fitting;
+    if (const auto found = landmarks.find(id); found != landmarks.end()) {
+      for (const auto& seen : found->second.observations) {
+        fitting.insert(seen.view);
+      }
+    }
+    for (const ViewId view : views) {
+      FeatureCount& count = (*counts)[view];
+      ++count.matched;
+      if (fitting.count(view) > 0) ++count.fitting;
+    }
+  }
+}
+
+}  // namespace
+
+const char* DoubtReasonName(DoubtReason reason) {
+  switch (reason) {
+    case DoubtReason::kContradictedPoses:
+      return "contradicted_poses";
+    case DoubtReason::kWeakScale:
+      return "weak_scale";
+    case DoubtReason::kContradictedRatios:
+      return "contradicted_ratios";
+    case DoubtReason::kLostFeatures:
+      return "lost_features";
+  }
+  return "";
+}
+
+std::vector<ViewDoubt> FindViewDoubts(const Scene& scene,
+                                      const TranslationProblem& problem,
+                                      const TranslationSolution& solution,
+                                      const DoubtOptions& options) {
+  const Agreement agreement(scene, problem, solution, options);
+  std::vector<ViewDoubt> doubts = agreement.ContradictedPoses();
+  for (ViewDoubt& doubt : agreement.DoubtfulScales()) {
+    doubts.push_back(std::move(doubt));
+  }
+  return doubts;
+}
+
+std::vector<ViewDoubt> FindLostFeatures(const Scene& scene) {
+  std::map<ViewId, FeatureCount> counts;
+  CountFeatures(scene, scene.point_tracks, scene.structure, 2, &counts);
+  CountFeatures(scene, scene.line_tracks, scene.line_structure, 3, &counts);
+  std::vector<ViewDoubt> doubts;
+  for (const auto& [view, count] : counts) {
+    if (2 * count.fitting >= count.matched) continue;
+    ViewDoubt doubt;
+    doubt.reason = DoubtReason::kLostFeatures;
+    doubt.views = {view};
+    doubt.share =
+        static_cast<double>(count.fitting) / static_cast<double>(count.matched);
+    doubts.push_back(std::move(doubt));
+  }
+  return doubts;
+}
+
+}  // namespace lowlap

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "lowlap/averaging/rigidity/diagnosis.h"
+
+namespace lowlap {
+
+/// The cameras that scale groups hinge on, by camera, from the groups by
+/// directions and by ratios of `diagnosis`.
+std::vector<ScaleHinge> FindScaleHinges(const std::vector<ScaleRatio>& ratios,
+                                        const ScaleDiagnosis& diagnosis,
+                                        const DiagnosisOptions& options);
+
+/// Most meaningful first.
+void SortByEvidence(const std::vector<ScaleRatio>& ratios,
+                    std::vector<std::size_t>* indices);
+
+}  // namespace lowlap

@@ -1,0 +1,120 @@
+#include "lowlap/averaging/rigidity/rigidity.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "lowlap/averaging/rigidity/internal/rigid_parts.h"
+#include "lowlap/core/union_find.h"
+
+namespace lowlap {
+namespace {
+
+using Triangle = std::array<ViewId, 3>;  // ascending
+
+void MergeTriangles(const ViewGraph& graph,
+                    const std::vector<Triangle>& triangles, UnionFind* groups) {
+  for (const Triangle& t : triangles) {
+    const std::size_t closing = *graph.FindPair(t[1], t[2]);
+    groups->Union(closing, *graph.FindPair(t[0], t[1]));
+    groups->Union(closing, *graph.FindPair(t[0], t[2]));
+  }
+}
+
+// Number of point tracks that each triangle's three views share.
+std::vector<int> SharedTracks(const Scene& scene,
+                              const std::vector<Triangle>& triangles) {
+  std::map<Triangle, std::size_t> index;
+  for (std::size_t n = 0; n < triangles.size(); ++n) index[triangles[n]] = n;
+  std::vector<int> counts(triangles.size(), 0);
+  for (const auto& [id, track] : scene.point_tracks) {
+    for (std::size_t a = 0; a < track.size(); ++a) {
+      for (std::size_t b = a + 1; b < track.size(); ++b) {
+        for (std::size_t c = b + 1; c < track.size(); ++c) {
+          const auto found =
+              index.find({track[a].view, track[b].view, track[c].view});
+          if (found != index.end()) ++counts[found->second];
+        }
+      }
+    }
+  }
+  return counts;
+}
+
+// The report on edges in the sets of `sets`.
+RigidityReport Report(const ViewGraph& graph, UnionFind* sets) {
+  RigidityReport report;
+  for (std::vector<ViewId>& views : ConnectedComponents(graph)) {
+    if (views.size() > 1) {
+      report.connected_components.push_back(std::move(views));
+    } else {
+      report.isolated_views.push_back(views.front());
+    }
+  }
+  const std::vector<std::size_t> labels = sets->Labels();
+  for (std::size_t e = 0; e < graph.pairs().size(); ++e) {
+    if (labels[e] >= report.groups.size()) {
+      report.groups.resize(labels[e] + 1);
+    }
+    report.groups[labels[e]].edges.push_back(graph.pairs()[e]);
+  }
+  for (RigidGroup& group : report.groups) {
+    std::set<ViewId> views;
+    for (const ViewPair& edge : group.edges) {
+      views.insert({edge.first, edge.second});
+    }
+    group.views.assign(views.begin(), views.end());
+  }
+  std::stable_sort(report.groups.begin(), report.groups.end(),
+                   [](const RigidGroup& a, const RigidGroup& b) {
+                     return a.views.size() > b.views.size();
+                   });
+  std::map<ViewId, std::vector<std::size_t>> groups_of_view;
+  for (std::size_t g = 0; g < report.groups.size(); ++g) {
+    for (const ViewId view : report.groups[g].views) {
+      groups_of_view[view].push_back(g);
+    }
+  }
+  for (auto& [view, groups] : groups_of_view) {
+    if (groups.size() > 1) report.hinges.push_back({view, std::move(groups)});
+  }
+  return report;
+}
+
+}  // namespace
+
+RigidityReport AnalyzeRigidity(const ViewGraph& graph,
+                               const std::vector<ViewTriplet>& ratios) {
+  UnionFind sets(graph.pairs().size());
+  MergeTriangles(graph, FindTriangles(graph), &sets);
+  for (const ViewTriplet& views : ratios) {
+    const auto reference = graph.FindPair(views.first, views.middle);
+    const auto target = graph.FindPair(views.middle, views.last);
+    if (reference && target) sets.Union(*reference, *target);
+  }
+  MergeRigidParts(graph.pairs(), &sets);
+  return Report(graph, &sets);
+}
+
+RigidityReport AnalyzeTripletRigidity(const Scene& scene,
+                                      int min_shared_tracks) {
+  const ViewGraph graph(scene);
+  const std::vector<Triangle> triangles = FindTriangles(graph);
+  const std::vector<int> shared = SharedTracks(scene, triangles);
+  std::vector<Triangle> counted;
+  std::vector<ViewPair> held;
+  for (std::size_t n = 0; n < triangles.size(); ++n) {
+    if (shared[n] < min_shared_tracks) continue;
+    const Triangle& t = triangles[n];
+    counted.push_back(t);
+    held.insert(held.end(), {{t[0], t[1]}, {t[0], t[2]}, {t[1], t[2]}});
+  }
+  const ViewGraph covered(std::move(held), graph.views());
+  UnionFind sets(covered.pairs().size());
+  MergeTriangles(covered, counted, &sets);
+  return Report(covered, &sets);
+}
+
+}  // namespace lowlap

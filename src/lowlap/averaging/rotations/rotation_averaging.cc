@@ -1,0 +1,259 @@
+#include "lowlap/averaging/rotations/rotation_averaging.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lowlap/averaging/internal/difference_solver.h"
+#include "lowlap/averaging/internal/sparse_solver.h"
+#include "lowlap/averaging/rotations/internal/cycle_support.h"
+#include "lowlap/core/random.h"
+#include "lowlap/geometry/rotation.h"
+
+namespace lowlap {
+namespace {
+
+Vec3 Residual(const RotationMeasurement& m,
+              const std::vector<Mat3>& rotations) {
+  return AngleAxisFromRotation(rotations[m.second].transpose() *
+                               m.second_from_first * rotations[m.first]);
+}
+
+std::vector<Mat3> ComposeAlongForest(
+    std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
+    const std::vector<DifferenceEdge>& edges,
+    const std::vector<double>& costs) {
+  std::vector<Mat3> rotations(num_views, Mat3::Identity());
+  std::vector<bool> known(num_views, false);
+  for (const std::size_t e : MinimumSpanningForest(num_views, edges, costs)) {
+    const RotationMeasurement& m = measurements[e];
+    // The walk starts every component at a view that stays the identity.
+    if (!known[m.first] && !known[m.second]) {
+      known[std::min(m.first, m.second)] = true;
+    }
+    if (known[m.first]) {
+      rotations[m.second] = m.second_from_first * rotations[m.first];
+      known[m.second] = true;
+    } else {
+      rotations[m.first] =
+          m.second_from_first.transpose() * rotations[m.second];
+      known[m.first] = true;
+    }
+  }
+  return rotations;
+}
+
+std::vector<double> NormalisedResiduals(
+    const std::vector<RotationMeasurement>& measurements,
+    const std::vector<Mat3>& rotations) {
+  std::vector<double> normalised;
+  normalised.reserve(measurements.size());
+  for (const RotationMeasurement& m : measurements) {
+    normalised.push_back(Residual(m, rotations).norm() / m.stddev_rad);
+  }
+  return normalised;
+}
+
+// 1.4826 times the median of norms of normal 3-vectors, from the given share of
+// the residuals within `reach`: the lower quartile is moved by nothing that
+// less than three in four of them do, the median is better where few are false.
+enum class ScaleFrom { kQuartile, kMedian };
+double ScaleWithin(const std::vector<double>& normalised, double reach,
+                   ScaleFrom from) {
+  std::vector<double> near;
+  for (const double r : normalised) {
+    if (r <= reach) near.push_back(r);
+  }
+  if (near.empty()) return 1;
+  const bool quartile = from == ScaleFrom::kQuartile;
+  const auto middle = near.begin() + static_cast<std::ptrdiff_t>(
+                                         near.size() / (quartile ? 4 : 2));
+  std::nth_element(near.begin(), middle, near.end());
+  constexpr double kMedianFromQuartile = 1.40;
+  return std::max(1.0,
+                  1.4826 * (quartile ? kMedianFromQuartile : 1.0) * *middle);
+}
+
+double EvidenceWeight(const RotationMeasurement& m) {
+  return 1 + std::log1p(std::max(0.0, -m.cost));
+}
+
+/// Where a search begins. L1 finds one optimum from everywhere, and trusts the
+/// stated deviations; without it the tree itself is tried.
+struct Start {
+  std::vector<double> costs;  // of the edges: the least spanning forest
+  bool with_l1 = true;
+};
+
+std::vector<Start> MakeStarts(
+    std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
+    const RotationAveragingOptions& options) {
+  std::vector<double> own, cycles, joint;
+  const CycleSupport support = ScoreCycles(num_views, measurements);
+  for (std::size_t e = 0; e < measurements.size(); ++e) {
+    // Without cycles an edge is as good as one of three times the usual error.
+    const double x =
+        support.num_cycles[e] == 0
+            ? 1.0
+            : support.error_rad[e] / std::max(3 * support.typical_rad, 1e-12);
+    own.push_back(measurements[e].cost);
+    cycles.push_back(x);
+    joint.push_back(-EvidenceWeight(measurements[e]) / (1 + x * x));
+  }
+  std::vector<Start> starts = {
+      {joint, true}, {joint, false}, {own, false}, {cycles, false}};
+  // More starts pay off where they are cheap.
+  constexpr std::size_t kBudget = 20000;
+  const std::size_t affordable =
+      std::max<std::size_t>(kBudget / (measurements.size() + 1), 2);
+  const std::size_t count =
+      std::min<std::size_t>(affordable, options.max_starts);
+  for (std::size_t n = starts.size(); n < count; ++n) {
+    Random random(options.seed, n);
+    std::vector<double> shaken = joint;
+    for (double& cost : shaken) cost *= random.Uniform();
+    starts.push_back({std::move(shaken), false});
+  }
+  if (starts.size() > count) starts.resize(count);
+  return starts;
+}
+
+// Reweighted Gauss-Newton from the rotations in `result`.
+Status Refine(const std::vector<RotationMeasurement>& measurements,
+              const std::vector<DifferenceEdge>& edges,
+              const RotationAveragingOptions& options, bool with_l1,
+              RotationAveragingResult* result) {
+  constexpr double kReach = 3.0;
+  std::vector<Mat3>& rotations = result->cam_from_world;
+  const Eigen::Index count = static_cast<Eigen::Index>(measurements.size());
+  Eigen::VectorXd weights(count);
+  Eigen::MatrixXd steps(count, 3);
+  SparseSolver solver;
+  // L1 has done its work long before half of the iterations.
+  const int num_l1_iterations = options.max_iterations / 2;
+  enum class Phase { kL1, kTighten, kPolish };
+  Phase phase = with_l1 ? Phase::kL1 : Phase::kTighten;
+  double scale = HUGE_VAL;
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    std::vector<double> normalised(measurements.size());
+    for (Eigen::Index e = 0; e < count; ++e) {
+      steps.row(e) = Residual(measurements[e], rotations);
+      normalised[e] = steps.row(e).norm() / measurements[e].stddev_rad;
+    }
+    switch (phase) {
+      case Phase::kL1:
+        scale = ScaleWithin(normalised, HUGE_VAL, ScaleFrom::kQuartile);
+        break;
+      case Phase::kTighten:
+        scale = std::min(
+            scale, ScaleWithin(normalised, 5 * scale, ScaleFrom::kQuartile));
+        break;
+      case Phase::kPolish:
+        scale = ScaleWithin(normalised, 5 * scale, ScaleFrom::kMedian);
+        break;
+    }
+    for (Eigen::Index e = 0; e < count; ++e) {
+      const double r = normalised[e] / scale;
+      weights(e) = 1.0 / std::pow(measurements[e].stddev_rad, 2);
+      if (measurements[e].trusted) continue;
+      if (phase != Phase::kL1) {
+        const double x = r / kReach;
+        weights(e) /= std::pow(1 + x * x, 2);
+      } else {
+        weights(e) /= std::max(r, 0.1);
+      }
+    }
+    // exp(-w_j) E exp(w_i) ~ log E + w_i - w_j, so w_j - w_i = log E.
+    const auto tangent =
+        SolveDifferences(rotations.size(), edges, weights, steps, &solver);
+    if (!tangent) return tl::unexpected<Error>(tangent.error());
+    double largest = 0;
+    for (std::size_t n = 0; n < rotations.size(); ++n) {
+      const Vec3 w = tangent->row(static_cast<Eigen::Index>(n));
+      largest = std::max(largest, w.norm());
+      rotations[n] = rotations[n] * RotationFromAngleAxis(w);
+    }
+    result->num_iterations = iteration + 1;
+    if (phase == Phase::kPolish && largest < options.tolerance_rad) break;
+    const bool settled = largest < 1e3 * options.tolerance_rad;
+    if (phase == Phase::kTighten && settled) phase = Phase::kPolish;
+    if (phase == Phase::kL1 &&
+        (settled || iteration + 1 >= num_l1_iterations)) {
+      phase = Phase::kTighten;
+    }
+  }
+  result->deviation_scale =
+      ScaleWithin(NormalisedResiduals(measurements, rotations), 5 * scale,
+                  ScaleFrom::kMedian);
+  return {};
+}
+
+// What a start is judged by. Evidence weighs, but only with its logarithm: a
+// relative pose of thousands of matches may be wrong as well.
+double RobustCost(const std::vector<RotationMeasurement>& measurements,
+                  const std::vector<Mat3>& rotations) {
+  const std::vector<double> normalised =
+      NormalisedResiduals(measurements, rotations);
+  double cost = 0;
+  for (std::size_t e = 0; e < measurements.size(); ++e) {
+    cost += EvidenceWeight(measurements[e]) *
+            std::log1p(normalised[e] * normalised[e]);
+  }
+  return cost;
+}
+
+}  // namespace
+
+Status RotationAveragingOptions::Validate() const {
+  if (max_iterations < 1 || max_starts < 1 || !(tolerance_rad > 0)) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "rotation averaging: iterations, starts and tolerance "
+                     "must be positive");
+  }
+  return {};
+}
+
+Result<RotationAveragingResult> AverageRotations(
+    std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
+    const RotationAveragingOptions& options) {
+  if (const Status valid = options.Validate(); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  std::vector<DifferenceEdge> edges;
+  edges.reserve(measurements.size());
+  for (const RotationMeasurement& m : measurements) {
+    if (m.first >= num_views || m.second >= num_views || m.first == m.second ||
+        !(m.stddev_rad > 0)) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "rotation averaging: a measurement needs two different "
+                       "views and a positive standard deviation");
+    }
+    edges.push_back({m.first, m.second});
+  }
+
+  RotationAveragingResult best;
+  best.cam_from_world.assign(num_views, Mat3::Identity());
+  if (measurements.empty()) return best;
+  double best_cost = HUGE_VAL;
+  for (const Start& start : MakeStarts(num_views, measurements, options)) {
+    RotationAveragingResult result;
+    result.cam_from_world =
+        ComposeAlongForest(num_views, measurements, edges, start.costs);
+    if (const Status done =
+            Refine(measurements, edges, options, start.with_l1, &result);
+        !done) {
+      return tl::unexpected<Error>(done.error());
+    }
+    const double cost = RobustCost(measurements, result.cam_from_world);
+    // A start that ends in the same place does not replace an earlier one.
+    if (cost < best_cost - 1e-6 * (1 + std::abs(cost))) {
+      best_cost = cost;
+      best = std::move(result);
+    }
+  }
+  for (const RotationMeasurement& m : measurements) {
+    best.residuals_rad.push_back(Residual(m, best.cam_from_world).norm());
+  }
+  return best;
+}
+
+}  // namespace lowlap

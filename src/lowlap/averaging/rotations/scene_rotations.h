@@ -1,0 +1,91 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "lowlap/averaging/rotations/rotation_averaging.h"
+#include "lowlap/core/ids.h"
+#include "lowlap/core/result.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+enum class OutlierReason {
+  kRotation,      // its rotation is not the averaged one
+  kDirection,     // its direction is not that of the solved centres
+  kContradicted,  // on no cycle, and what contradicts it has more evidence
+  kOpenLoop,      // the least evidence in a loop that does not close at all
+};
+
+/// "rotation", "direction", "contradicted", "open_loop".
+const char* OutlierReasonName(OutlierReason reason);
+
+/// A relative pose that was left out, and why.
+struct OutlierEdge {
+  ViewPair views;
+  OutlierReason reason = OutlierReason::kRotation;
+  /// Its distance from the solution when it was left out; 0 for kContradicted
+  /// and kOpenLoop.
+  double error_deg = 0;
+};
+
+std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers);
+
+/// Relative poses that only one loop could check, and that do not close it: one
+/// of them at least is wrong, and nothing tells which.
+struct LoopClosing {
+  std::vector<ViewPair> edges;
+  double closing_deg = 0;
+  /// What the stated deviations of the edges add up to.
+  double expected_deg = 0;
+  /// The closing is too large to be shared out among them: the one of least
+  /// evidence was left out.
+  std::optional<ViewPair> left_out;
+};
+
+/// A kept relative pose that is the only link of `views` to the others and is
+/// contradicted by relative poses of less evidence.
+struct ContestedLink {
+  ViewPair edge;
+  std::vector<ViewPair> contradictions;
+  std::vector<ViewId> views;
+};
+
+struct SceneRotations {
+  /// The largest component of what is kept.
+  std::map<ViewId, Mat3> cam_from_world;
+  std::vector<OutlierEdge> outliers;  // by views
+  std::vector<LoopClosing> loops;     // only those that were found open
+  std::vector<ContestedLink> contested;
+  /// Kept relative poses that are on no cycle, so that nothing checks them.
+  std::vector<ViewPair> unchecked;
+  double median_residual_rad = 0;
+};
+
+/// Standard deviation of the rotation about each axis, in radians: as stated,
+/// with a floor that covers what covariances leave out; a default if unknown.
+double RotationStddev(const RelativePose& pose);
+
+/// Rotations from the relative poses of a scene (AverageRotations), and which
+/// of these to believe.
+///
+/// - A relative pose whose rotation is off by more than `outlier_reach` robust
+///   standard deviations, and by more than `least_false_rad`, is left out, and
+///   the rest is averaged again.
+/// - What remains is checked by its cycles. A relative pose on no cycle (a
+///   bridge) is left out too if those left out across it have more evidence
+///   together (-log10 NFA) than it has itself: then the views beyond it are not
+///   placed by it. If they have less, it is kept, and `contested`.
+/// - Where one relative pose left out closes a loop with two or more that
+///   nothing else checks, there is one contradiction for several suspects. Up
+///   to `outlier_reach` times the expected closing error all are kept, and
+///   share it with full weights; beyond, the one of least evidence is left out.
+///   Both are listed in `loops`.
+///
+/// Errors: those of AverageRotations; kInsufficientData if nothing remains.
+Result<SceneRotations> AverageSceneRotations(
+    const Scene& scene, const RotationAveragingOptions& options,
+    double outlier_reach, double least_false_rad = 0);
+
+}  // namespace lowlap

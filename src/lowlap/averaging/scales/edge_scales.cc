@@ -1,0 +1,168 @@
+#include "lowlap/averaging/scales/internal/edge_scales.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lowlap/averaging/internal/difference_solver.h"
+#include "lowlap/averaging/internal/sparse_solver.h"
+#include "lowlap/core/median.h"
+#include "lowlap/core/union_find.h"
+
+namespace lowlap {
+namespace {
+
+std::vector<DifferenceEdge> RatioGraph(const TranslationProblem& problem) {
+  std::vector<DifferenceEdge> graph;
+  graph.reserve(problem.ratios.size());
+  for (const RatioMeasurement& ratio : problem.ratios) {
+    graph.push_back({ratio.reference, ratio.target});
+  }
+  return graph;
+}
+
+void UpdateResiduals(const TranslationProblem& problem, EdgeScales* scales) {
+  scales->normalised_residuals.resize(problem.ratios.size());
+  for (std::size_t r = 0; r < problem.ratios.size(); ++r) {
+    const RatioMeasurement& ratio = problem.ratios[r];
+    scales->normalised_residuals[r] =
+        (scales->log_length[ratio.target] -
+         scales->log_length[ratio.reference] - ratio.log_ratio) /
+        ratio.stddev;
+  }
+}
+
+// What a start is judged by. Evidence weighs, but only with its logarithm.
+double RobustCost(const TranslationProblem& problem, const EdgeScales& scales) {
+  double cost = 0;
+  for (std::size_t r = 0; r < problem.ratios.size(); ++r) {
+    const double residual = scales.normalised_residuals[r];
+    cost += (1 + std::log1p(std::max(0.0, -problem.ratios[r].log10_nfa))) *
+            std::log1p(residual * residual);
+  }
+  return cost;
+}
+
+enum class Loss { kAbsolute, kGemanMcClure };
+
+/// Reweighted least squares on one problem.
+class Averaging {
+ public:
+  explicit Averaging(const TranslationProblem& problem)
+      : problem_(problem), graph_(RatioGraph(problem)) {
+    const auto count = static_cast<Eigen::Index>(problem.ratios.size());
+    measurements_.resize(count, 1);
+    weights_.resize(count);
+    for (Eigen::Index r = 0; r < count; ++r) {
+      measurements_(r, 0) = problem.ratios[r].log_ratio;
+    }
+  }
+
+  /// Goes on from `scales` until no length changes.
+  Status Run(Loss loss, int max_iterations, EdgeScales* scales) {
+    // The absolute residuals only serve as a start.
+    const double tolerance = loss == Loss::kAbsolute ? 1e-3 : 1e-11;
+    for (int iteration = 0; iteration < max_iterations; ++iteration) {
+      SetWeights(loss, scales->normalised_residuals);
+      const auto solution = SolveDifferences(problem_.edges.size(), graph_,
+                                             weights_, measurements_, &solver_);
+      if (!solution) return tl::unexpected<Error>(solution.error());
+      double change = 0;
+      for (std::size_t e = 0; e < problem_.edges.size(); ++e) {
+        const double value = (*solution)(static_cast<Eigen::Index>(e), 0);
+        change = std::max(change, std::abs(value - scales->log_length[e]));
+        scales->log_length[e] = value;
+      }
+      UpdateResiduals(problem_, scales);
+      ++scales->num_iterations;
+      if (change < tolerance) break;
+    }
+    return {};
+  }
+
+ private:
+  void SetWeights(Loss loss, const std::vector<double>& residuals) {
+    std::vector<double> sizes;
+    sizes.reserve(residuals.size());
+    for (const double r : residuals) sizes.push_back(std::abs(r));
+    const double scale = std::max(1.0, 1.4826 * Median(std::move(sizes)));
+    for (Eigen::Index r = 0; r < weights_.size(); ++r) {
+      const double x = std::abs(residuals[r]) / scale;
+      double factor = 0;
+      if (loss == Loss::kAbsolute) {
+        factor = 1 / std::max(x, 0.1);
+      } else {
+        constexpr double kReach = 3.0;
+        factor = 1 / std::pow(1 + x * x / (kReach * kReach), 2);
+      }
+      weights_(r) = factor / std::pow(problem_.ratios[r].stddev, 2);
+    }
+  }
+
+  const TranslationProblem& problem_;
+  std::vector<DifferenceEdge> graph_;
+  Eigen::MatrixXd measurements_;
+  Eigen::VectorXd weights_;
+  SparseSolver solver_;
+};
+
+}  // namespace
+
+EdgeScales ChainEdgeScales(const TranslationProblem& problem) {
+  const std::size_t num_edges = problem.edges.size();
+  EdgeScales scales;
+  scales.log_length.assign(num_edges, 0.0);
+  UnionFind components(num_edges);
+  std::vector<double> costs;
+  costs.reserve(problem.ratios.size());
+  for (const RatioMeasurement& ratio : problem.ratios) {
+    components.Union(ratio.reference, ratio.target);
+    costs.push_back(ratio.log10_nfa);
+  }
+  scales.component = components.Labels();
+  std::vector<bool> known(num_edges, false);
+  for (const std::size_t r :
+       MinimumSpanningForest(num_edges, RatioGraph(problem), costs)) {
+    const RatioMeasurement& ratio = problem.ratios[r];
+    if (!known[ratio.reference] && !known[ratio.target]) {
+      known[std::min(ratio.reference, ratio.target)] = true;
+    }
+    if (known[ratio.reference]) {
+      scales.log_length[ratio.target] =
+          scales.log_length[ratio.reference] + ratio.log_ratio;
+      known[ratio.target] = true;
+    } else {
+      scales.log_length[ratio.reference] =
+          scales.log_length[ratio.target] - ratio.log_ratio;
+      known[ratio.reference] = true;
+    }
+  }
+  UpdateResiduals(problem, &scales);
+  return scales;
+}
+
+Result<EdgeScales> AverageEdgeScales(const TranslationProblem& problem,
+                                     int max_iterations) {
+  // L1 reweighting gets near soon, and then goes on for long.
+  constexpr int kL1Iterations = 15;
+  // No spanning forest of so many ratios is free of false ones.
+  constexpr std::size_t kMaxRatiosOfChainStart = 10'000;
+
+  EdgeScales from_chain = ChainEdgeScales(problem);
+  if (problem.ratios.empty()) return from_chain;
+  Averaging averaging(problem);
+  EdgeScales from_l1 = from_chain;
+  Status status = averaging.Run(Loss::kAbsolute, kL1Iterations, &from_l1);
+  if (status) {
+    status = averaging.Run(Loss::kGemanMcClure, max_iterations, &from_l1);
+  }
+  if (!status) return tl::unexpected<Error>(status.error());
+  if (problem.ratios.size() > kMaxRatiosOfChainStart) return from_l1;
+  status = averaging.Run(Loss::kGemanMcClure, max_iterations, &from_chain);
+  if (!status) return tl::unexpected<Error>(status.error());
+  const double chain_cost = RobustCost(problem, from_chain);
+  const double l1_cost = RobustCost(problem, from_l1);
+  return l1_cost < chain_cost - 1e-6 * (1 + chain_cost) ? from_l1 : from_chain;
+}
+
+}  // namespace lowlap

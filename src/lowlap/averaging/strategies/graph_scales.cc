@@ -1,0 +1,275 @@
+#include "lowlap/averaging/strategies/internal/graph_scales.h"
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "lowlap/averaging/scales/internal/center_solver.h"
+#include "lowlap/averaging/scales/internal/edge_groups.h"
+#include "lowlap/averaging/scales/internal/edge_scales.h"
+#include "lowlap/averaging/scales/internal/refine_centers.h"
+#include "lowlap/averaging/strategies/internal/component_closure.h"
+
+namespace lowlap {
+namespace {
+
+// The centres of a group's views in the group's own gauge; other entries are
+// unspecified.
+Result<std::vector<Vec3>> SolveGroup(const TranslationProblem& problem,
+                                     const EdgeScales& scales,
+                                     const EdgeGroup& group) {
+  constexpr double kAlongLog = 0.02;
+  std::vector<CenterEdge> edges;
+  edges.reserve(group.edges.size());
+  for (const std::size_t e : group.edges) {
+    const DirectionEdge& edge = problem.edges[e];
+    edges.push_back({edge.first, edge.second, edge.direction_in_world,
+                     std::exp(scales.log_length[e]), edge.stddev_rad,
+                     kAlongLog});
+  }
+  return SolveCenters(problem.views.size(), edges);
+}
+
+/// One component under construction.
+class Growth {
+ public:
+  Growth(const TranslationProblem& problem, const EdgeScales& scales,
+         const std::vector<EdgeGroup>& groups)
+      : problem_(problem),
+        scales_(scales),
+        groups_(groups),
+        placed_(problem.views.size(), false),
+        centers_(problem.views.size(), Vec3::Zero()),
+        used_(groups.size(), false) {}
+
+  const std::vector<bool>& placed() const { return placed_; }
+  const std::vector<Vec3>& centers() const { return centers_; }
+  std::vector<Vec3>* mutable_centers() { return &centers_; }
+
+  Status Start(std::size_t g) {
+    const auto local = SolveGroup(problem_, scales_, groups_[g]);
+    if (!local) return tl::unexpected<Error>(local.error());
+    used_[g] = true;
+    for (const std::size_t view : groups_[g].views) {
+      Place(view, (*local)[view]);
+    }
+    return {};
+  }
+
+  /// Adds groups and views until directions alone fix no further scale.
+  Status Grow() {
+    for (bool grown = true; grown;) {
+      grown = false;
+      for (std::size_t g = 0; g < groups_.size(); ++g) {
+        if (used_[g]) continue;
+        const auto joined = JoinGroup(g);
+        if (!joined) return tl::unexpected<Error>(joined.error());
+        grown = grown || *joined;
+      }
+      if (!grown) grown = IntersectOneView();
+      if (!grown) {
+        const auto closed = CloseGroups();
+        if (!closed) return tl::unexpected<Error>(closed.error());
+        grown = *closed;
+      }
+    }
+    return {};
+  }
+
+ private:
+  void Place(std::size_t view, const Vec3& center) {
+    placed_[view] = true;
+    centers_[view] = center;
+  }
+
+  // A group that shares two or more views gets its scale from their distances.
+  Result<bool> JoinGroup(std::size_t g) {
+    std::vector<std::size_t> shared;
+    bool adds_views = false;
+    for (const std::size_t view : groups_[g].views) {
+      if (placed_[view]) {
+        shared.push_back(view);
+      } else {
+        adds_views = true;
+      }
+    }
+    if (!adds_views || shared.size() < 2) return false;
+    used_[g] = true;
+    const auto local = SolveGroup(problem_, scales_, groups_[g]);
+    if (!local) return tl::unexpected<Error>(local.error());
+    Vec3 local_mean = Vec3::Zero(), mean = Vec3::Zero();
+    for (const std::size_t view : shared) {
+      local_mean += (*local)[view] / static_cast<double>(shared.size());
+      mean += centers_[view] / static_cast<double>(shared.size());
+    }
+    double dot = 0, square = 0;
+    for (const std::size_t view : shared) {
+      const Vec3 offset = (*local)[view] - local_mean;
+      dot += offset.dot(centers_[view] - mean);
+      square += offset.squaredNorm();
+    }
+    if (!(square > 0) || !(dot > 0)) return false;
+    const double scale = dot / square;
+    for (const std::size_t view : groups_[g].views) {
+      if (!placed_[view]) {
+        Place(view, mean + scale * ((*local)[view] - local_mean));
+      }
+    }
+    return true;
+  }
+
+  // Groups that fix one another's scale around a ring.
+  Result<bool> CloseGroups() {
+    // The closure is dense; the largest groups come first.
+    constexpr std::size_t kMaxGroups = 150;
+    Body frame;
+    frame.stddev_rad = 0;
+    for (std::size_t view = 0; view < placed_.size(); ++view) {
+      if (!placed_[view]) continue;
+      frame.views.push_back(view);
+      frame.centers.push_back(centers_[view]);
+    }
+    std::vector<Body> bodies = {frame};
+    std::vector<std::size_t> group_of = {0};
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (used_[g] || bodies.size() > kMaxGroups) continue;
+      const auto local = SolveGroup(problem_, scales_, groups_[g]);
+      if (!local) return tl::unexpected<Error>(local.error());
+      Body body;
+      body.stddev_rad = 0;
+      for (const std::size_t e : groups_[g].edges) {
+        body.stddev_rad =
+            std::max(body.stddev_rad, problem_.edges[e].stddev_rad);
+      }
+      body.views = groups_[g].views;
+      for (const std::size_t view : body.views) {
+        body.centers.push_back((*local)[view]);
+      }
+      bodies.push_back(std::move(body));
+      group_of.push_back(g);
+    }
+    const auto placements = CloseBodies(bodies);
+    bool grown = false;
+    for (std::size_t b = 1; b < bodies.size(); ++b) {
+      if (!placements[b]) continue;
+      used_[group_of[b]] = true;
+      for (std::size_t n = 0; n < bodies[b].views.size(); ++n) {
+        const std::size_t view = bodies[b].views[n];
+        if (placed_[view]) continue;
+        Place(view, placements[b]->scale * bodies[b].centers[n] +
+                        placements[b]->translation);
+        grown = true;
+      }
+    }
+    return grown;
+  }
+
+  // The best-conditioned view that two or more directions from placed views
+  // determine.
+  bool IntersectOneView() {
+    double best_strength = 0;
+    std::size_t best_view = 0;
+    Vec3 best_center = Vec3::Zero();
+    for (std::size_t view = 0; view < placed_.size(); ++view) {
+      if (placed_[view]) continue;
+      Mat3 normal = Mat3::Zero();
+      Vec3 rhs = Vec3::Zero();
+      double stddev = 0;
+      int count = 0;
+      for (const DirectionEdge& edge : problem_.edges) {
+        const std::optional<std::size_t> other = OtherEnd(edge, view);
+        if (!other || !placed_[*other]) continue;
+        const Mat3 across =
+            Mat3::Identity() -
+            edge.direction_in_world * edge.direction_in_world.transpose();
+        normal += across;
+        rhs += across * centers_[*other];
+        stddev = std::max(stddev, edge.stddev_rad);
+        ++count;
+      }
+      if (count < 2) continue;
+      const double weakest =
+          Eigen::SelfAdjointEigenSolver<Mat3>(normal).eigenvalues()(0);
+      // Two directions at angle a have the least eigenvalue a^2 / 2; ten
+      // standard deviations apart, the intersection is good to a tenth.
+      constexpr double kSeparation = 10.0;
+      const double strength =
+          weakest / (0.5 * kSeparation * kSeparation * stddev * stddev);
+      if (strength <= std::max(1.0, best_strength)) continue;
+      const Vec3 center = normal.inverse() * rhs;
+      if (!AllForward(view, center)) continue;
+      best_strength = strength;
+      best_view = view;
+      best_center = center;
+    }
+    if (best_strength == 0) return false;
+    Place(best_view, best_center);
+    return true;
+  }
+
+  static std::optional<std::size_t> OtherEnd(const DirectionEdge& edge,
+                                             std::size_t view) {
+    if (edge.first == view) return edge.second;
+    if (edge.second == view) return edge.first;
+    return std::nullopt;
+  }
+
+  bool AllForward(std::size_t view, const Vec3& center) const {
+    for (const DirectionEdge& edge : problem_.edges) {
+      const std::optional<std::size_t> other = OtherEnd(edge, view);
+      if (!other || !placed_[*other]) continue;
+      const double sign = edge.second == view ? 1 : -1;
+      if (sign * edge.direction_in_world.dot(center - centers_[*other]) <= 0) {
+        return false;
+      }
+    }
+    return true;
+  }
+
+  const TranslationProblem& problem_;
+  const EdgeScales& scales_;
+  const std::vector<EdgeGroup>& groups_;
+  std::vector<bool> placed_;
+  std::vector<Vec3> centers_;
+  std::vector<bool> used_;
+};
+
+}  // namespace
+
+Result<TranslationSolution> GraphScalesAverager::Solve(
+    const TranslationProblem& problem, const RunContext&) const {
+  if (const Status valid = ValidateProblem(problem); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  const std::size_t num_views = problem.views.size();
+  const auto scales = AverageEdgeScales(problem);
+  if (!scales) return tl::unexpected<Error>(scales.error());
+  const std::vector<EdgeGroup> groups = RankedEdgeGroups(problem, *scales);
+
+  TranslationSolution solution;
+  solution.num_iterations = scales->num_iterations;
+  solution.component.assign(num_views, -1);
+  solution.center_in_world.assign(num_views, Vec3::Zero());
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    const bool starts_here = std::any_of(
+        groups[g].views.begin(), groups[g].views.end(),
+        [&](std::size_t view) { return solution.component[view] < 0; });
+    if (!starts_here) continue;
+    Growth growth(problem, *scales, groups);
+    Status status = growth.Start(g);
+    if (status) status = growth.Grow();
+    if (!status) return tl::unexpected<Error>(status.error());
+    RefineCenters(problem, growth.placed(), growth.mutable_centers());
+    for (std::size_t view = 0; view < num_views; ++view) {
+      if (!growth.placed()[view] || solution.component[view] >= 0) continue;
+      solution.component[view] = solution.num_components;
+      solution.center_in_world[view] = growth.centers()[view];
+    }
+    ++solution.num_components;
+  }
+  return solution;
+}
+
+}  // namespace lowlap

@@ -1,0 +1,58 @@
+#include "lowlap/averaging/strategies/internal/scale_chain.h"
+
+#include <cmath>
+
+#include "lowlap/averaging/internal/difference_solver.h"
+#include "lowlap/averaging/scales/internal/edge_groups.h"
+#include "lowlap/averaging/scales/internal/edge_scales.h"
+
+namespace lowlap {
+
+Result<TranslationSolution> ScaleChainAverager::Solve(
+    const TranslationProblem& problem, const RunContext&) const {
+  if (const Status valid = ValidateProblem(problem); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  const std::size_t num_views = problem.views.size();
+  TranslationSolution solution;
+  solution.component.assign(num_views, -1);
+  solution.center_in_world.assign(num_views, Vec3::Zero());
+  const EdgeScales scales = ChainEdgeScales(problem);
+  for (const EdgeGroup& group : RankedEdgeGroups(problem, scales)) {
+    std::vector<DifferenceEdge> graph;
+    std::vector<double> costs;
+    for (const std::size_t e : group.edges) {
+      graph.push_back({problem.edges[e].first, problem.edges[e].second});
+      costs.push_back(problem.edges[e].stddev_rad);
+    }
+    std::vector<Vec3> centers(num_views, Vec3::Zero());
+    std::vector<bool> known(num_views, false);
+    for (const std::size_t n : MinimumSpanningForest(num_views, graph, costs)) {
+      const std::size_t e = group.edges[n];
+      const DirectionEdge& edge = problem.edges[e];
+      if (!known[edge.first] && !known[edge.second]) {
+        known[std::min(edge.first, edge.second)] = true;
+      }
+      const Vec3 step =
+          std::exp(scales.log_length[e]) * edge.direction_in_world;
+      if (known[edge.first]) {
+        centers[edge.second] = centers[edge.first] + step;
+        known[edge.second] = true;
+      } else {
+        centers[edge.first] = centers[edge.second] - step;
+        known[edge.first] = true;
+      }
+    }
+    bool adds_views = false;
+    for (const std::size_t view : group.views) {
+      if (solution.component[view] >= 0) continue;
+      solution.component[view] = solution.num_components;
+      solution.center_in_world[view] = centers[view];
+      adds_views = true;
+    }
+    if (adds_views) ++solution.num_components;
+  }
+  return solution;
+}
+
+}  // namespace lowlap

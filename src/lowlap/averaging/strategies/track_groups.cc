@@ -1,0 +1,126 @@
+#include "lowlap/averaging/strategies/internal/track_groups.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace lowlap {
+namespace {
+
+/// Grows one group after the other; what a group left is told by its stamp.
+class GroupGrower {
+ public:
+  GroupGrower(std::size_t num_views, const std::vector<TrackRays>& tracks,
+              std::size_t min_views, std::size_t min_points)
+      : tracks_(tracks),
+        min_points_(min_points),
+        tracks_of_view_(num_views),
+        views_(num_views),
+        sightings_(tracks.size()) {
+    for (std::size_t t = 0; t < tracks.size(); ++t) {
+      if (tracks[t].observations.size() < min_views) continue;
+      for (const RayObservation& seen : tracks[t].observations) {
+        tracks_of_view_[seen.view].push_back(t);
+      }
+    }
+  }
+
+  std::vector<std::size_t> Grow(std::size_t first, std::size_t second) {
+    ++stamp_;
+    group_ = {first, second};
+    Fresh(first).is_in = Fresh(second).is_in = true;
+    for (std::size_t n = 0; n < group_.size(); ++n) Visit(group_[n]);
+    std::sort(group_.begin(), group_.end());
+    return std::move(group_);
+  }
+
+ private:
+  struct ViewState {
+    std::size_t stamp = 0;
+    bool is_in = false;
+    std::size_t num_known = 0;
+  };
+  struct Sightings {
+    std::size_t stamp = 0;
+    int count = 0;
+  };
+
+  ViewState& Fresh(std::size_t view) {
+    if (views_[view].stamp != stamp_) views_[view] = {stamp_, false, 0};
+    return views_[view];
+  }
+
+  void Visit(std::size_t view) {
+    for (const std::size_t t : tracks_of_view_[view]) {
+      if (sightings_[t].stamp != stamp_) sightings_[t] = {stamp_, 0};
+      if (++sightings_[t].count != 2) continue;
+      for (const RayObservation& seen : tracks_[t].observations) {
+        ViewState& state = Fresh(seen.view);
+        if (++state.num_known >= min_points_ && !state.is_in) {
+          state.is_in = true;
+          group_.push_back(seen.view);
+        }
+      }
+    }
+  }
+
+  const std::vector<TrackRays>& tracks_;
+  std::size_t min_points_;
+  std::vector<std::vector<std::size_t>> tracks_of_view_;
+  std::vector<ViewState> views_;
+  std::vector<Sightings> sightings_;
+  std::vector<std::size_t> group_;
+  std::size_t stamp_ = 0;
+};
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> GroupViewsByTracks(
+    std::size_t num_views, const std::vector<TrackRays>& tracks,
+    std::size_t min_views, std::size_t min_points) {
+  std::map<std::pair<std::size_t, std::size_t>, std::size_t> shared;
+  for (const TrackRays& track : tracks) {
+    if (track.observations.size() < min_views) continue;
+    for (const RayObservation& a : track.observations) {
+      for (const RayObservation& b : track.observations) {
+        if (a.view < b.view) ++shared[{a.view, b.view}];
+      }
+    }
+  }
+  struct Seed {
+    std::pair<std::size_t, std::size_t> views;
+    std::size_t num_shared;
+  };
+  std::vector<Seed> seeds;
+  for (const auto& [views, count] : shared) {
+    if (count >= min_points) seeds.push_back({views, count});
+  }
+  std::stable_sort(
+      seeds.begin(), seeds.end(),
+      [](const Seed& a, const Seed& b) { return a.num_shared > b.num_shared; });
+
+  GroupGrower grower(num_views, tracks, min_views, min_points);
+  std::vector<std::vector<std::size_t>> groups;
+  std::vector<std::vector<std::size_t>> groups_of_view(num_views);
+  for (const Seed& seed : seeds) {
+    const auto& of_first = groups_of_view[seed.views.first];
+    const auto& of_second = groups_of_view[seed.views.second];
+    const bool is_grouped =
+        std::any_of(of_first.begin(), of_first.end(), [&](std::size_t group) {
+          return std::count(of_second.begin(), of_second.end(), group) > 0;
+        });
+    if (is_grouped) continue;
+    std::vector<std::size_t> views =
+        grower.Grow(seed.views.first, seed.views.second);
+    for (const std::size_t view : views) {
+      groups_of_view[view].push_back(groups.size());
+    }
+    groups.push_back(std::move(views));
+  }
+  std::stable_sort(
+      groups.begin(), groups.end(),
+      [](const auto& a, const auto& b) { return a.size() > b.size(); });
+  return groups;
+}
+
+}  // namespace lowlap

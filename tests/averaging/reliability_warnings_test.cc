@@ -1,0 +1,163 @@
+#include "lowlap/averaging/reliability_warnings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/averaging/scene_poses.h"
+#include "lowlap/synthetic/synthetic_scene.h"
+
+namespace lowlap {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+SyntheticScene SceneWithTrueRatios(const std::string& pairs) {
+  SyntheticOptions options;
+  options.num_views = 8;
+  options.pairs = pairs;
+  SyntheticScene synthetic = *Simulate(options);
+  synthetic.scene.scale_ratios = TrueSolution(synthetic).scale_ratios;
+  for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
+    ratio.verdict = RatioVerdict::kMeaningful;
+    ratio.log10_nfa = -50;
+    ratio.log_ratio_stddev = 0.01;
+    ratio.lines.inliers = 20;
+  }
+  for (auto& entry : synthetic.scene.relative_poses) {
+    entry.second.log10_nfa = -100;
+  }
+  return synthetic;
+}
+
+std::vector<ViewDoubt> DoubtsOf(Scene scene) {
+  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
+  EXPECT_TRUE(summary);
+  return summary ? summary->doubts : std::vector<ViewDoubt>();
+}
+
+ScaleRatio* FindRatio(const ViewTriplet& views, Scene* scene) {
+  for (ScaleRatio& ratio : scene->scale_ratios) {
+    if (ratio.views == views) return &ratio;
+  }
+  return nullptr;
+}
+
+TEST(ViewDoubts, NoneWhereAllIsWell) {
+  for (const char* pairs : {"chain", "cycle", "window:3"}) {
+    EXPECT_THAT(DoubtsOf(SceneWithTrueRatios(pairs).scene), IsEmpty()) << pairs;
+  }
+}
+
+TEST(ViewDoubts, NoneForOneWrongRelativePoseOfMany) {
+  SyntheticScene synthetic = SceneWithTrueRatios("window:3");
+  RelativePose& wrong = synthetic.scene.relative_poses.at({3, 5});
+  wrong.direction = -wrong.direction;
+  EXPECT_THAT(DoubtsOf(synthetic.scene), IsEmpty());
+}
+
+TEST(ViewDoubts, AViewThatItsRelativePosesContradict) {
+  const SyntheticScene synthetic = SceneWithTrueRatios("window:3");
+  std::map<ViewId, Mat3> rotations;
+  TranslationSolution solution;
+  for (const auto& [view, pose] : synthetic.true_poses) {
+    rotations[view] = pose.rotation;
+    solution.center_in_world.push_back(pose.center);
+    solution.component.push_back(0);
+  }
+  solution.num_components = 1;
+  const TranslationProblem problem =
+      MakeTranslationProblem(synthetic.scene, rotations, {});
+  EXPECT_THAT(FindViewDoubts(synthetic.scene, problem, solution, {}),
+              IsEmpty());
+
+  const Vec3 baseline =
+      solution.center_in_world[5] - solution.center_in_world[4];
+  solution.center_in_world[4] +=
+      0.3 * baseline.unitOrthogonal() * baseline.norm();
+  const auto doubts = FindViewDoubts(synthetic.scene, problem, solution, {});
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_EQ(doubts[0].reason, DoubtReason::kContradictedPoses);
+  EXPECT_THAT(doubts[0].views, ElementsAre(4));
+  EXPECT_THAT(doubts[0].against, Contains(ViewPair{4, 5}));
+}
+
+TEST(ViewDoubts, ViewsThatHangOnAWeakRatio) {
+  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  FindRatio({3, 4, 5}, &synthetic.scene)->log10_nfa = -1;
+  const auto summary =
+      SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->num_placed, 8);
+  ASSERT_EQ(summary->doubts.size(), 1u);
+  EXPECT_EQ(summary->doubts[0].reason, DoubtReason::kWeakScale);
+  EXPECT_THAT(summary->doubts[0].views, ElementsAre(5, 6, 7));
+  EXPECT_THAT(summary->doubts[0].ratios, ElementsAre(ViewTriplet{3, 4, 5}));
+  EXPECT_TRUE(summary->IsDoubtful());
+  EXPECT_THAT(PoseWarnings(*summary, synthetic.scene),
+              Contains(HasSubstr("only weak scale ratios join them")));
+}
+
+TEST(ViewDoubts, AWeakRatioBesideStrongOnesIsNoDoubt) {
+  SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+  FindRatio({3, 4, 5}, &synthetic.scene)->log10_nfa = -1;
+  EXPECT_THAT(DoubtsOf(synthetic.scene), IsEmpty());
+}
+
+// Triangles 0-1-2-... and 4-...-7 that meet in view 4 alone, where one ratio
+// says something else than the others.
+TEST(ViewDoubts, RatiosAcrossOneCameraThatDisagree) {
+  SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+  Scene& scene = synthetic.scene;
+  scene.relative_poses.erase({3, 5});
+  scene.scale_ratios.erase(
+      std::remove_if(scene.scale_ratios.begin(), scene.scale_ratios.end(),
+                     [&](const ScaleRatio& ratio) {
+                       const ViewTriplet& v = ratio.views;
+                       return !scene.FindRelativePose(v.first, v.middle) ||
+                              !scene.FindRelativePose(v.middle, v.last);
+                     }),
+      scene.scale_ratios.end());
+  EXPECT_THAT(DoubtsOf(scene), IsEmpty());
+
+  for (const ViewTriplet& views :
+       {ViewTriplet{3, 4, 5}, ViewTriplet{2, 4, 6}}) {
+    FindRatio(views, &scene)->log_ratio += 0.7;
+  }
+  const auto doubts = DoubtsOf(scene);
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_EQ(doubts[0].reason, DoubtReason::kContradictedRatios);
+  EXPECT_THAT(doubts[0].views, ElementsAre(5, 6, 7));
+}
+
+TEST(ViewDoubts, AViewThatLostItsFeatures) {
+  SyntheticScene synthetic = SceneWithTrueRatios("window:3");
+  Scene scene = TrueSolution(synthetic);
+  EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
+  const auto lose = [](ViewId view, auto* observations) {
+    observations->erase(
+        std::remove_if(observations->begin(), observations->end(),
+                       [&](const auto& seen) { return seen.view == view; }),
+        observations->end());
+  };
+  for (auto& entry : scene.structure) lose(3, &entry.second.observations);
+  for (auto& entry : scene.line_structure) {
+    lose(3, &entry.second.observations);
+  }
+  const auto doubts = FindLostFeatures(scene);
+  ASSERT_EQ(doubts.size(), 1u);
+  EXPECT_EQ(doubts[0].reason, DoubtReason::kLostFeatures);
+  EXPECT_THAT(doubts[0].views, ElementsAre(3));
+  EXPECT_EQ(doubts[0].share, 0);
+  // Where the camera is not known, landmarks cannot have observations.
+  scene.views.at(3).intrinsic_id = kInvalidId;
+  EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
+}
+
+}  // namespace
+}  // namespace lowlap
