@@ -4,7 +4,7 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
-#include "lowlap/averaging/strategies.h"
+#include "lowlap/averaging/averager_registry.h"
 #include "lowlap/pipeline/output_folder.h"
 #include "lowlap/study/ablation.h"
 
@@ -23,11 +23,10 @@ struct Flags {
 int RunAblation(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
   AblationOptions options;
-  options.solve.poses.strategy = flags.strategy;
   options.thresholds_px = flags.thresholds_px;
-  if (const auto known = MakeTranslationAverager(flags.strategy); !known) {
-    return Fail(known.error());
-  }
+  const auto averager = AveragerRegistry::WithBuiltIns().Make(flags.strategy);
+  if (!averager) return Fail(averager.error());
+  options.solve.poses.averager = *averager;
   if (const Status valid = options.Validate(); !valid) {
     return Fail(valid.error());
   }
@@ -74,10 +73,7 @@ void AddAblate(CLI::App* program, Action* action) {
   AddTruthFlag(command, &flags->ground_truth)->required();
   command->add_option("-o,--output,--outdir", flags->output,
                       "Folder for the tables and plots; none if not given");
-  command
-      ->add_option("--strategy", flags->strategy,
-                   "How poses are composed, as in solve")
-      ->capture_default_str();
+  AddStrategyFlag(command, &flags->strategy);
   command
       ->add_option("--thresholds", flags->thresholds_px,
                    "Fixed inlier thresholds in pixels, separated by commas")

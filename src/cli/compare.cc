@@ -68,12 +68,7 @@ void AddCompare(CLI::App* program, Action* action) {
       ->add_option("-o,--output,--outdir", flags->output,
                    "Folder for the tables and plots")
       ->required();
-  command
-      ->add_option("--strategies", flags->strategies,
-                   "Strategies, separated by commas; all: every one there is. "
-                   "1dsfm+NAME runs NAME behind the filter of 1DSfM")
-      ->delimiter(',')
-      ->capture_default_str();
+  AddStrategiesFlag(command, &flags->strategies)->default_str("all");
   command
       ->add_option("--reference", flags->reference,
                    "The strategy whose cameras the others are compared with "

@@ -49,7 +49,8 @@ void PrintContent(const Scene& scene) {
               scene.coplanar_pairs.size());
 }
 
-void PrintConnections(const RigidityReport& report, const Scene& scene) {
+void PrintConnections(const RigidityReport& report, const ViewGraph& graph,
+                      const Scene& scene) {
   if (!report.isolated_views.empty()) {
     std::printf("views without a relative pose: %s\n",
                 Names(scene, report.isolated_views).c_str());
@@ -60,6 +61,11 @@ void PrintConnections(const RigidityReport& report, const Scene& scene) {
     for (const auto& component : report.connected_components) {
       std::printf("  %s\n", Names(scene, component).c_str());
     }
+  }
+  const std::vector<ViewId> articulation = ArticulationViews(graph);
+  if (!articulation.empty()) {
+    std::printf("views without which their part falls apart: %s\n",
+                Names(scene, articulation).c_str());
   }
 }
 
@@ -78,7 +84,7 @@ void PrintGroups(const RigidityReport& report, const Scene& scene) {
     std::printf("  group %zu: %s\n", g + 1,
                 Names(scene, report.groups[g].views).c_str());
   }
-  for (const Hinge& hinge : report.hinges) {
+  for (const ArticulationView& hinge : report.articulation_views) {
     std::string groups;
     for (const std::size_t g : hinge.groups) {
       groups += (groups.empty() ? "" : ", ") + std::to_string(g + 1);
@@ -96,7 +102,8 @@ int Inspect(const Flags& flags) {
   const auto loaded = LoadScene(flags.input, context, &stages);
   if (!loaded) return Fail(loaded.error());
   const Scene& scene = loaded->scene;
-  const RigidityReport by_directions = AnalyzeRigidity(ViewGraph(scene));
+  const ViewGraph graph(scene);
+  const RigidityReport by_directions = AnalyzeRigidity(graph);
   constexpr int kMinSharedTracks = 30;
   const RigidityReport by_triplets =
       AnalyzeTripletRigidity(scene, kMinSharedTracks);
@@ -111,7 +118,7 @@ int Inspect(const Flags& flags) {
   }
   PrintContent(scene);
   if (scene.relative_poses.empty()) return 0;
-  PrintConnections(by_directions, scene);
+  PrintConnections(by_directions, graph, scene);
   std::printf(
       "\nviews that share a scale through the directions of all relative "
       "poses:\n");

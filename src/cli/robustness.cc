@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/result_file.h"
+#include "cli/solve_flags.h"
 #include "lowlap/pipeline/output_folder.h"
 #include "lowlap/report/table_text.h"
 #include "lowlap/study/robustness/output.h"
@@ -117,10 +118,7 @@ void AddRobustness(CLI::App* program, Action* action) {
                    "What gets worse, separated by commas; all if left out: " +
                        Joined(RobustnessScenarioNames()))
       ->delimiter(',');
-  command
-      ->add_option("--strategies", o.strategies,
-                   "Strategies, separated by commas; all if left out")
-      ->delimiter(',');
+  AddStrategiesFlag(command, &o.strategies);
   command->add_option("--seeds", o.num_seeds, "Simulations per value")
       ->capture_default_str();
   command

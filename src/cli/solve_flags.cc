@@ -7,8 +7,8 @@
 
 #include "cli/command.h"
 #include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/averaging/averager_registry.h"
 #include "lowlap/averaging/pose_warnings.h"
-#include "lowlap/averaging/strategies.h"
 #include "lowlap/pipeline/output_folder.h"
 #include "third_party_adapters/onedsfm/problem.h"
 #include "third_party_adapters/scene_formats.h"
@@ -147,20 +147,43 @@ Result<ScaleOptions> MakeScaleOptions(const ScaleFlags& flags) {
   return options;
 }
 
+void AddStrategyFlag(CLI::App* command, std::string* strategy) {
+  command
+      ->add_option("--strategy", *strategy,
+                   "How poses are composed; the strategies and their options "
+                   "are listed below")
+      ->check(CLI::Validator(
+          [](const std::string& request) {
+            const auto made = AveragerRegistry::WithBuiltIns().Make(request);
+            return made ? std::string() : made.error().message;
+          },
+          "NAME[:key=value,...]"))
+      ->capture_default_str();
+  command->footer(AveragerRegistry::WithBuiltIns().Describe());
+}
+
+CLI::Option* AddStrategiesFlag(CLI::App* command,
+                               std::vector<std::string>* strategies) {
+  command->footer(AveragerRegistry::WithBuiltIns().Describe());
+  return command
+      ->add_option_function<std::vector<std::string>>(
+          "--strategies",
+          [strategies](const std::vector<std::string>& lists) {
+            strategies->clear();
+            for (const std::string& list : lists) {
+              for (std::string& request : SplitRequests(list)) {
+                strategies->push_back(std::move(request));
+              }
+            }
+          },
+          "Strategies, separated by commas (those before key=value belong to "
+          "one strategy); all: every one that is listed below")
+      ->type_name("NAME[:key=value,...],...");
+}
+
 void AddSolveFlags(CLI::App* command, SolveFlags* flags) {
   AddScaleFlags(command, &flags->scale);
-  command
-      ->add_option("--strategy", flags->strategy,
-                   "How poses are composed: graph (average over all ratios), "
-                   "chain (the paper's composition), or another strategy of "
-                   "'lowlap compare', such as lud or 1dsfm+lud")
-      ->check(CLI::Validator(
-          [](const std::string& name) {
-            const auto averager = MakeTranslationAverager(name);
-            return averager ? std::string() : averager.error().message;
-          },
-          "NAME"))
-      ->capture_default_str();
+  AddStrategyFlag(command, &flags->strategy);
   AddAdjustFlags(command, flags);
   AddRefinementFlag(command, &flags->refine_intrinsics)
       ->excludes(command->get_option("--no-adjust"));
@@ -262,7 +285,9 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
   const auto scale = MakeScaleOptions(flags.scale);
   if (!scale) return tl::unexpected<Error>(scale.error());
   options.scale = *scale;
-  options.poses.strategy = flags.strategy;
+  const auto averager = AveragerRegistry::WithBuiltIns().Make(flags.strategy);
+  if (!averager) return tl::unexpected<Error>(averager.error());
+  options.poses.averager = *averager;
   if (const Status set =
           SetAdjustedFeatures(flags.adjust_features, &options.adjustment);
       !set) {
@@ -326,9 +351,8 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
   }
   if (*truth) {
     if (result->adjustment) {
-      Scene before = scene;
-      before.poses = result->poses_before_adjustment;
-      summary.evaluation_before_adjustment = EvaluatePoses(before, **truth);
+      summary.evaluation_before_adjustment =
+          EvaluatePoses(scene.views, result->poses_before_adjustment, **truth);
     }
     summary.evaluation = EvaluatePoses(scene, **truth);
   }

@@ -51,6 +51,12 @@ CLI::Option* AddTruthFlag(CLI::App* command, std::string* path);
 Status SetAdjustedFeatures(const std::vector<std::string>& features,
                            AdjustmentOptions* options);
 
+/// --strategy, of the built-in AveragerRegistry, which the help lists.
+void AddStrategyFlag(CLI::App* command, std::string* strategy);
+/// --strategies, a list of them (SplitRequests).
+CLI::Option* AddStrategiesFlag(CLI::App* command,
+                               std::vector<std::string>* strategies);
+
 /// --refine-intrinsics [focal,aspect,principal-point,distortion|all]
 CLI::Option* AddRefinementFlag(CLI::App* command, std::string* parts);
 /// Sets the options for every intrinsic of the scene (RefineAllIntrinsics).

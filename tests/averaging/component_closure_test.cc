@@ -21,25 +21,25 @@ std::vector<Vec3> Ring(int count, double lift) {
 }
 
 // The views in a gauge of their own, with an error of stddev_rad.
-Body MakeBody(const std::vector<Vec3>& centers,
-              const std::vector<std::size_t>& views, double scale,
-              double stddev_rad, Random* random) {
-  Body body;
-  body.views = views;
-  body.stddev_rad = stddev_rad;
+RigidComponent MakeBody(const std::vector<Vec3>& centers,
+                        const std::vector<std::size_t>& views, double scale,
+                        double stddev_rad, Random* random) {
+  RigidComponent component;
+  component.views = views;
+  component.stddev_rad = stddev_rad;
   for (const std::size_t view : views) {
     const double x = random->Gaussian(stddev_rad);
     const double y = random->Gaussian(stddev_rad);
-    body.centers.push_back(scale * (centers[view] + Vec3(x, y, 0)) +
-                           Vec3(1, 2, 3));
+    component.centers.push_back(scale * (centers[view] + Vec3(x, y, 0)) +
+                                Vec3(1, 2, 3));
   }
-  return body;
+  return component;
 }
 
 // A ring of twelve views in `count` arcs that meet in single views.
-std::vector<Body> Arcs(const std::vector<Vec3>& centers, int count,
-                       double stddev_rad, Random* random) {
-  std::vector<Body> bodies;
+std::vector<RigidComponent> Arcs(const std::vector<Vec3>& centers, int count,
+                                 double stddev_rad, Random* random) {
+  std::vector<RigidComponent> components;
   const std::size_t length = centers.size() / static_cast<std::size_t>(count);
   for (int b = 0; b < count; ++b) {
     std::vector<std::size_t> views;
@@ -47,69 +47,72 @@ std::vector<Body> Arcs(const std::vector<Vec3>& centers, int count,
       views.push_back((static_cast<std::size_t>(b) * length + n) %
                       centers.size());
     }
-    bodies.push_back(
+    components.push_back(
         MakeBody(centers, views, b == 0 ? 1 : 0.5 + b, stddev_rad, random));
   }
-  return bodies;
+  return components;
 }
 
-TEST(CloseBodies, ThreeArcsCloseARing) {
+TEST(CloseComponents, ThreeArcsCloseARing) {
   const std::vector<Vec3> centers = Ring(12, 0);
   Random random(1);
-  const std::vector<Body> bodies = Arcs(centers, 3, 1e-6, &random);
-  const auto placements = CloseBodies(bodies);
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+  const std::vector<RigidComponent> components =
+      Arcs(centers, 3, 1e-6, &random);
+  const auto placements = CloseComponents(components);
+  for (std::size_t b = 0; b < components.size(); ++b) {
     ASSERT_TRUE(placements[b].has_value()) << b;
-    for (std::size_t n = 0; n < bodies[b].views.size(); ++n) {
-      const Vec3 placed = placements[b]->scale * bodies[b].centers[n] +
+    for (std::size_t n = 0; n < components[b].views.size(); ++n) {
+      const Vec3 placed = placements[b]->scale * components[b].centers[n] +
                           placements[b]->translation;
-      // In the gauge of the first body.
-      EXPECT_LT((placed - centers[bodies[b].views[n]] - Vec3(1, 2, 3)).norm(),
-                1e-4);
+      // In the gauge of the first component.
+      EXPECT_LT(
+          (placed - centers[components[b].views[n]] - Vec3(1, 2, 3)).norm(),
+          1e-4);
     }
   }
 }
 
-TEST(CloseBodies, APlanarRingOfFourStaysOpen) {
+TEST(CloseComponents, APlanarRingOfFourStaysOpen) {
   Random random(1);
-  const auto placements = CloseBodies(Arcs(Ring(12, 0), 4, 0.005, &random));
+  const auto placements = CloseComponents(Arcs(Ring(12, 0), 4, 0.005, &random));
   for (std::size_t b = 1; b < 4; ++b) EXPECT_FALSE(placements[b].has_value());
 }
 
-TEST(CloseBodies, HeightClosesARingOfFour) {
+TEST(CloseComponents, HeightClosesARingOfFour) {
   const std::vector<Vec3> centers = {{0, 0, 0},  {1, 0, 2},  {2, 0, 0},
                                      {2, 1, -2}, {2, 2, 0},  {1, 2, 2.5},
                                      {0, 2, 1},  {-1, 1, -2}};
   Random random(1);
-  const std::vector<Body> bodies = Arcs(centers, 4, 1e-6, &random);
-  const auto placements = CloseBodies(bodies);
+  const std::vector<RigidComponent> components =
+      Arcs(centers, 4, 1e-6, &random);
+  const auto placements = CloseComponents(components);
   for (std::size_t b = 1; b < 4; ++b) {
     ASSERT_TRUE(placements[b].has_value());
     EXPECT_NEAR(placements[b]->scale, 1 / (0.5 + static_cast<double>(b)), 1e-3);
   }
 }
 
-TEST(CloseBodies, ABodyAtOneViewIsFree) {
+TEST(CloseComponents, ABodyAtOneViewIsFree) {
   const std::vector<Vec3> centers = Ring(12, 0);
   Random random(1);
-  std::vector<Body> bodies = Arcs(centers, 3, 1e-6, &random);
-  Body loose;
+  std::vector<RigidComponent> components = Arcs(centers, 3, 1e-6, &random);
+  RigidComponent loose;
   loose.views = {0, 100};
   loose.centers = {{0, 0, 0}, {1, 0, 0}};
-  bodies.insert(bodies.begin() + 1, loose);
-  const auto placements = CloseBodies(bodies);
+  components.insert(components.begin() + 1, loose);
+  const auto placements = CloseComponents(components);
   EXPECT_TRUE(placements[0].has_value());
   EXPECT_FALSE(placements[1].has_value());
   EXPECT_TRUE(placements[2].has_value());
 }
 
-TEST(CloseBodies, NothingToClose) {
-  EXPECT_TRUE(CloseBodies({}).empty());
+TEST(CloseComponents, NothingToClose) {
+  EXPECT_TRUE(CloseComponents({}).empty());
   const std::vector<Vec3> centers = Ring(12, 0);
   Random random(1);
-  std::vector<Body> bodies = Arcs(centers, 3, 1e-6, &random);
-  bodies.pop_back();  // a chain
-  for (const auto& placement : CloseBodies(bodies)) {
+  std::vector<RigidComponent> components = Arcs(centers, 3, 1e-6, &random);
+  components.pop_back();  // a chain
+  for (const auto& placement : CloseComponents(components)) {
     EXPECT_FALSE(placement.has_value());
   }
 }

@@ -177,7 +177,8 @@ TEST(Diagnose, HingesAreWhatTheNullSpaceFallsApartWithout) {
       }
       if (GroupsByNullSpace(without, seed) != whole) expected.insert(camera);
     }
-    for (const ScaleHinge& hinge : diagnosis.hinges) found.insert(hinge.view);
+    for (const ScaleArticulation& hinge : diagnosis.articulation_views)
+      found.insert(hinge.view);
     EXPECT_EQ(found, expected) << "graph " << seed;
     num_hinges += static_cast<int>(found.size());
   }
@@ -214,7 +215,7 @@ TEST(Diagnose, ATriangleWithoutARatioFloats) {
   rejected.log10_nfa = 0.5;
   const Diagnosis diagnosis = DiagnosisOf(scene);
   EXPECT_FALSE(diagnosis.IsFirm());
-  EXPECT_THAT(diagnosis.hinges, IsEmpty());
+  EXPECT_THAT(diagnosis.articulation_views, IsEmpty());
   ASSERT_EQ(diagnosis.floating.size(), 2u);
   const FloatingPart& part = diagnosis.floating[0];
   EXPECT_THAT(part.views, ElementsAre(2, 3, 4));
@@ -236,8 +237,8 @@ TEST(Diagnose, ARatioMakesAHingeOfTheSharedCamera) {
   const Diagnosis diagnosis = DiagnosisOf(scene);
   EXPECT_TRUE(diagnosis.IsFirm());
   EXPECT_THAT(diagnosis.floating, IsEmpty());
-  ASSERT_EQ(diagnosis.hinges.size(), 1u);
-  const ScaleHinge& hinge = diagnosis.hinges[0];
+  ASSERT_EQ(diagnosis.articulation_views.size(), 1u);
+  const ScaleArticulation& hinge = diagnosis.articulation_views[0];
   EXPECT_EQ(hinge.view, 2u);
   EXPECT_THAT(hinge.parts, ElementsAre(ElementsAre(0, 1), ElementsAre(3, 4)));
   EXPECT_THAT(hinge.ratios, ElementsAre(2, 1));
@@ -255,14 +256,14 @@ TEST(Diagnose, WeakRatiosAreNamed) {
     EXPECT_FALSE(diagnosis.IsFirm()) << reason;
     EXPECT_EQ(diagnosis.by_ratios.groups.size(), 1u);
     EXPECT_THAT(diagnosis.weak_ratios, ElementsAre(0));
-    ASSERT_EQ(diagnosis.hinges.size(), 1u);
-    EXPECT_TRUE(diagnosis.hinges[0].is_weak);
+    ASSERT_EQ(diagnosis.articulation_views.size(), 1u);
+    EXPECT_TRUE(diagnosis.articulation_views[0].is_weak);
     // A strong one beside it takes its place.
     AddRatio(0, 2, 4, &scene);
     diagnosis = DiagnosisOf(scene);
     EXPECT_TRUE(diagnosis.IsFirm()) << reason;
     EXPECT_THAT(diagnosis.weak_ratios, IsEmpty());
-    EXPECT_FALSE(diagnosis.hinges[0].is_weak);
+    EXPECT_FALSE(diagnosis.articulation_views[0].is_weak);
   }
 }
 
@@ -275,9 +276,9 @@ TEST(Diagnose, AChainHingesOnEveryInnerCamera) {
   }
   const Diagnosis diagnosis = DiagnosisOf(scene);
   EXPECT_TRUE(diagnosis.IsFirm());
-  ASSERT_EQ(diagnosis.hinges.size(), 6u);
-  EXPECT_EQ(diagnosis.hinges[2].view, 3u);
-  EXPECT_THAT(diagnosis.hinges[2].parts,
+  ASSERT_EQ(diagnosis.articulation_views.size(), 6u);
+  EXPECT_EQ(diagnosis.articulation_views[2].view, 3u);
+  EXPECT_THAT(diagnosis.articulation_views[2].parts,
               ElementsAre(ElementsAre(4, 5, 6, 7), ElementsAre(0, 1, 2)));
 }
 
@@ -292,7 +293,7 @@ TEST(Diagnose, ARingOfRatiosHasNoHinge) {
   }
   AddRatio(1, 0, 5, &scene);
   AddRatio(0, 5, 4, &scene);
-  EXPECT_THAT(DiagnosisOf(scene).hinges, IsEmpty());
+  EXPECT_THAT(DiagnosisOf(scene).articulation_views, IsEmpty());
 }
 
 TEST(Diagnose, ALongChainTakesNoTime) {
@@ -308,7 +309,7 @@ TEST(Diagnose, ALongChainTakesNoTime) {
   const Diagnosis diagnosis = DiagnosisOf(scene);
   ASSERT_EQ(diagnosis.floating.size(), 1u);
   EXPECT_EQ(diagnosis.floating[0].meets_in, 300u);
-  EXPECT_EQ(diagnosis.hinges.size(), 797u);
+  EXPECT_EQ(diagnosis.articulation_views.size(), 797u);
 }
 
 TEST(Diagnose, NothingAndErrors) {
@@ -343,9 +344,9 @@ TEST(PredictTripletAveraging, GroupsThatMeetInOneCameraAreGlued) {
   EXPECT_THAT(prediction.kept, ElementsAre(0, 1, 2, 3, 4));
   EXPECT_THAT(prediction.lost, ElementsAre(5, 6, 7, 8));
   EXPECT_TRUE(prediction.IsGlued());
-  ASSERT_EQ(prediction.hinges.size(), 1u);
-  EXPECT_EQ(prediction.hinges[0].view, 2u);
-  EXPECT_THAT(prediction.hinges[0].groups, ElementsAre(0, 1));
+  ASSERT_EQ(prediction.articulation_views.size(), 1u);
+  EXPECT_EQ(prediction.articulation_views[0].view, 2u);
+  EXPECT_THAT(prediction.articulation_views[0].groups, ElementsAre(0, 1));
 }
 
 }  // namespace

@@ -27,17 +27,17 @@ void MoveCenters(RandomProblem* made, const std::vector<Vec3>& centers) {
 
 TEST(DirectionParts, AChainHasNone) {
   const RandomProblem made = Directions(5, {{0, 1}, {1, 2}, {2, 3}, {3, 4}}, 1);
-  EXPECT_TRUE(FindDirectionParts(made.problem).empty());
+  EXPECT_TRUE(FindDirectionParts(made.problem)->empty());
 }
 
 TEST(DirectionParts, AnEmptyProblemHasNone) {
-  EXPECT_TRUE(FindDirectionParts(TranslationProblem()).empty());
+  EXPECT_TRUE(FindDirectionParts(TranslationProblem())->empty());
 }
 
 TEST(DirectionParts, TrianglesThatShareAnEdgeAreOne) {
   const RandomProblem made =
       Directions(4, {{0, 1}, {1, 2}, {2, 0}, {3, 1}, {3, 2}}, 2);
-  const std::vector<DirectionPart> parts = FindDirectionParts(made.problem);
+  const std::vector<DirectionPart> parts = *FindDirectionParts(made.problem);
   ASSERT_EQ(parts.size(), 1U);
   EXPECT_EQ(parts[0].views, (Views{0, 1, 2, 3}));
   EXPECT_EQ(parts[0].edges.size(), 5U);
@@ -48,8 +48,8 @@ TEST(DirectionParts, TrianglesThatShareAViewAreTwo) {
       6, {{3, 4}, {4, 5}, {5, 3}, {0, 1}, {1, 2}, {2, 0}, {2, 3}}, 3);
   RandomProblem hinged =
       Directions(5, {{2, 3}, {3, 4}, {4, 2}, {0, 1}, {1, 2}, {2, 0}}, 3);
-  EXPECT_EQ(FindDirectionParts(made.problem).size(), 2U);
-  const std::vector<DirectionPart> parts = FindDirectionParts(hinged.problem);
+  EXPECT_EQ(FindDirectionParts(made.problem)->size(), 2U);
+  const std::vector<DirectionPart> parts = *FindDirectionParts(hinged.problem);
   ASSERT_EQ(parts.size(), 2U);
   EXPECT_EQ(parts[0].views, (Views{0, 1, 2}));
   EXPECT_EQ(parts[1].views, (Views{2, 3, 4}));
@@ -57,7 +57,7 @@ TEST(DirectionParts, TrianglesThatShareAViewAreTwo) {
 
 TEST(DirectionParts, APendantViewIsInNone) {
   const RandomProblem made = Directions(4, {{0, 1}, {1, 2}, {2, 0}, {2, 3}}, 4);
-  const std::vector<DirectionPart> parts = FindDirectionParts(made.problem);
+  const std::vector<DirectionPart> parts = *FindDirectionParts(made.problem);
   ASSERT_EQ(parts.size(), 1U);
   EXPECT_EQ(parts[0].views, (Views{0, 1, 2}));
 }
@@ -66,9 +66,9 @@ TEST(DirectionParts, AQuadrilateralIsRigidUnlessItIsFlat) {
   const Edges ring = {{0, 1}, {1, 2}, {2, 3}, {3, 0}};
   RandomProblem made = Directions(4, ring, 5);
   MoveCenters(&made, {{0, 0, 0}, {2, 0, 1}, {2, 2, 0}, {0, 2, 1.5}});
-  ASSERT_EQ(FindDirectionParts(made.problem).size(), 1U);
+  ASSERT_EQ(FindDirectionParts(made.problem)->size(), 1U);
   MoveCenters(&made, {{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 3, 0}});
-  EXPECT_TRUE(FindDirectionParts(made.problem).empty());
+  EXPECT_TRUE(FindDirectionParts(made.problem)->empty());
 }
 
 TEST(DirectionParts, ThreeBodiesInARingAreOne) {
@@ -77,7 +77,7 @@ TEST(DirectionParts, ThreeBodiesInARingAreOne) {
       6,
       {{0, 1}, {1, 2}, {2, 0}, {2, 3}, {3, 4}, {4, 2}, {4, 5}, {5, 0}, {0, 4}},
       6);
-  const std::vector<DirectionPart> parts = FindDirectionParts(made.problem);
+  const std::vector<DirectionPart> parts = *FindDirectionParts(made.problem);
   ASSERT_EQ(parts.size(), 1U);
   EXPECT_EQ(parts[0].views.size(), 6U);
 }
@@ -93,7 +93,7 @@ TEST(DirectionParts, CollinearCentersDetermineNothing) {
     centers.push_back(Vec3(1 + n * n, 2.0 * n * n, -n * n));
   }
   MoveCenters(&made, centers);
-  EXPECT_TRUE(FindDirectionParts(made.problem).empty());
+  EXPECT_TRUE(FindDirectionParts(made.problem)->empty());
 
   // Errors well below what counts as an intersection.
   Random random(8);
@@ -101,11 +101,11 @@ TEST(DirectionParts, CollinearCentersDetermineNothing) {
     edge.direction_in_world =
         (edge.direction_in_world + RandomVector(&random, 0.02)).normalized();
   }
-  EXPECT_TRUE(FindDirectionParts(made.problem).empty());
+  EXPECT_TRUE(FindDirectionParts(made.problem)->empty());
 
   // One wrong direction is no reason to believe in lengths.
   made.problem.edges[4].direction_in_world = Vec3::UnitX();
-  EXPECT_TRUE(FindDirectionParts(made.problem).empty());
+  EXPECT_TRUE(FindDirectionParts(made.problem)->empty());
 }
 
 TEST(DirectionParts, AViewBesideALineHoldsTheLine) {
@@ -115,7 +115,7 @@ TEST(DirectionParts, AViewBesideALineHoldsTheLine) {
   }
   RandomProblem made = Directions(5, edges, 9);
   MoveCenters(&made, {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}, {4, 0, 0}, {2, 2, 0}});
-  const std::vector<DirectionPart> parts = FindDirectionParts(made.problem);
+  const std::vector<DirectionPart> parts = *FindDirectionParts(made.problem);
   ASSERT_EQ(parts.size(), 1U);
   EXPECT_EQ(parts[0].views.size(), 5U);
 }
@@ -137,8 +137,9 @@ TEST(SolveDirectionParts, GivesEveryPartAComponentAndNamesTheRest) {
                                         10);
   int calls = 0;
   const auto solution = SolveDirectionParts(
-      made.problem,
-      [&](const DirectionPart& part, int*) -> Result<std::vector<Vec3>> {
+      made.problem, RunContext(),
+      [&](const DirectionPart& part, const RunContext&,
+          int*) -> Result<std::vector<Vec3>> {
         ++calls;
         return std::vector<Vec3>(part.views.size(), Vec3::UnitX() * calls);
       });
@@ -154,8 +155,9 @@ TEST(SolveDirectionParts, GivesEveryPartAComponentAndNamesTheRest) {
 TEST(SolveDirectionParts, PassesErrorsOn) {
   const RandomProblem made = Directions(3, {{0, 1}, {1, 2}, {2, 0}}, 11);
   const auto solution = SolveDirectionParts(
-      made.problem,
-      [](const DirectionPart&, int*) -> Result<std::vector<Vec3>> {
+      made.problem, RunContext(),
+      [](const DirectionPart&, const RunContext&,
+         int*) -> Result<std::vector<Vec3>> {
         return MakeError(ErrorCode::kNumerical, "no");
       });
   ASSERT_FALSE(solution);

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "averaging/random_problem.h"
-#include "lowlap/averaging/strategies.h"
+#include "lowlap/averaging/averager_registry.h"
 #include "lowlap/averaging/strategies/internal/angle_objective.h"
 #include "lowlap/averaging/strategies/internal/bounded_directions.h"
 
@@ -117,7 +117,7 @@ SmallProblem MakeSmallProblem(std::uint64_t seed) {
         (edge.direction_in_world + RandomVector(&random, size)).normalized();
   }
   const std::vector<DirectionPart> parts =
-      FindDirectionParts(small.made.problem);
+      *FindDirectionParts(small.made.problem);
   EXPECT_EQ(parts.size(), 1U);
   small.part = parts.at(0);
   EXPECT_EQ(small.part.views.size(), 10U);
@@ -127,7 +127,7 @@ SmallProblem MakeSmallProblem(std::uint64_t seed) {
 
 std::vector<Vec3> CentersOf(const std::string& name,
                             const SmallProblem& small) {
-  const auto averager = MakeTranslationAverager(name);
+  const auto averager = AveragerRegistry::WithBuiltIns().Make(name);
   const auto solution = (*averager)->Solve(small.made.problem, RunContext());
   EXPECT_TRUE(solution);
   return solution->center_in_world;
@@ -214,7 +214,8 @@ TEST_P(DirectionSolvers, RevisedLudIsALocalAndSoGlobalMinimum) {
 
 TEST_P(DirectionSolvers, BataMeetsCeresFromTheSameStart) {
   int iterations = 0;
-  const auto start = SolveRevisedLud(small_.part, &iterations);
+  const auto start =
+      SolveRevisedLud(small_.part, 200, RunContext(), &iterations);
   ASSERT_TRUE(start);
   const double theirs = MinimiseAngles(small_.part, *start);
   const double jointly =

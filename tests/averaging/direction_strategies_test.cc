@@ -5,7 +5,7 @@
 #include <map>
 
 #include "averaging/random_problem.h"
-#include "lowlap/averaging/strategies.h"
+#include "lowlap/averaging/averager_registry.h"
 
 namespace lowlap {
 namespace {
@@ -72,7 +72,7 @@ std::vector<bool> AllPlaced(const TranslationSolution& solution) {
 
 TranslationSolution Solve(const std::string& name,
                           const TranslationProblem& problem) {
-  const auto averager = MakeTranslationAverager(name);
+  const auto averager = AveragerRegistry::WithBuiltIns().Make(name);
   EXPECT_TRUE(averager);
   EXPECT_EQ((*averager)->Name(), name);
   auto solution = (*averager)->Solve(problem, RunContext());

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "averaging/random_problem.h"
-#include "lowlap/averaging/strategies.h"
+#include "lowlap/averaging/averager_registry.h"
 
 namespace lowlap {
 namespace {
@@ -127,9 +127,10 @@ TEST(OneDSfm, WithoutEdgesKeepsTheRatiosOfTheRest) {
 TEST(OneDSfm, GoesInFrontOfAnyStrategy) {
   const RandomProblem made = MakeRandomProblem(
       5, Edges{{0, 1}, {1, 2}, {2, 3}, {3, 4}, {0, 2}, {1, 3}, {2, 4}}, 8);
-  for (const std::string& name : TranslationAveragerNames()) {
-    const auto plain = MakeTranslationAverager(name);
-    const auto filtered = MakeTranslationAverager("1dsfm+" + name);
+  for (const std::string& name : AveragerRegistry::WithBuiltIns().Names()) {
+    const auto plain = AveragerRegistry::WithBuiltIns().Make(name);
+    const auto filtered =
+        AveragerRegistry::WithBuiltIns().Make("1dsfm+" + name);
     ASSERT_TRUE(plain && filtered);
     EXPECT_EQ((*filtered)->Name(), "1dsfm+" + name);
     EXPECT_EQ((*filtered)->NeedsTracks(), (*plain)->NeedsTracks());
@@ -138,14 +139,14 @@ TEST(OneDSfm, GoesInFrontOfAnyStrategy) {
     ASSERT_TRUE(a && b) << name;
     EXPECT_EQ(a->center_in_world, b->center_in_world) << name;
   }
-  EXPECT_FALSE(MakeTranslationAverager("1dsfm+magic"));
-  EXPECT_FALSE(MakeTranslationAverager("1dsfm+"));
+  EXPECT_FALSE(AveragerRegistry::WithBuiltIns().Make("1dsfm+magic"));
+  EXPECT_FALSE(AveragerRegistry::WithBuiltIns().Make("1dsfm+"));
 }
 
 TEST(OneDSfm, MakesTheTripletProgramsBearWrongEdges) {
   const SpoiledProblem spoiled = Spoil(0.1, 9, 30);
   const auto error = [&](const std::string& name) {
-    const auto averager = MakeTranslationAverager(name);
+    const auto averager = AveragerRegistry::WithBuiltIns().Make(name);
     const auto solution =
         (*averager)->Solve(spoiled.made.problem, RunContext());
     std::vector<bool> placed;

@@ -50,7 +50,7 @@ TEST(RefineCenters, StatedDeviationsNeedNotHold) {
     Random random(seed + 200);
     std::vector<Vec3> centers = made.centers;
     for (Vec3& center : centers) center += RandomVector(&random, 0.05);
-    RefineCenters(made.problem, placed, &centers);
+    ASSERT_TRUE(RefineCenters(made.problem, placed, &centers));
     // The scale of the start is kept; compare directions.
     for (const DirectionEdge& edge : made.problem.edges) {
       const Vec3 solved = centers[edge.second] - centers[edge.first];
@@ -66,11 +66,35 @@ TEST(RefineCenters, ExactMeasurementsAreReached) {
   std::vector<Vec3> centers = made.centers;
   Random random(4);
   for (Vec3& center : centers) center += RandomVector(&random, 0.01);
-  RefineCenters(made.problem, std::vector<bool>(5, true), &centers, 200);
+  ASSERT_TRUE(RefineCenters(made.problem, std::vector<bool>(5, true), &centers,
+                            RunContext(), 200));
   for (const DirectionEdge& edge : made.problem.edges) {
     const Vec3 solved = centers[edge.second] - centers[edge.first];
     EXPECT_LT((solved.normalized() - edge.direction_in_world).norm(), 1e-4);
   }
+}
+
+TEST(RefineCenters, LeavesTheCentresWhenItIsStopped) {
+  RandomProblem made = MakeRandomProblem(
+      5,
+      std::vector<std::pair<std::size_t, std::size_t>>{
+          {0, 1}, {1, 2}, {2, 3}, {3, 4}, {0, 2}, {1, 3}, {2, 4}},
+      3);
+  std::vector<Vec3> centers = made.centers;
+  Random random(1);
+  for (Vec3& center : centers) center += RandomVector(&random, 0.1);
+  const std::vector<Vec3> start = centers;
+  RunContext context;
+  int num_questions = 0;
+  // The first step is made by then.
+  context.progress = [&](const std::string&, std::size_t, std::size_t) {
+    return ++num_questions < 2;
+  };
+  const Status stopped = RefineCenters(made.problem, std::vector<bool>(5, true),
+                                       &centers, context);
+  ASSERT_FALSE(stopped);
+  EXPECT_EQ(stopped.error().code, ErrorCode::kCancelled);
+  EXPECT_EQ(centers, start);
 }
 
 }  // namespace

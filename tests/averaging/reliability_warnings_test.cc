@@ -35,10 +35,11 @@ SyntheticScene SceneWithTrueRatios(const std::string& pairs) {
   return synthetic;
 }
 
-std::vector<ViewDoubt> DoubtsOf(Scene scene) {
+std::vector<ReliabilityWarning> WarningsOf(Scene scene) {
   const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
   EXPECT_TRUE(summary);
-  return summary ? summary->doubts : std::vector<ViewDoubt>();
+  return summary ? summary->reliability_warnings
+                 : std::vector<ReliabilityWarning>();
 }
 
 ScaleRatio* FindRatio(const ViewTriplet& views, Scene* scene) {
@@ -48,20 +49,21 @@ ScaleRatio* FindRatio(const ViewTriplet& views, Scene* scene) {
   return nullptr;
 }
 
-TEST(ViewDoubts, NoneWhereAllIsWell) {
+TEST(ReliabilityWarnings, NoneWhereAllIsWell) {
   for (const char* pairs : {"chain", "cycle", "window:3"}) {
-    EXPECT_THAT(DoubtsOf(SceneWithTrueRatios(pairs).scene), IsEmpty()) << pairs;
+    EXPECT_THAT(WarningsOf(SceneWithTrueRatios(pairs).scene), IsEmpty())
+        << pairs;
   }
 }
 
-TEST(ViewDoubts, NoneForOneWrongRelativePoseOfMany) {
+TEST(ReliabilityWarnings, NoneForOneWrongRelativePoseOfMany) {
   SyntheticScene synthetic = SceneWithTrueRatios("window:3");
   RelativePose& wrong = synthetic.scene.relative_poses.at({3, 5});
   wrong.direction = -wrong.direction;
-  EXPECT_THAT(DoubtsOf(synthetic.scene), IsEmpty());
+  EXPECT_THAT(WarningsOf(synthetic.scene), IsEmpty());
 }
 
-TEST(ViewDoubts, AViewThatItsRelativePosesContradict) {
+TEST(ReliabilityWarnings, AViewThatItsRelativePosesContradict) {
   const SyntheticScene synthetic = SceneWithTrueRatios("window:3");
   std::map<ViewId, Mat3> rotations;
   TranslationSolution solution;
@@ -73,45 +75,47 @@ TEST(ViewDoubts, AViewThatItsRelativePosesContradict) {
   solution.num_components = 1;
   const TranslationProblem problem =
       MakeTranslationProblem(synthetic.scene, rotations, {});
-  EXPECT_THAT(FindViewDoubts(synthetic.scene, problem, solution, {}),
+  EXPECT_THAT(FindReliabilityWarnings(synthetic.scene, problem, solution, {}),
               IsEmpty());
 
   const Vec3 baseline =
       solution.center_in_world[5] - solution.center_in_world[4];
   solution.center_in_world[4] +=
       0.3 * baseline.unitOrthogonal() * baseline.norm();
-  const auto doubts = FindViewDoubts(synthetic.scene, problem, solution, {});
-  ASSERT_EQ(doubts.size(), 1u);
-  EXPECT_EQ(doubts[0].reason, DoubtReason::kContradictedPoses);
-  EXPECT_THAT(doubts[0].views, ElementsAre(4));
-  EXPECT_THAT(doubts[0].against, Contains(ViewPair{4, 5}));
+  const auto warnings =
+      FindReliabilityWarnings(synthetic.scene, problem, solution, {});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].reason, WarningReason::kContradictedPoses);
+  EXPECT_THAT(warnings[0].views, ElementsAre(4));
+  EXPECT_THAT(warnings[0].against, Contains(ViewPair{4, 5}));
 }
 
-TEST(ViewDoubts, ViewsThatHangOnAWeakRatio) {
+TEST(ReliabilityWarnings, ViewsThatHangOnAWeakRatio) {
   SyntheticScene synthetic = SceneWithTrueRatios("chain");
   FindRatio({3, 4, 5}, &synthetic.scene)->log10_nfa = -1;
   const auto summary =
       SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
   ASSERT_TRUE(summary);
   EXPECT_EQ(summary->num_placed, 8);
-  ASSERT_EQ(summary->doubts.size(), 1u);
-  EXPECT_EQ(summary->doubts[0].reason, DoubtReason::kWeakScale);
-  EXPECT_THAT(summary->doubts[0].views, ElementsAre(5, 6, 7));
-  EXPECT_THAT(summary->doubts[0].ratios, ElementsAre(ViewTriplet{3, 4, 5}));
+  ASSERT_EQ(summary->reliability_warnings.size(), 1u);
+  EXPECT_EQ(summary->reliability_warnings[0].reason, WarningReason::kWeakScale);
+  EXPECT_THAT(summary->reliability_warnings[0].views, ElementsAre(5, 6, 7));
+  EXPECT_THAT(summary->reliability_warnings[0].ratios,
+              ElementsAre(ViewTriplet{3, 4, 5}));
   EXPECT_TRUE(summary->IsDoubtful());
   EXPECT_THAT(PoseWarnings(*summary, synthetic.scene),
               Contains(HasSubstr("only weak scale ratios join them")));
 }
 
-TEST(ViewDoubts, AWeakRatioBesideStrongOnesIsNoDoubt) {
+TEST(ReliabilityWarnings, AWeakRatioBesideStrongOnesIsNoWarning) {
   SyntheticScene synthetic = SceneWithTrueRatios("window:2");
   FindRatio({3, 4, 5}, &synthetic.scene)->log10_nfa = -1;
-  EXPECT_THAT(DoubtsOf(synthetic.scene), IsEmpty());
+  EXPECT_THAT(WarningsOf(synthetic.scene), IsEmpty());
 }
 
 // Triangles 0-1-2-... and 4-...-7 that meet in view 4 alone, where one ratio
 // says something else than the others.
-TEST(ViewDoubts, RatiosAcrossOneCameraThatDisagree) {
+TEST(ReliabilityWarnings, RatiosAcrossOneCameraThatDisagree) {
   SyntheticScene synthetic = SceneWithTrueRatios("window:2");
   Scene& scene = synthetic.scene;
   scene.relative_poses.erase({3, 5});
@@ -123,19 +127,19 @@ TEST(ViewDoubts, RatiosAcrossOneCameraThatDisagree) {
                               !scene.FindRelativePose(v.middle, v.last);
                      }),
       scene.scale_ratios.end());
-  EXPECT_THAT(DoubtsOf(scene), IsEmpty());
+  EXPECT_THAT(WarningsOf(scene), IsEmpty());
 
   for (const ViewTriplet& views :
        {ViewTriplet{3, 4, 5}, ViewTriplet{2, 4, 6}}) {
     FindRatio(views, &scene)->log_ratio += 0.7;
   }
-  const auto doubts = DoubtsOf(scene);
-  ASSERT_EQ(doubts.size(), 1u);
-  EXPECT_EQ(doubts[0].reason, DoubtReason::kContradictedRatios);
-  EXPECT_THAT(doubts[0].views, ElementsAre(5, 6, 7));
+  const auto warnings = WarningsOf(scene);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].reason, WarningReason::kContradictedRatios);
+  EXPECT_THAT(warnings[0].views, ElementsAre(5, 6, 7));
 }
 
-TEST(ViewDoubts, AViewThatLostItsFeatures) {
+TEST(ReliabilityWarnings, AViewThatLostItsFeatures) {
   SyntheticScene synthetic = SceneWithTrueRatios("window:3");
   Scene scene = TrueSolution(synthetic);
   EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
@@ -149,13 +153,47 @@ TEST(ViewDoubts, AViewThatLostItsFeatures) {
   for (auto& entry : scene.line_structure) {
     lose(3, &entry.second.observations);
   }
-  const auto doubts = FindLostFeatures(scene);
-  ASSERT_EQ(doubts.size(), 1u);
-  EXPECT_EQ(doubts[0].reason, DoubtReason::kLostFeatures);
-  EXPECT_THAT(doubts[0].views, ElementsAre(3));
-  EXPECT_EQ(doubts[0].share, 0);
+  const auto warnings = FindLostFeatures(scene);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].reason, WarningReason::kLostFeatures);
+  EXPECT_THAT(warnings[0].views, ElementsAre(3));
+  EXPECT_EQ(warnings[0].share, 0);
   // Where the camera is not known, landmarks cannot have observations.
   scene.views.at(3).intrinsic_id = kInvalidId;
+  EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
+}
+
+// Two views of a line fit any poses, in however many pieces they see it.
+TEST(ReliabilityWarnings, PiecesOfALineInTwoViewsAreNotThreeViews) {
+  Scene scene;
+  scene.intrinsics[0] = Intrinsic();
+  for (const ViewId view : {0u, 1u, 2u}) {
+    scene.views[view].intrinsic_id = 0;
+    scene.views[view].pose_id = view;
+    scene.poses[view] = Pose();
+  }
+  scene.line_tracks[0] = {{0, 0}, {0, 1}, {1, 0}, {1, 2}};
+  EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
+  scene.line_tracks[0].push_back({2, 0});
+  EXPECT_EQ(FindLostFeatures(scene).size(), 3u);
+}
+
+// A line in pieces is one feature of its view, and is lost or kept as one.
+TEST(ReliabilityWarnings, PiecesOfALineCountOnce) {
+  Scene scene;
+  scene.intrinsics[0] = Intrinsic();
+  for (const ViewId view : {0u, 1u, 2u}) {
+    scene.views[view].intrinsic_id = 0;
+    scene.views[view].pose_id = view;
+    scene.poses[view] = Pose();
+  }
+  // Lost, in five pieces; the other two fit.
+  scene.line_tracks[0] = {{0, 0}, {0, 1}, {0, 2}, {0, 3},
+                          {0, 4}, {1, 0}, {2, 0}};
+  for (const LineTrackId id : {1u, 2u}) {
+    scene.line_tracks[id] = {{0, id + 4}, {1, id}, {2, id}};
+    scene.line_structure[id].observations = scene.line_tracks[id];
+  }
   EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
 }
 

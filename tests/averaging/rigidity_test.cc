@@ -26,22 +26,22 @@ TEST(AnalyzeRigidity, TwoTrianglesThatShareOneView) {
   ASSERT_EQ(report.groups.size(), 2u);
   EXPECT_EQ(report.groups[0].views, (std::vector<ViewId>{0, 1, 2}));
   EXPECT_EQ(report.groups[1].views, (std::vector<ViewId>{2, 3, 4}));
-  ASSERT_EQ(report.hinges.size(), 1u);
-  EXPECT_EQ(report.hinges[0].view, 2u);
+  ASSERT_EQ(report.articulation_views.size(), 1u);
+  EXPECT_EQ(report.articulation_views[0].view, 2u);
 }
 
 TEST(AnalyzeRigidity, TwoTrianglesThatShareAnEdgeAreOne) {
   const RigidityReport report =
       AnalyzeRigidity(Graph(4, {{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}}));
   EXPECT_EQ(report.groups.size(), 1u);
-  EXPECT_TRUE(report.hinges.empty());
+  EXPECT_TRUE(report.articulation_views.empty());
 }
 
 TEST(AnalyzeRigidity, EveryEdgeOfAChainFloats) {
   const RigidityReport report =
       AnalyzeRigidity(Graph(4, {{0, 1}, {1, 2}, {2, 3}}));
   EXPECT_EQ(report.groups.size(), 3u);
-  EXPECT_EQ(report.hinges.size(), 2u);
+  EXPECT_EQ(report.articulation_views.size(), 2u);
 }
 
 TEST(AnalyzeRigidity, ARectangleInAPlaneIsNotRigid) {
@@ -117,13 +117,13 @@ TEST(AnalyzeTripletRigidity, TripletsThatShareOneViewKeepTheirOwnScale) {
   }
   const RigidityReport report = AnalyzeTripletRigidity(scene);
   EXPECT_EQ(report.groups.size(), 3u);
-  EXPECT_EQ(report.hinges.size(), 3u);
+  EXPECT_EQ(report.articulation_views.size(), 3u);
 }
 
 TEST(AnalyzeRigidity, AnEmptyGraphHasNothing) {
   const RigidityReport report = AnalyzeRigidity(ViewGraph());
   EXPECT_TRUE(report.groups.empty());
-  EXPECT_TRUE(report.hinges.empty());
+  EXPECT_TRUE(report.articulation_views.empty());
 }
 
 }  // namespace

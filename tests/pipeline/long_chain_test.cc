@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "lowlap/averaging/strategies.h"
+#include "lowlap/averaging/averager_registry.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/synthetic/synthetic_scene.h"
@@ -34,7 +34,7 @@ Result<SolveResult> SolveByCoplanarPairs(const std::string& strategy,
   SolveOptions options;
   options.scale.use_points = false;
   options.scale.use_lines = false;
-  options.poses.strategy = strategy;
+  options.poses.averager = *AveragerRegistry::WithBuiltIns().Make(strategy);
   options.adjust = false;
   StageLog stages;
   return SolveScene(scene, options, RunContext(), &stages);
@@ -60,9 +60,10 @@ TEST(LongChain, StrategiesWithoutRatiosPlaceNoMoreThanAPair) {
   SyntheticScene corridor = Corridor();
   ASSERT_TRUE(SolveByCoplanarPairs("graph", &corridor.scene));
   const std::set<std::string> with_ratios = {"graph", "chain"};
-  for (const std::string& name : TranslationAveragerNames()) {
+  const AveragerRegistry registry = AveragerRegistry::WithBuiltIns();
+  for (const std::string& name : registry.Names()) {
     PoseOptions options;
-    options.strategy = name;
+    options.averager = *registry.Make(name);
     const auto poses = SolveScenePoses(&corridor.scene, options, RunContext());
     ASSERT_TRUE(poses) << name << ": " << poses.error().ToString();
     if (with_ratios.count(name) > 0) {

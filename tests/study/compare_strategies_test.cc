@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/averaging/strategies.h"
+#include "lowlap/averaging/averager_registry.h"
 #include "lowlap/study/comparison_output.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "read_csv.h"
@@ -70,7 +70,7 @@ TEST(CompareStrategies, EveryStrategySolvesARichScene) {
   options.solve.adjust = false;
   const auto comparison = CompareStrategies(room.scene, options, RunContext());
   ASSERT_TRUE(comparison) << comparison.error().ToString();
-  std::vector<std::string> names = TranslationAveragerNames();
+  std::vector<std::string> names = AveragerRegistry::WithBuiltIns().Names();
   names.push_back("1dsfm+lud");
   ASSERT_EQ(comparison->results.size(), names.size());
   EXPECT_EQ(comparison->reference, "graph");
@@ -180,7 +180,8 @@ TEST(CompareStrategies, RepeatedNamesCountOnce) {
   options.solve.adjust = false;
   const auto comparison = CompareStrategies(chain.scene, options, RunContext());
   ASSERT_TRUE(comparison);
-  EXPECT_EQ(comparison->results.size(), TranslationAveragerNames().size());
+  EXPECT_EQ(comparison->results.size(),
+            AveragerRegistry::WithBuiltIns().Names().size());
   EXPECT_EQ(comparison->results.front().strategy, "chain");
 }
 

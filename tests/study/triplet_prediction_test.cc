@@ -57,8 +57,8 @@ TEST_F(CastleTriplets, ItsSilentFailuresAreGlued) {
   EXPECT_TRUE(triple.lost.empty());
   ASSERT_EQ(triple.groups.size(), 2u);
   EXPECT_THAT(triple.groups[1].views, ElementsAre(10, 11, 12));
-  ASSERT_EQ(triple.hinges.size(), 1u);
-  EXPECT_EQ(triple.hinges[0].view, 10u);
+  ASSERT_EQ(triple.articulation_views.size(), 1u);
+  EXPECT_EQ(triple.articulation_views[0].view, 10u);
 }
 
 TEST_F(CastleTriplets, WhatItLosesOrSolvesIsNotGlued) {

@@ -41,20 +41,20 @@ class Writer {
     return list;
   }
 
-  std::string Why(const ViewDoubt& doubt) const {
+  std::string Why(const ReliabilityWarning& doubt) const {
     switch (doubt.reason) {
-      case DoubtReason::kContradictedPoses:
+      case WarningReason::kContradictedPoses:
         return "more of the evidence of its relative poses contradicts its "
                "place than agrees with it; they contradict: " +
                Pairs(doubt.against);
-      case DoubtReason::kWeakScale:
+      case WarningReason::kWeakScale:
         return "only weak scale ratios join them to the others: " +
                Triplets(doubt.ratios);
-      case DoubtReason::kContradictedRatios:
+      case WarningReason::kContradictedRatios:
         return "the scale ratios that join them to the others disagree; "
                "rejected were: " +
                Triplets(doubt.ratios);
-      case DoubtReason::kLostFeatures:
+      case WarningReason::kLostFeatures:
         return "only " + std::to_string(static_cast<int>(100 * doubt.share)) +
                " % of what was matched in it fits its place";
     }
@@ -106,7 +106,7 @@ std::vector<std::string> PoseWarnings(const PoseSummary& summary,
         "nothing else places one of their views: " +
         writer.Triplets(summary.weak_ratios) + ".");
   }
-  for (const ViewDoubt& doubt : summary.doubts) {
+  for (const ReliabilityWarning& doubt : summary.reliability_warnings) {
     warnings.push_back("Doubtful: " + writer.Names(doubt.views) + ": " +
                        writer.Why(doubt) + ".");
   }

@@ -11,6 +11,7 @@
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
 #include "lowlap/core/median.h"
 #include "lowlap/geometry/rotation.h"
+#include "lowlap/robust/median_deviation.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -22,7 +23,8 @@ double Evidence(double log10_nfa) { return 1 + std::max(0.0, -log10_nfa); }
 class Agreement {
  public:
   Agreement(const Scene& scene, const TranslationProblem& problem,
-            const TranslationSolution& solution, const DoubtOptions& options)
+            const TranslationSolution& solution,
+            const ReliabilityOptions& options)
       : scene_(scene),
         problem_(problem),
         solution_(solution),
@@ -38,7 +40,7 @@ class Agreement {
   }
 
   /// The views that most evidence contradicts.
-  std::vector<ViewDoubt> ContradictedPoses() const {
+  std::vector<ReliabilityWarning> ContradictedPoses() const {
     std::map<ViewId, double> balance;
     std::map<ViewId, std::vector<ViewPair>> against;
     for (const auto& [views, pose] : scene_.relative_poses) {
@@ -51,29 +53,30 @@ class Agreement {
         if (!agrees) against[view].push_back(views);
       }
     }
-    std::vector<ViewDoubt> doubts;
+    std::vector<ReliabilityWarning> warnings;
     for (const auto& [view, value] : balance) {
       if (value >= 0) continue;
-      ViewDoubt doubt;
-      doubt.reason = DoubtReason::kContradictedPoses;
-      doubt.views = {view};
-      doubt.against = against[view];
-      doubts.push_back(std::move(doubt));
+      ReliabilityWarning warning;
+      warning.reason = WarningReason::kContradictedPoses;
+      warning.views = {view};
+      warning.against = against[view];
+      warnings.push_back(std::move(warning));
     }
-    return doubts;
+    return warnings;
   }
 
-  std::vector<ViewDoubt> DoubtfulScales() const {
+  std::vector<ReliabilityWarning> DoubtfulScales() const {
     std::vector<ViewPair> pairs;
     for (const DirectionEdge& edge : problem_.edges) {
       if (IsPlaced(edge)) pairs.push_back(ViewsOf(edge));
     }
     const ViewGraph graph(std::move(pairs), {placed_.begin(), placed_.end()});
     const auto diagnosis = DiagnoseScales(graph, agreeing_ratios_);
-    std::vector<ViewDoubt> doubts;
-    if (!diagnosis || diagnosis->by_strong_ratios.groups.empty()) return doubts;
-    ViewDoubt weak;
-    weak.reason = DoubtReason::kWeakScale;
+    std::vector<ReliabilityWarning> warnings;
+    if (!diagnosis || diagnosis->by_strong_ratios.groups.empty())
+      return warnings;
+    ReliabilityWarning weak;
+    weak.reason = WarningReason::kWeakScale;
     const RigidGroup& held = diagnosis->by_strong_ratios.groups.front();
     std::set_difference(placed_.begin(), placed_.end(), held.views.begin(),
                         held.views.end(), std::back_inserter(weak.views));
@@ -82,7 +85,7 @@ class Agreement {
     }
     if (weak.ratios.empty()) {
       // No ratio that agrees joins them; are there any that do not?
-      weak.reason = DoubtReason::kContradictedRatios;
+      weak.reason = WarningReason::kContradictedRatios;
       for (const ScaleRatio& ratio : rejected_ratios_) {
         const ViewTriplet& v = ratio.views;
         for (const ViewId outer : {v.first, v.last}) {
@@ -96,13 +99,14 @@ class Agreement {
       }
     }
     if (!weak.views.empty() && !weak.ratios.empty()) {
-      doubts.push_back(std::move(weak));
+      warnings.push_back(std::move(weak));
     }
-    for (const ScaleHinge& hinge : diagnosis->hinges) {
-      ViewDoubt doubt = ContradictedHinge(hinge);
-      if (!doubt.ratios.empty()) doubts.push_back(std::move(doubt));
+    for (const ScaleArticulation& articulation :
+         diagnosis->articulation_views) {
+      ReliabilityWarning warning = ContradictedArticulation(articulation);
+      if (!warning.ratios.empty()) warnings.push_back(std::move(warning));
     }
-    return doubts;
+    return warnings;
   }
 
  private:
@@ -129,36 +133,30 @@ class Agreement {
                    std::max(options_.direction_stddev_rad, edge.stddev_rad);
   }
 
-  // Ratios are looked up by their edges: the problem does not keep their views.
   void SplitRatios() {
-    std::map<std::pair<std::size_t, std::size_t>, const RatioMeasurement*> used;
-    for (const RatioMeasurement& ratio : problem_.ratios) {
-      used[{ratio.reference, ratio.target}] = &ratio;
-    }
-    std::map<ViewPair, std::size_t> edge_of;
-    for (std::size_t e = 0; e < problem_.edges.size(); ++e) {
-      edge_of[ViewsOf(problem_.edges[e])] = e;
+    std::map<ViewTriplet, const ScaleRatio*> meaningful;
+    for (const ScaleRatio& ratio : scene_.scale_ratios) {
+      if (ratio.verdict == RatioVerdict::kMeaningful) {
+        meaningful.emplace(ratio.views, &ratio);
+      }
     }
     std::vector<std::pair<const ScaleRatio*, double>> errors;
     std::vector<double> normalised;
-    for (const ScaleRatio& ratio : scene_.scale_ratios) {
-      if (ratio.verdict != RatioVerdict::kMeaningful) continue;
-      const auto reference =
-          edge_of.find(OrderedPair(ratio.views.first, ratio.views.middle));
-      const auto target =
-          edge_of.find(OrderedPair(ratio.views.middle, ratio.views.last));
-      if (reference == edge_of.end() || target == edge_of.end()) continue;
-      const auto found = used.find({reference->second, target->second});
-      const DirectionEdge& from = problem_.edges[reference->second];
-      const DirectionEdge& to = problem_.edges[target->second];
-      if (found == used.end() || !IsPlaced(from) || !IsPlaced(to)) continue;
+    for (const RatioMeasurement& used : problem_.ratios) {
+      const auto ratio = meaningful.find(used.views);
+      const DirectionEdge& from = problem_.edges[used.reference];
+      const DirectionEdge& to = problem_.edges[used.target];
+      if (ratio == meaningful.end() || !IsPlaced(from) || !IsPlaced(to)) {
+        continue;
+      }
       const double error =
           std::abs(std::log(Baseline(to).norm() / Baseline(from).norm()) -
-                   ratio.log_ratio);
-      errors.emplace_back(&ratio, error / found->second->stddev);
+                   used.log_ratio);
+      errors.emplace_back(ratio->second, error / used.stddev);
       normalised.push_back(errors.back().second);
     }
-    const double scale = std::max(1.0, 1.4826 * Median(std::move(normalised)));
+    const double scale =
+        std::max(1.0, Median(std::move(normalised)) / kMedianOfNorm<1>);
     // As DiagnosisOptions::max_stddev: less does not make a ratio useless.
     constexpr double kTenth = 0.1;
     for (const auto& [ratio, error] : errors) {
@@ -169,20 +167,21 @@ class Agreement {
     }
   }
 
-  // Without ratios if those across the hinge agree well enough.
-  ViewDoubt ContradictedHinge(const ScaleHinge& hinge) const {
+  // Without ratios if those across the articulation agree well enough.
+  ReliabilityWarning ContradictedArticulation(
+      const ScaleArticulation& articulation) const {
     std::map<ViewId, std::size_t> part;
-    for (std::size_t p = 0; p < hinge.parts.size(); ++p) {
-      for (const ViewId view : hinge.parts[p]) part[view] = p;
+    for (std::size_t p = 0; p < articulation.parts.size(); ++p) {
+      for (const ViewId view : articulation.parts[p]) part[view] = p;
     }
     double for_it = 0, against = 0;
-    for (const std::size_t r : hinge.ratios) {
+    for (const std::size_t r : articulation.ratios) {
       for_it += Evidence(agreeing_ratios_[r].log10_nfa);
     }
-    ViewDoubt doubt;
-    doubt.reason = DoubtReason::kContradictedRatios;
+    ReliabilityWarning warning;
+    warning.reason = WarningReason::kContradictedRatios;
     for (const ScaleRatio& ratio : rejected_ratios_) {
-      if (ratio.views.middle != hinge.view) continue;
+      if (ratio.views.middle != articulation.view) continue;
       const auto first = part.find(ratio.views.first);
       const auto last = part.find(ratio.views.last);
       if (first == part.end() || last == part.end() ||
@@ -190,21 +189,21 @@ class Agreement {
         continue;
       }
       against += Evidence(ratio.log10_nfa);
-      doubt.ratios.push_back(ratio.views);
+      warning.ratios.push_back(ratio.views);
     }
-    if (2 * against <= for_it) doubt.ratios.clear();
-    for (std::size_t p = 1; p < hinge.parts.size(); ++p) {
-      doubt.views.insert(doubt.views.end(), hinge.parts[p].begin(),
-                         hinge.parts[p].end());
+    if (2 * against <= for_it) warning.ratios.clear();
+    for (std::size_t p = 1; p < articulation.parts.size(); ++p) {
+      warning.views.insert(warning.views.end(), articulation.parts[p].begin(),
+                           articulation.parts[p].end());
     }
-    std::sort(doubt.views.begin(), doubt.views.end());
-    return doubt;
+    std::sort(warning.views.begin(), warning.views.end());
+    return warning;
   }
 
   const Scene& scene_;
   const TranslationProblem& problem_;
   const TranslationSolution& solution_;
-  const DoubtOptions options_;
+  const ReliabilityOptions options_;
   std::set<ViewId> placed_;
   std::set<ViewPair> agreeing_;
   std::vector<ScaleRatio> agreeing_ratios_, rejected_ratios_;
@@ -223,12 +222,12 @@ void CountFeatures(const Scene& scene,
                    const Landmarks& landmarks, std::size_t min_views,
                    std::map<ViewId, FeatureCount>* counts) {
   for (const auto& [id, track] : tracks) {
-    std::vector<ViewId> views;
+    std::set<ViewId> views;  // a line may be in pieces in one of them
     for (const FeatureRef& ref : track) {
       // Without an intrinsic nothing of a view can be triangulated.
       if (scene.FindPose(ref.view) != nullptr &&
           scene.FindIntrinsic(ref.view) != nullptr) {
-        views.push_back(ref.view);
+        views.insert(ref.view);
       }
     }
     if (views.size() < min_views) continue;
@@ -248,47 +247,46 @@ void CountFeatures(const Scene& scene,
 
 }  // namespace
 
-const char* DoubtReasonName(DoubtReason reason) {
+const char* WarningReasonName(WarningReason reason) {
   switch (reason) {
-    case DoubtReason::kContradictedPoses:
+    case WarningReason::kContradictedPoses:
       return "contradicted_poses";
-    case DoubtReason::kWeakScale:
+    case WarningReason::kWeakScale:
       return "weak_scale";
-    case DoubtReason::kContradictedRatios:
+    case WarningReason::kContradictedRatios:
       return "contradicted_ratios";
-    case DoubtReason::kLostFeatures:
+    case WarningReason::kLostFeatures:
       return "lost_features";
   }
   return "";
 }
 
-std::vector<ViewDoubt> FindViewDoubts(const Scene& scene,
-                                      const TranslationProblem& problem,
-                                      const TranslationSolution& solution,
-                                      const DoubtOptions& options) {
+std::vector<ReliabilityWarning> FindReliabilityWarnings(
+    const Scene& scene, const TranslationProblem& problem,
+    const TranslationSolution& solution, const ReliabilityOptions& options) {
   const Agreement agreement(scene, problem, solution, options);
-  std::vector<ViewDoubt> doubts = agreement.ContradictedPoses();
-  for (ViewDoubt& doubt : agreement.DoubtfulScales()) {
-    doubts.push_back(std::move(doubt));
+  std::vector<ReliabilityWarning> warnings = agreement.ContradictedPoses();
+  for (ReliabilityWarning& warning : agreement.DoubtfulScales()) {
+    warnings.push_back(std::move(warning));
   }
-  return doubts;
+  return warnings;
 }
 
-std::vector<ViewDoubt> FindLostFeatures(const Scene& scene) {
+std::vector<ReliabilityWarning> FindLostFeatures(const Scene& scene) {
   std::map<ViewId, FeatureCount> counts;
   CountFeatures(scene, scene.point_tracks, scene.structure, 2, &counts);
   CountFeatures(scene, scene.line_tracks, scene.line_structure, 3, &counts);
-  std::vector<ViewDoubt> doubts;
+  std::vector<ReliabilityWarning> warnings;
   for (const auto& [view, count] : counts) {
     if (2 * count.fitting >= count.matched) continue;
-    ViewDoubt doubt;
-    doubt.reason = DoubtReason::kLostFeatures;
-    doubt.views = {view};
-    doubt.share =
+    ReliabilityWarning warning;
+    warning.reason = WarningReason::kLostFeatures;
+    warning.views = {view};
+    warning.share =
         static_cast<double>(count.fitting) / static_cast<double>(count.matched);
-    doubts.push_back(std::move(doubt));
+    warnings.push_back(std::move(warning));
   }
-  return doubts;
+  return warnings;
 }
 
 }  // namespace lowlap

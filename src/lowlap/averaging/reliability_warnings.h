@@ -8,7 +8,7 @@
 
 namespace lowlap {
 
-enum class DoubtReason {
+enum class WarningReason {
   /// The relative poses of a view that contradict its place have more evidence
   /// than those that agree with it.
   kContradictedPoses,
@@ -23,11 +23,11 @@ enum class DoubtReason {
 };
 
 /// "contradicted_poses", "weak_scale", "contradicted_ratios", "lost_features".
-const char* DoubtReasonName(DoubtReason reason);
+const char* WarningReasonName(WarningReason reason);
 
 /// Placed views whose place is doubtful, and why.
-struct ViewDoubt {
-  DoubtReason reason = DoubtReason::kContradictedPoses;
+struct ReliabilityWarning {
+  WarningReason reason = WarningReason::kContradictedPoses;
   std::vector<ViewId> views;  // sorted
   /// kContradictedPoses: the relative poses that contradict.
   std::vector<ViewPair> against;
@@ -38,7 +38,7 @@ struct ViewDoubt {
 };
 
 /// How far from a solution a measurement contradicts it.
-struct DoubtOptions {
+struct ReliabilityOptions {
   /// In robust standard deviations of all residuals of its kind.
   double reach = 5.0;
   /// Deviation of a direction, in radians; no stated deviation counts as less.
@@ -53,15 +53,15 @@ struct DoubtOptions {
 /// agree carry the scale (Diagnose, on the relative poses and ratios that
 /// agree), and ratios across one camera are contradicted if those rejected
 /// there, between the same parts, have more than half their evidence.
-std::vector<ViewDoubt> FindViewDoubts(const Scene& scene,
-                                      const TranslationProblem& problem,
-                                      const TranslationSolution& solution,
-                                      const DoubtOptions& options);
+std::vector<ReliabilityWarning> FindReliabilityWarnings(
+    const Scene& scene, const TranslationProblem& problem,
+    const TranslationSolution& solution, const ReliabilityOptions& options);
 
 /// The fourth: views with a pose and an intrinsic of whose features fewer than
 /// half are observations of a landmark. Features are those on point tracks over
 /// two such views or more, and on line tracks over three or more (two views of
-/// a line fit any poses). Views without any have no entry.
-std::vector<ViewDoubt> FindLostFeatures(const Scene& scene);
+/// a line fit any poses, however many pieces of it they have); the pieces of a
+/// line in one view count once. Views without any have no entry.
+std::vector<ReliabilityWarning> FindLostFeatures(const Scene& scene);
 
 }  // namespace lowlap

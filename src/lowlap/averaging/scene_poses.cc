@@ -4,16 +4,16 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/strategies.h"
+#include "lowlap/averaging/strategies/internal/graph_scales.h"
 #include "lowlap/core/median.h"
 #include "lowlap/geometry/rotation.h"
+#include "lowlap/robust/median_deviation.h"
 
 namespace lowlap {
 namespace {
 
-constexpr double kDirectionFloorRad = 1e-3;
-// The median of the length of a 2-vector of normal errors, in deviations.
-constexpr double kMedianOfLength = 1.18;
+// Of all directions together; no measurement tells less than this.
+constexpr double kLeastDirectionSigmaRad = 1e-3;
 
 // Edges whose direction is beyond `reach` deviations from the centres of
 // component 0. `sigma_rad` is found first if it is 0, and then stays: what is
@@ -41,7 +41,8 @@ std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
     angles.push_back(residuals.back().angle_rad);
   }
   if (*sigma_rad == 0) {
-    *sigma_rad = std::max(Median(angles) / kMedianOfLength, kDirectionFloorRad);
+    *sigma_rad =
+        std::max(Median(angles) / kMedianOfNorm<2>, kLeastDirectionSigmaRad);
   }
   std::vector<OutlierEdge> outliers;
   for (const Residual& residual : residuals) {
@@ -110,7 +111,7 @@ Result<SceneRotations> AverageSceneRotations(const Scene& scene,
   RotationAveragingOptions rotation = options.rotation;
   rotation.seed = context.seed;
   return AverageSceneRotations(scene, rotation, options.outlier_reach,
-                               RadFromDeg(options.least_false_deg));
+                               RadFromDeg(options.least_false_deg), context);
 }
 
 Result<PoseSummary> SolveScenePoses(Scene* scene, const PoseOptions& options,
@@ -127,20 +128,21 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
-  const auto averager = MakeTranslationAverager(options.strategy);
-  if (!averager) return tl::unexpected<Error>(averager.error());
-  const bool with_tracks = (*averager)->NeedsTracks();
+  const GraphScalesAverager graph;
+  const TranslationAverager& averager =
+      options.averager ? *options.averager : graph;
+  const bool with_tracks = averager.NeedsTracks();
   std::vector<OutlierEdge> outliers = rotations.outliers;
   TranslationProblem problem = MakeTranslationProblem(
       *scene, rotations.cam_from_world, PairsOf(outliers), {}, with_tracks);
-  auto solution = (*averager)->Solve(problem, context);
+  auto solution = averager.Solve(problem, context);
   if (!solution) return tl::unexpected<Error>(solution.error());
 
   std::set<ViewTriplet> weak = WeakRatios(*scene, problem, *solution);
   if (!weak.empty()) {
     TranslationProblem wider = MakeTranslationProblem(
         *scene, rotations.cam_from_world, PairsOf(outliers), weak, with_tracks);
-    auto again = (*averager)->Solve(wider, context);
+    auto again = averager.Solve(wider, context);
     if (!again) return tl::unexpected<Error>(again.error());
     if (CountPlaced(*again) > CountPlaced(*solution)) {
       problem = std::move(wider);
@@ -159,7 +161,7 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
     more.insert(more.end(), wrong.begin(), wrong.end());
     TranslationProblem smaller = MakeTranslationProblem(
         *scene, rotations.cam_from_world, PairsOf(more), weak, with_tracks);
-    auto again = (*averager)->Solve(smaller, context);
+    auto again = averager.Solve(smaller, context);
     if (!again) return tl::unexpected<Error>(again.error());
     if (CountPlaced(*again) < CountPlaced(*solution)) break;
     outliers = std::move(more);
@@ -207,8 +209,8 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
       summary.weak_ratios.push_back(views);
     }
   }
-  summary.doubts = FindViewDoubts(*scene, problem, *solution,
-                                  {options.outlier_reach, sigma_rad});
+  summary.reliability_warnings = FindReliabilityWarnings(
+      *scene, problem, *solution, {options.outlier_reach, sigma_rad});
   summary.num_edges = static_cast<int>(problem.edges.size());
   summary.num_ratios = static_cast<int>(problem.ratios.size());
   summary.median_rotation_residual_deg =

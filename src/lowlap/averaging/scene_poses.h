@@ -1,7 +1,6 @@
 #pragma once
 
-#include <map>
-#include <string>
+#include <memory>
 #include <vector>
 
 #include "lowlap/averaging/reliability_warnings.h"
@@ -15,7 +14,8 @@
 namespace lowlap {
 
 struct PoseOptions {
-  std::string strategy = "graph";
+  /// The translation strategy; null: lowlap's own, `graph`.
+  std::shared_ptr<const TranslationAverager> averager;
   RotationAveragingOptions rotation;
   /// A relative pose whose rotation (direction) disagrees with the averaged
   /// rotations (the solved centres) by more than this many robust standard
@@ -45,8 +45,8 @@ struct PoseSummary {
   /// Triplets whose ratio chance explains as well, used since nothing else
   /// joins one of their views.
   std::vector<ViewTriplet> weak_ratios;
-  /// Views whose place the evidence does not bear out: FindViewDoubts.
-  std::vector<ViewDoubt> doubts;
+  /// Views whose place the evidence does not bear out: FindReliabilityWarnings.
+  std::vector<ReliabilityWarning> reliability_warnings;
   int num_edges = 0;
   int num_ratios = 0;
   double median_rotation_residual_deg = 0;
@@ -56,7 +56,7 @@ struct PoseSummary {
   /// views are doubtful for a reason of their own.
   bool IsDoubtful() const {
     return !loops.empty() || !contested.empty() || !weak_ratios.empty() ||
-           !doubts.empty();
+           !reliability_warnings.empty();
   }
 };
 
@@ -75,7 +75,7 @@ void SetPoses(const TranslationProblem& problem,
 /// pairs, agree on them; these are listed (`weak_ratios`). The poses of the
 /// largest component replace scene.poses; the others have no common scale with
 /// it and are listed. Gauge: that of SetPoses. Errors, with the scene
-/// unchanged: invalid options, an unknown strategy, those of the strategy.
+/// unchanged: invalid options, those of the strategy.
 Result<PoseSummary> SolveScenePoses(Scene* scene,
                                     const SceneRotations& rotations,
                                     const PoseOptions& options,

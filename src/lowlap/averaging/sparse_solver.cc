@@ -3,10 +3,11 @@
 #include <omp.h>
 
 #include <Eigen/CholmodSupport>
-#include <Eigen/IterativeLinearSolvers>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <vector>
+
+#include "lowlap/averaging/internal/cancellation.h"
 
 namespace lowlap {
 namespace {
@@ -18,10 +19,8 @@ constexpr Eigen::Index kLargeSystem = 2000;
 constexpr double kMaxOperations = 2e9;
 constexpr double kGradientTolerance = 1e-6;
 // What is reached after so many steps will do, if it is no worse than this.
-constexpr int kMaxGradientSteps = 3000;
+constexpr std::size_t kMaxGradientSteps = 3000;
 constexpr double kWorstGradientError = 0.1;
-
-using Gradients = Eigen::ConjugateGradient<Matrix, Eigen::Lower>;
 
 class Cholmod : public Eigen::CholmodDecomposition<Matrix, Eigen::Lower> {
  public:
@@ -90,23 +89,61 @@ Result<Eigen::MatrixXd> SolveWith(const Matrix& lower,
   return Unsolvable(lower);
 }
 
+// One right hand side, from `x`, preconditioned by the diagonal. Returns the
+// relative residual.
+Result<double> RunGradients(const Matrix& lower, const Eigen::VectorXd& rhs,
+                            const RunContext& context, Eigen::VectorXd* x) {
+  constexpr std::size_t kStepsBetweenQuestions = 16;
+  const double rhs_norm = rhs.norm();
+  if (rhs_norm == 0) {
+    x->setZero();
+    return 0.0;
+  }
+  const auto a = lower.selfadjointView<Eigen::Lower>();
+  const Eigen::VectorXd diagonal = lower.diagonal();
+  Eigen::VectorXd residual = rhs - a * *x;
+  Eigen::VectorXd direction = residual.cwiseQuotient(diagonal);
+  double product = residual.dot(direction);
+  for (std::size_t step = 0; step < kMaxGradientSteps &&
+                             residual.norm() > kGradientTolerance * rhs_norm;
+       ++step) {
+    if (step % kStepsBetweenQuestions == 0) {
+      if (const Status go_on = AskToGoOn(context, step, kMaxGradientSteps);
+          !go_on) {
+        return tl::unexpected<Error>(go_on.error());
+      }
+    }
+    const Eigen::VectorXd image = a * direction;
+    const double length = product / direction.dot(image);
+    *x += length * direction;
+    residual -= length * image;
+    const Eigen::VectorXd preconditioned = residual.cwiseQuotient(diagonal);
+    const double last = product;
+    product = residual.dot(preconditioned);
+    direction = preconditioned + (product / last) * direction;
+  }
+  return residual.norm() / rhs_norm;
+}
+
 // From `guess`, if it is of use.
 Result<Eigen::MatrixXd> SolveByGradients(const Matrix& lower,
                                          const Eigen::MatrixXd& rhs,
-                                         const Eigen::MatrixXd& guess) {
-  Gradients gradients;
-  gradients.setTolerance(kGradientTolerance);
-  gradients.setMaxIterations(kMaxGradientSteps);
-  gradients.compute(lower);
+                                         const Eigen::MatrixXd& guess,
+                                         const RunContext& context) {
   Eigen::MatrixXd solution = Eigen::MatrixXd::Zero(rhs.rows(), rhs.cols());
   if (guess.rows() == rhs.rows() && guess.cols() == rhs.cols() &&
       (rhs - lower.selfadjointView<Eigen::Lower>() * guess).norm() <
           rhs.norm()) {
     solution = guess;
   }
-  solution = gradients.solveWithGuess(rhs, solution).eval();
-  if (!solution.allFinite() || !(gradients.error() <= kWorstGradientError)) {
-    return Unsolvable(lower);
+  for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
+    Eigen::VectorXd column = solution.col(c);
+    const auto error = RunGradients(lower, rhs.col(c), context, &column);
+    if (!error) return tl::unexpected<Error>(error.error());
+    if (!column.allFinite() || !(*error <= kWorstGradientError)) {
+      return Unsolvable(lower);
+    }
+    solution.col(c) = column;
   }
   return solution;
 }
@@ -114,14 +151,17 @@ Result<Eigen::MatrixXd> SolveByGradients(const Matrix& lower,
 }  // namespace
 
 struct SparseSolver::Factorisation {
+  RunContext context;
   Pattern pattern;
   Eigen::SimplicialLDLT<Matrix> small;
   std::unique_ptr<Cholmod> large;
   Eigen::MatrixXd last;  // by conjugate gradients
 };
 
-SparseSolver::SparseSolver()
-    : factorisation_(std::make_unique<Factorisation>()) {}
+SparseSolver::SparseSolver(const RunContext& context)
+    : factorisation_(std::make_unique<Factorisation>()) {
+  factorisation_->context = context;
+}
 SparseSolver::~SparseSolver() = default;
 
 Result<Eigen::MatrixXd> SparseSolver::Solve(const Matrix& lower,
@@ -141,7 +181,7 @@ Result<Eigen::MatrixXd> SparseSolver::Solve(const Matrix& lower,
   if (f.large->Operations() <= kMaxOperations) {
     return SolveWith(lower, rhs, f.large.get());
   }
-  auto solution = SolveByGradients(lower, rhs, f.last);
+  auto solution = SolveByGradients(lower, rhs, f.last, f.context);
   if (solution) f.last = *solution;
   return solution;
 }

@@ -9,9 +9,6 @@
 namespace lowlap {
 namespace {
 
-// Directions are never better than this, whatever a covariance says: matches
-// share systematic errors (calibration, texture) that it does not know.
-constexpr double kDirectionFloorRad = 5e-4;
 constexpr double kDefaultDirectionRad = 0.02;
 constexpr double kRatioFloor = 1e-3;
 constexpr double kWeakRatioFloor = 0.2;
@@ -21,7 +18,7 @@ double DirectionStddev(const RelativePose& pose) {
   const double variance =
       pose.covariance->bottomRightCorner<2, 2>().trace() / 2;
   return std::sqrt(std::max(variance, 0.0) +
-                   kDirectionFloorRad * kDirectionFloorRad);
+                   kPoseErrorFloorRad * kPoseErrorFloorRad);
 }
 
 }  // namespace
@@ -69,6 +66,7 @@ TranslationProblem MakeTranslationProblem(
       continue;
     }
     RatioMeasurement measurement;
+    measurement.views = ratio.views;
     measurement.reference = reference->second;
     measurement.target = target->second;
     measurement.log_ratio = ratio.log_ratio;

@@ -14,6 +14,11 @@
 
 namespace lowlap {
 
+/// Rotations and directions of relative poses are never better than this,
+/// whatever a covariance says: matches share systematic errors (calibration,
+/// texture) that it does not know.
+inline constexpr double kPoseErrorFloorRad = 5e-4;
+
 /// A measured direction between two camera centres, with unknown length:
 ///   C_second - C_first = length direction_in_world,  length > 0.
 struct DirectionEdge {
@@ -26,6 +31,7 @@ struct DirectionEdge {
 /// A measured ratio of two edge lengths:
 ///   log length(target) - log length(reference) = log_ratio.
 struct RatioMeasurement {
+  ViewTriplet views;  // reference: (first, middle), target: (middle, last)
   std::size_t reference = 0;  // indices into TranslationProblem::edges
   std::size_t target = 0;
   double log_ratio = 0;

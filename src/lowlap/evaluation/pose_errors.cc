@@ -31,14 +31,20 @@ Result<Similarity> AlignCentres(const std::vector<CommonCamera>& cameras) {
 }  // namespace
 
 PoseEvaluation EvaluatePoses(const Scene& scene, const GroundTruth& truth) {
+  return EvaluatePoses(scene.views, scene.poses, truth);
+}
+
+PoseEvaluation EvaluatePoses(const std::map<ViewId, View>& views,
+                             const std::map<PoseId, Pose>& poses,
+                             const GroundTruth& truth) {
   PoseEvaluation result;
   std::vector<CommonCamera> cameras;
-  for (const auto& [id, view] : scene.views) {
+  for (const auto& [id, view] : views) {
     const auto true_pose = truth.find(id);
     if (true_pose == truth.end()) continue;
     ++result.num_total;
-    if (const Pose* solved = scene.FindPose(id)) {
-      cameras.push_back({solved, &true_pose->second});
+    if (const auto solved = poses.find(view.pose_id); solved != poses.end()) {
+      cameras.push_back({&solved->second, &true_pose->second});
       ViewPoseError error;
       error.view = id;
       error.name = view.filename;

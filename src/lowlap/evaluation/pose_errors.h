@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -46,6 +47,10 @@ struct PoseEvaluation {
 };
 
 PoseEvaluation EvaluatePoses(const Scene& scene, const GroundTruth& truth);
+/// The same for other poses than the scene's.
+PoseEvaluation EvaluatePoses(const std::map<ViewId, View>& views,
+                             const std::map<PoseId, Pose>& poses,
+                             const GroundTruth& truth);
 
 /// A table for people: one line per view, then the summary.
 std::string ToText(const PoseEvaluation& evaluation);

@@ -76,7 +76,7 @@ class Writer {
     return text;
   }
 
-  std::string HingeText(const ScaleHinge& hinge) const {
+  std::string HingeText(const ScaleArticulation& hinge) const {
     std::string text = "  on " + Name(hinge.view) + " hang ";
     for (std::size_t n = 1; n < hinge.parts.size(); ++n) {
       text += (n > 1 ? " | " : "") + Names(hinge.parts[n]);
@@ -102,7 +102,7 @@ class Writer {
     for (const RigidGroup& group : triplets.groups) {
       text += "    " + Names(group.views) + "\n";
     }
-    for (const Hinge& hinge : triplets.hinges) {
+    for (const ArticulationView& hinge : triplets.articulation_views) {
       text += "    joined in " + Name(hinge.view) + "\n";
     }
     return text;
@@ -127,7 +127,7 @@ class Writer {
             Across(part.near_group, part.meets_in, part.near_part));
       }
     }
-    for (const ScaleHinge& hinge : diagnosis_.hinges) {
+    for (const ScaleArticulation& hinge : diagnosis_.articulation_views) {
       if (!hinge.is_weak || !hinges.insert(hinge.view).second) continue;
       const ViewTriplet& views = scene_.scale_ratios[hinge.ratios[0]].views;
       advice.push_back(Across(views.first, views.middle, views.last));
@@ -194,7 +194,7 @@ std::string ToText(const Diagnosis& diagnosis, const Scene& scene) {
   for (const FloatingPart& part : diagnosis.floating) {
     floating.push_back(writer.Floating(part));
   }
-  for (const ScaleHinge& hinge : diagnosis.hinges) {
+  for (const ScaleArticulation& hinge : diagnosis.articulation_views) {
     hinges.push_back(writer.HingeText(hinge));
   }
   for (const std::size_t r : diagnosis.weak_ratios) {
@@ -203,7 +203,7 @@ std::string ToText(const Diagnosis& diagnosis, const Scene& scene) {
   for (const std::string& sentence : writer.Advice()) {
     advice.push_back("  " + sentence);
   }
-  if (!diagnosis.hinges.empty() || !diagnosis.weak_ratios.empty() ||
+  if (!diagnosis.articulation_views.empty() || !diagnosis.weak_ratios.empty() ||
       !diagnosis.floating.empty()) {
     text +=
         "\nA ratio a - b - c says how long b to c is, measured by a to b. "
@@ -244,7 +244,7 @@ std::string ToJson(const Diagnosis& diagnosis, const Scene& scene) {
   json["by_strong_ratios"] = Json::parse(ToJson(diagnosis.by_strong_ratios));
   json["weak_ratios"] = triplets(diagnosis.weak_ratios);
   json["hinges"] = Json::array();
-  for (const ScaleHinge& hinge : diagnosis.hinges) {
+  for (const ScaleArticulation& hinge : diagnosis.articulation_views) {
     json["hinges"].push_back({{"view", hinge.view},
                               {"parts", hinge.parts},
                               {"ratios", triplets(hinge.ratios)},

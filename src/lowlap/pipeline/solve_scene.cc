@@ -200,8 +200,8 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
   if (!refinement) return tl::unexpected<Error>(refinement.error());
   result.structure = std::move(refinement->structure);
   result.adjustment = std::move(refinement->adjustment);
-  for (ViewDoubt& doubt : FindLostFeatures(*scene)) {
-    result.poses.doubts.push_back(std::move(doubt));
+  for (ReliabilityWarning& doubt : FindLostFeatures(*scene)) {
+    result.poses.reliability_warnings.push_back(std::move(doubt));
   }
   return result;
 }

@@ -73,10 +73,10 @@ Result<RatioSummary> EstimateBelievedRatios(Scene* scene,
                                             const RunContext& context,
                                             StageLog* stages);
 
-/// The third stage: scene->poses by options.strategy (SolveScenePoses), without
-/// the relative poses that are a little off if that loses no view, and leaves
-/// no more parts whose scale directions alone do not fix (AnalyzeRigidity):
-/// what closes a loop is kept.
+/// The third stage: scene->poses by the averager of the options
+/// (SolveScenePoses), without the relative poses that are a little off if that
+/// loses no view, and leaves no more parts whose scale directions alone do not
+/// fix (AnalyzeRigidity): what closes a loop is kept.
 Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
                                  const PoseOptions& options,
                                  const RunContext& context, StageLog* stages);
@@ -97,7 +97,7 @@ Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
 /// Where there is nothing to adjust (a graph without features, views without
 /// intrinsics), the poses stay as they are, with a warning in the log.
 /// Views that lost most of their features in the end are added to
-/// PoseSummary::doubts (FindLostFeatures).
+/// PoseSummary::reliability_warnings (FindLostFeatures).
 /// Reads intrinsics, features, relative poses and tracks; settles alternatives
 /// and replaces scale ratios, poses and structure. Errors leave
 /// the scene in an intermediate state: keep a copy if you need it.

@@ -100,10 +100,10 @@ void AddDoubts(const PoseSummary& summary, Json* poses) {
   }
   (*poses)["weak_ratios"] = std::move(weak);
   Json doubts = Json::array();
-  for (const ViewDoubt& doubt : summary.doubts) {
+  for (const ReliabilityWarning& doubt : summary.reliability_warnings) {
     Json entry = {{"views", ViewList(doubt.views)},
-                  {"reason", DoubtReasonName(doubt.reason)}};
-    if (doubt.reason == DoubtReason::kLostFeatures) {
+                  {"reason", WarningReasonName(doubt.reason)}};
+    if (doubt.reason == WarningReason::kLostFeatures) {
       entry["fitting_share"] = doubt.share;
     }
     for (const ViewPair& edge : doubt.against) {
@@ -250,7 +250,7 @@ std::string ToJson(const RigidityReport& report) {
     json["groups"].push_back({{"views", group.views}, {"edges", edges}});
   }
   json["hinges"] = Json::array();
-  for (const Hinge& hinge : report.hinges) {
+  for (const ArticulationView& hinge : report.articulation_views) {
     json["hinges"].push_back({{"view", hinge.view}, {"groups", hinge.groups}});
   }
   return json.dump(2);

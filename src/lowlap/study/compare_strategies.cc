@@ -2,39 +2,40 @@
 
 #include <algorithm>
 #include <map>
-#include <memory>
 #include <utility>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/averaging/scene_poses.h"
-#include "lowlap/averaging/strategies.h"
 
 namespace lowlap {
 namespace {
 
-using Averagers = std::vector<std::unique_ptr<TranslationAverager>>;
+struct NamedAverager {
+  std::string name;
+  AveragerRegistry::Averager averager;
+};
 
-Result<Averagers> MakeAveragers(const std::vector<std::string>& wanted) {
-  std::vector<std::string> names;
-  for (const std::string& name : wanted) {
-    const std::vector<std::string> meant = name == "all"
-                                               ? TranslationAveragerNames()
-                                               : std::vector<std::string>{name};
-    for (const std::string& each : meant) {
-      if (std::find(names.begin(), names.end(), each) == names.end()) {
-        names.push_back(each);
+Result<std::vector<NamedAverager>> MakeAveragers(
+    const CompareOptions& options) {
+  std::vector<NamedAverager> averagers;
+  for (const std::string& request : options.strategies) {
+    const std::vector<std::string> meant =
+        request == "all" ? options.registry.Names()
+                         : std::vector<std::string>{request};
+    for (const std::string& name : meant) {
+      if (std::any_of(
+              averagers.begin(), averagers.end(),
+              [&](const NamedAverager& each) { return each.name == name; })) {
+        continue;
       }
+      const auto averager = options.registry.Make(name);
+      if (!averager) return tl::unexpected<Error>(averager.error());
+      averagers.push_back({name, *averager});
     }
   }
-  if (names.empty()) {
+  if (averagers.empty()) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "there is no strategy to compare");
-  }
-  Averagers averagers;
-  for (const std::string& name : names) {
-    auto averager = MakeTranslationAverager(name);
-    if (!averager) return tl::unexpected<Error>(averager.error());
-    averagers.push_back(std::move(*averager));
   }
   return averagers;
 }
@@ -96,10 +97,11 @@ void Place(const TranslationProblem& problem,
   result->poses_before_adjustment = result->poses = scene->poses;
 }
 
-StrategyResult RunStrategy(const TranslationAverager& averager,
-                           const Input& input, const RunContext& context) {
+StrategyResult RunStrategy(const NamedAverager& named, const Input& input,
+                           const RunContext& context) {
+  const TranslationAverager& averager = *named.averager;
   StrategyResult result;
-  result.strategy = averager.Name();
+  result.strategy = named.name;
   StageLog stages;
   Scene scene = input.scene;
   const auto run = [&]() -> Status {
@@ -140,9 +142,7 @@ class PoseComparison {
  public:
   PoseComparison(const std::map<ViewId, View>& views,
                  const StrategyResult& reference)
-      : reference_(reference) {
-    scene_.views = views;
-  }
+      : reference_(reference), views_(views) {}
 
   void Judge(StrategyResult* result) {
     if (result == &reference_ || result->num_placed == 0) return;
@@ -160,10 +160,12 @@ class PoseComparison {
   std::optional<ErrorStatistics> Difference(
       const std::map<PoseId, Pose>& poses,
       const std::map<PoseId, Pose>& reference, double mean_baseline) {
-    scene_.poses = reference;
-    const GroundTruth truth = GroundTruthFromScene(scene_);
-    scene_.poses = poses;
-    const PoseEvaluation evaluation = EvaluatePoses(scene_, truth);
+    GroundTruth truth;
+    for (const auto& [id, view] : views_) {
+      const auto pose = reference.find(view.pose_id);
+      if (pose != reference.end()) truth.emplace(id, pose->second);
+    }
+    const PoseEvaluation evaluation = EvaluatePoses(views_, poses, truth);
     if (evaluation.scope != EvaluationScope::kFull || !(mean_baseline > 0)) {
       return std::nullopt;
     }
@@ -176,7 +178,7 @@ class PoseComparison {
   }
 
   const StrategyResult& reference_;
-  Scene scene_;
+  const std::map<ViewId, View>& views_;
 };
 
 StrategyResult* FindReference(const std::string& name,
@@ -194,9 +196,9 @@ StrategyResult* FindReference(const std::string& name,
 
 Status CompareOptions::Validate() const {
   if (const Status valid = solve.Validate(); !valid) return valid;
-  const auto averagers = MakeAveragers(strategies);
+  const auto averagers = MakeAveragers(*this);
   if (!averagers) return tl::unexpected<Error>(averagers.error());
-  if (const auto known = MakeTranslationAverager(reference); !known) {
+  if (const auto known = registry.Make(reference); !known) {
     return tl::unexpected<Error>(known.error());
   }
   return {};
@@ -208,7 +210,7 @@ Result<Comparison> CompareStrategies(const Scene& scene,
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
-  const auto averagers = MakeAveragers(options.strategies);
+  const auto averagers = MakeAveragers(options);
   if (!averagers) return tl::unexpected<Error>(averagers.error());
 
   Scene start_scene = scene;
@@ -225,9 +227,9 @@ Result<Comparison> CompareStrategies(const Scene& scene,
   start_scene.coplanar_pairs.clear();
 
   Input input{start_scene, options, PairsOf(start->rotations.outliers), {}};
-  const bool with_tracks =
-      std::any_of(averagers->begin(), averagers->end(),
-                  [](const auto& each) { return each->NeedsTracks(); });
+  const bool with_tracks = std::any_of(
+      averagers->begin(), averagers->end(),
+      [](const auto& each) { return each.averager->NeedsTracks(); });
   input.problem =
       MakeTranslationProblem(start_scene, start->rotations.cam_from_world,
                              input.outliers, {}, with_tracks);
@@ -239,12 +241,12 @@ Result<Comparison> CompareStrategies(const Scene& scene,
   comparison.num_outlier_edges = static_cast<int>(input.outliers.size());
   comparison.has_truth = options.truth.has_value();
   comparison.shared_costs = stages.stages();
-  for (const auto& averager : *averagers) {
+  for (const NamedAverager& averager : *averagers) {
     if (!context.Progress("strategies", comparison.results.size(),
                           averagers->size())) {
       return MakeError(ErrorCode::kCancelled, "stopped", {}, "strategies");
     }
-    comparison.results.push_back(RunStrategy(*averager, input, context));
+    comparison.results.push_back(RunStrategy(averager, input, context));
     const std::optional<Error>& failure = comparison.results.back().failure;
     if (failure && failure->code == ErrorCode::kCancelled) {
       return tl::unexpected<Error>(*failure);

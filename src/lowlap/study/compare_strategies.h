@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/averaging/averager_registry.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/evaluation/ground_truth.h"
@@ -17,8 +18,10 @@
 namespace lowlap {
 
 struct CompareOptions {
-  /// Names as MakeTranslationAverager knows them; "all" stands for every one of
-  /// TranslationAveragerNames. Repeated names count once.
+  /// Where strategies come from; register your own there.
+  AveragerRegistry registry = AveragerRegistry::WithBuiltIns();
+  /// As the registry reads them; "all" stands for all its names. Repeated ones
+  /// count once.
   std::vector<std::string> strategies = {"all"};
   /// Everything but the strategy, which is not read.
   SolveOptions solve;

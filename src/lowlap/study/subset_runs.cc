@@ -114,13 +114,13 @@ std::vector<std::string> DoubtCodes(const PoseSummary& summary) {
   if (!summary.loops.empty()) codes.push_back("open_loop");
   if (!summary.contested.empty()) codes.push_back("contested_link");
   if (!summary.weak_ratios.empty()) codes.push_back("weak_ratio");
-  for (const DoubtReason reason :
-       {DoubtReason::kContradictedPoses, DoubtReason::kWeakScale,
-        DoubtReason::kContradictedRatios, DoubtReason::kLostFeatures}) {
+  for (const WarningReason reason :
+       {WarningReason::kContradictedPoses, WarningReason::kWeakScale,
+        WarningReason::kContradictedRatios, WarningReason::kLostFeatures}) {
     const bool present = std::any_of(
-        summary.doubts.begin(), summary.doubts.end(),
-        [&](const ViewDoubt& doubt) { return doubt.reason == reason; });
-    if (present) codes.push_back(DoubtReasonName(reason));
+        summary.reliability_warnings.begin(), summary.reliability_warnings.end(),
+        [&](const ReliabilityWarning& doubt) { return doubt.reason == reason; });
+    if (present) codes.push_back(WarningReasonName(reason));
   }
   return codes;
 }

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
 
 namespace lowlap {
 
@@ -23,13 +24,15 @@ namespace lowlap {
 /// one thread, and so the same for any number of them.
 class SparseSolver {
  public:
-  SparseSolver();
+  /// Conjugate gradients ask the host of `context` whether to go on.
+  explicit SparseSolver(const RunContext& context = {});
   ~SparseSolver();
   SparseSolver(const SparseSolver&) = delete;
   SparseSolver& operator=(const SparseSolver&) = delete;
 
   /// `lower` holds the lower triangle of A; what is above it is ignored.
-  /// kNumerical if A is not positive definite or the result is not finite.
+  /// kNumerical if A is not positive definite or the result is not finite;
+  /// kCancelled.
   Result<Eigen::MatrixXd> Solve(const Eigen::SparseMatrix<double>& lower,
                                 const Eigen::MatrixXd& rhs);
 

@@ -125,12 +125,12 @@ std::vector<FloatingPart> FindFloating(const Scene& scene,
     // The largest group that it shares a camera with, a larger one if it can
     // be.
     std::size_t meets = report.groups.size();
-    for (const Hinge& hinge : report.hinges) {
-      if (!Holds(group, hinge.view)) continue;
-      for (const std::size_t other : hinge.groups) {
+    for (const ArticulationView& articulation : report.articulation_views) {
+      if (!Holds(group, articulation.view)) continue;
+      for (const std::size_t other : articulation.groups) {
         if (other == g || other >= meets) continue;
         meets = other;
-        part.meets_in = hinge.view;
+        part.meets_in = articulation.view;
       }
     }
     if (part.meets_in == kInvalidId) {
@@ -199,10 +199,11 @@ TripletPrediction PredictTripletAveraging(const Scene& scene,
     new_index[g] = prediction.groups.size();
     prediction.groups.push_back(report.groups[g]);
   }
-  for (const Hinge& hinge : report.hinges) {
-    if (kept.count(hinge.view) == 0) continue;
-    prediction.hinges.push_back(hinge);
-    for (std::size_t& g : prediction.hinges.back().groups) g = new_index[g];
+  for (const ArticulationView& articulation : report.articulation_views) {
+    if (kept.count(articulation.view) == 0) continue;
+    prediction.articulation_views.push_back(articulation);
+    for (std::size_t& g : prediction.articulation_views.back().groups)
+      g = new_index[g];
   }
   return prediction;
 }
@@ -232,7 +233,8 @@ Result<ScaleDiagnosis> DiagnoseScales(const ViewGraph& graph,
       graph, ratios, [&](const ScaleRatio& r) { return !IsWeak(r, options); });
   diagnosis.weak_ratios =
       WeakRatiosInUse(ratios, options, diagnosis.by_strong_ratios);
-  diagnosis.hinges = FindScaleHinges(ratios, diagnosis, options);
+  diagnosis.articulation_views =
+      FindScaleArticulations(ratios, diagnosis, options);
   return diagnosis;
 }
 

@@ -25,7 +25,7 @@ struct DiagnosisOptions {
 
 /// A camera whose ratios are all that joins two parts of a scale group: without
 /// them the parts have scales of their own.
-struct ScaleHinge {
+struct ScaleArticulation {
   ViewId view = kInvalidId;
   /// Each part's views without the camera, the largest first.
   std::vector<std::vector<ViewId>> parts;
@@ -61,7 +61,7 @@ struct TripletPrediction {
   /// The kept views by common scale; more than one: they are put together at
   /// an arbitrary scale, without a warning.
   std::vector<RigidGroup> groups;
-  std::vector<Hinge> hinges;  // where they meet; indices into groups
+  std::vector<ArticulationView> articulation_views;  // where they meet; indices into groups
 
   bool IsGlued() const { return groups.size() > 1; }
 };
@@ -76,7 +76,7 @@ struct ScaleDiagnosis {
   /// The weak ratios between groups of by_strong_ratios that are one in
   /// by_ratios, as indices into the scale ratios, most meaningful first.
   std::vector<std::size_t> weak_ratios;
-  std::vector<ScaleHinge> hinges;  // by camera
+  std::vector<ScaleArticulation> articulation_views;  // by camera
 };
 
 struct Diagnosis : ScaleDiagnosis {

@@ -78,7 +78,8 @@ RigidityReport Report(const ViewGraph& graph, UnionFind* sets) {
     }
   }
   for (auto& [view, groups] : groups_of_view) {
-    if (groups.size() > 1) report.hinges.push_back({view, std::move(groups)});
+    if (groups.size() > 1)
+      report.articulation_views.push_back({view, std::move(groups)});
   }
   return report;
 }

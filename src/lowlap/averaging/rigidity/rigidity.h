@@ -18,14 +18,14 @@ struct RigidGroup {
 
 /// A view in which two or more rigid groups meet. Directions say nothing about
 /// the groups' relative scale there: only ratios across the view do.
-struct Hinge {
+struct ArticulationView {
   ViewId view = kInvalidId;
   std::vector<std::size_t> groups;  // indices into RigidityReport::groups
 };
 
 struct RigidityReport {
   std::vector<RigidGroup> groups;  // most views first
-  std::vector<Hinge> hinges;       // by view id
+  std::vector<ArticulationView> articulation_views;       // by view id
   /// Views of one connected component of the view graph, most views first.
   std::vector<std::vector<ViewId>> connected_components;
   /// Views without any relative pose.

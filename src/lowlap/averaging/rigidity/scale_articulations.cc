@@ -19,10 +19,11 @@ struct CrossRatio {
   bool is_weak = false;
 };
 
-class HingeFinder {
+class ArticulationFinder {
  public:
-  HingeFinder(const std::vector<ScaleRatio>& ratios,
-              const ScaleDiagnosis& diagnosis, const DiagnosisOptions& options)
+  ArticulationFinder(const std::vector<ScaleRatio>& ratios,
+                     const ScaleDiagnosis& diagnosis,
+                     const DiagnosisOptions& options)
       : all_ratios_(ratios), num_parts_(diagnosis.by_directions.groups.size()) {
     std::map<ViewPair, std::size_t> index;
     for (std::size_t p = 0; p < num_parts_; ++p) {
@@ -49,10 +50,10 @@ class HingeFinder {
     }
   }
 
-  std::vector<ScaleHinge> Find() const {
+  std::vector<ScaleArticulation> Find() const {
     std::set<ViewId> cameras;
     for (const CrossRatio& ratio : ratios_) cameras.insert(ratio.view);
-    std::vector<ScaleHinge> hinges;
+    std::vector<ScaleArticulation> articulations;
     for (const ViewId camera : cameras) {
       const Labels labels =
           LabelsWithout([&](const CrossRatio& r) { return r.view == camera; });
@@ -65,12 +66,13 @@ class HingeFinder {
             return r.view == camera && r.is_weak;
           }));
         }
-        ScaleHinge hinge = MakeHinge(camera, group, labels, &sides);
-        hinge.is_weak = without_weak.at(group).size() > 1;
-        hinges.push_back(std::move(hinge));
+        ScaleArticulation articulation =
+            MakeArticulation(camera, group, labels, &sides);
+        articulation.is_weak = without_weak.at(group).size() > 1;
+        articulations.push_back(std::move(articulation));
       }
     }
-    return hinges;
+    return articulations;
   }
 
  private:
@@ -118,25 +120,25 @@ class HingeFinder {
     return sides;
   }
 
-  ScaleHinge MakeHinge(ViewId camera, std::size_t group, const Labels& labels,
-                       Sides* sides) const {
-    ScaleHinge hinge;
-    hinge.view = camera;
+  ScaleArticulation MakeArticulation(ViewId camera, std::size_t group,
+                                     const Labels& labels, Sides* sides) const {
+    ScaleArticulation articulation;
+    articulation.view = camera;
     for (auto& entry : *sides) {
       entry.second.erase(camera);
-      hinge.parts.emplace_back(entry.second.begin(), entry.second.end());
+      articulation.parts.emplace_back(entry.second.begin(), entry.second.end());
     }
     std::stable_sort(
-        hinge.parts.begin(), hinge.parts.end(),
+        articulation.parts.begin(), articulation.parts.end(),
         [](const auto& a, const auto& b) { return a.size() > b.size(); });
     for (const CrossRatio& ratio : ratios_) {
       if (ratio.view == camera && group_[ratio.first_edge] == group &&
           labels[ratio.first_edge] != labels[ratio.second_edge]) {
-        hinge.ratios.push_back(ratio.ratio);
+        articulation.ratios.push_back(ratio.ratio);
       }
     }
-    SortByEvidence(all_ratios_, &hinge.ratios);
-    return hinge;
+    SortByEvidence(all_ratios_, &articulation.ratios);
+    return articulation;
   }
 
   const std::vector<ScaleRatio>& all_ratios_;
@@ -149,10 +151,10 @@ class HingeFinder {
 
 }  // namespace
 
-std::vector<ScaleHinge> FindScaleHinges(const std::vector<ScaleRatio>& ratios,
-                                        const ScaleDiagnosis& diagnosis,
-                                        const DiagnosisOptions& options) {
-  return HingeFinder(ratios, diagnosis, options).Find();
+std::vector<ScaleArticulation> FindScaleArticulations(
+    const std::vector<ScaleRatio>& ratios, const ScaleDiagnosis& diagnosis,
+    const DiagnosisOptions& options) {
+  return ArticulationFinder(ratios, diagnosis, options).Find();
 }
 
 void SortByEvidence(const std::vector<ScaleRatio>& ratios,

@@ -195,11 +195,20 @@ Result<std::vector<MotionDecision>> DecideMotionsByCycles(
   const double margin =
       std::log1p(options.outlier_reach * options.outlier_reach);
   std::vector<MotionDecision> decisions;
+  std::map<ViewPair, RelativePose> undecided;
+  for (const ViewPair& views : UndecidedPairs(*scene)) {
+    undecided.emplace(views, scene->relative_poses.at(views));
+  }
   for (bool changed = true; changed && !UndecidedPairs(*scene).empty();) {
     changed = false;
     const auto costs =
         LeastCosts(*scene, ChoicesToTry(*scene), options, context);
-    if (!costs) return tl::unexpected<Error>(costs.error());
+    if (!costs) {
+      for (auto& [views, pose] : undecided) {
+        scene->relative_poses.at(views) = std::move(pose);
+      }
+      return tl::unexpected<Error>(costs.error());
+    }
     for (const auto& [views, of_pair] : *costs) {
       const MotionDecision decision =
           ChooseMotion(of_pair, margin, MotionGrounds::kCycles,

@@ -61,7 +61,7 @@ MotionDecision ChooseMotion(const std::vector<double>& costs, double margin,
 /// that decides no more. The result does not depend on the number of threads.
 /// Returns what was decided.
 ///
-/// Errors: those of AverageRotations; kCancelled.
+/// Errors, with the scene unchanged: those of AverageRotations; kCancelled.
 Result<std::vector<MotionDecision>> DecideMotionsByCycles(
     Scene* scene, const PoseOptions& options, const RunContext& context);
 

@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/averaging/rotations/internal/cycle_support.h"
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
+#include "lowlap/robust/median_deviation.h"
+#include "lowlap/robust/robust_loss.h"
 
 namespace lowlap {
 namespace {
@@ -53,9 +56,11 @@ std::vector<double> NormalisedResiduals(
   return normalised;
 }
 
-// 1.4826 times the median of norms of normal 3-vectors, from the given share of
-// the residuals within `reach`: the lower quartile is moved by nothing that
-// less than three in four of them do, the median is better where few are false.
+// From the given share of the residuals within `reach`: the lower quartile is
+// moved by nothing that less than three in four of them do, the median is
+// better where few are false. The factor is that of scalars, so that for norms
+// of 3-vectors this is kMedianOfNorm<3> / kMedianOfNorm<1> = 2.28 times their
+// deviation per axis, and the reach of the weights is that much wider.
 enum class ScaleFrom { kQuartile, kMedian };
 double ScaleWithin(const std::vector<double>& normalised, double reach,
                    ScaleFrom from) {
@@ -68,9 +73,9 @@ double ScaleWithin(const std::vector<double>& normalised, double reach,
   const auto middle = near.begin() + static_cast<std::ptrdiff_t>(
                                          near.size() / (quartile ? 4 : 2));
   std::nth_element(near.begin(), middle, near.end());
-  constexpr double kMedianFromQuartile = 1.40;
-  return std::max(1.0,
-                  1.4826 * (quartile ? kMedianFromQuartile : 1.0) * *middle);
+  const double median_from_quartile =
+      quartile ? kMedianOfNorm<3> / kLowerQuartileOfNorm<3> : 1.0;
+  return std::max(1.0, median_from_quartile * *middle / kMedianOfNorm<1>);
 }
 
 double EvidenceWeight(const RotationMeasurement& m) {
@@ -121,19 +126,25 @@ std::vector<Start> MakeStarts(
 Status Refine(const std::vector<RotationMeasurement>& measurements,
               const std::vector<DifferenceEdge>& edges,
               const RotationAveragingOptions& options, bool with_l1,
-              RotationAveragingResult* result) {
+              const RunContext& context, RotationAveragingResult* result) {
   constexpr double kReach = 3.0;
   std::vector<Mat3>& rotations = result->cam_from_world;
   const Eigen::Index count = static_cast<Eigen::Index>(measurements.size());
   Eigen::VectorXd weights(count);
   Eigen::MatrixXd steps(count, 3);
-  SparseSolver solver;
+  SparseSolver solver(context);
   // L1 has done its work long before half of the iterations.
   const int num_l1_iterations = options.max_iterations / 2;
   enum class Phase { kL1, kTighten, kPolish };
   Phase phase = with_l1 ? Phase::kL1 : Phase::kTighten;
   double scale = HUGE_VAL;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    if (const Status go_on =
+            AskToGoOn(context, static_cast<std::size_t>(iteration),
+                      static_cast<std::size_t>(options.max_iterations));
+        !go_on) {
+      return tl::unexpected<Error>(go_on.error());
+    }
     std::vector<double> normalised(measurements.size());
     for (Eigen::Index e = 0; e < count; ++e) {
       steps.row(e) = Residual(measurements[e], rotations);
@@ -157,7 +168,7 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
       if (measurements[e].trusted) continue;
       if (phase != Phase::kL1) {
         const double x = r / kReach;
-        weights(e) /= std::pow(1 + x * x, 2);
+        weights(e) *= GemanMcClureWeight(x * x);
       } else {
         weights(e) /= std::max(r, 0.1);
       }
@@ -214,7 +225,7 @@ Status RotationAveragingOptions::Validate() const {
 
 Result<RotationAveragingResult> AverageRotations(
     std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
-    const RotationAveragingOptions& options) {
+    const RotationAveragingOptions& options, const RunContext& context) {
   if (const Status valid = options.Validate(); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
@@ -238,8 +249,8 @@ Result<RotationAveragingResult> AverageRotations(
     RotationAveragingResult result;
     result.cam_from_world =
         ComposeAlongForest(num_views, measurements, edges, start.costs);
-    if (const Status done =
-            Refine(measurements, edges, options, start.with_l1, &result);
+    if (const Status done = Refine(measurements, edges, options, start.with_l1,
+                                   context, &result);
         !done) {
       return tl::unexpected<Error>(done.error());
     }

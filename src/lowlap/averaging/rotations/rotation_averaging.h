@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
 #include "lowlap/geometry/types.h"
 
 namespace lowlap {
@@ -57,9 +58,11 @@ struct RotationAveragingResult {
 /// is returned. Each step is a graph Laplacian in the tangent space
 /// (SolveDifferences). Gauge: one rotation of every connected component is the
 /// identity. A tree is reproduced exactly. Errors: kInvalidArgument (options, a
-/// measurement without two views or a positive deviation), kNumerical.
+/// measurement without two views or a positive deviation), kNumerical,
+/// kCancelled.
 Result<RotationAveragingResult> AverageRotations(
     std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
-    const RotationAveragingOptions& options = {});
+    const RotationAveragingOptions& options = {},
+    const RunContext& context = {});
 
 }  // namespace lowlap

@@ -5,50 +5,29 @@
 #include <set>
 
 #include "lowlap/averaging/rotations/internal/bridges.h"
+#include "lowlap/averaging/translation_problem.h"
 #include "lowlap/core/median.h"
-#include "lowlap/core/union_find.h"
 #include "lowlap/geometry/rotation.h"
+#include "lowlap/robust/median_deviation.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
 
-constexpr double kRotationFloorRad = 5e-4;
 constexpr double kDefaultRotationRad = 5e-3;
-// The median of the norm of a 3-vector of normal errors, in deviations.
-constexpr double kMedianOfNorm = 1.54;
 
 double Evidence(const RelativePose& pose) {
   return std::max(0.0, -pose.log10_nfa);
-}
-
-// The views of the largest connected component of the given edges.
-std::set<ViewId> LargestComponent(const std::set<ViewPair>& edges) {
-  std::map<ViewId, std::size_t> index;
-  for (const ViewPair& edge : edges) {
-    index.emplace(edge.first, index.size());
-    index.emplace(edge.second, index.size());
-  }
-  UnionFind sets(index.size());
-  for (const ViewPair& edge : edges) {
-    sets.Union(index.at(edge.first), index.at(edge.second));
-  }
-  const std::vector<std::size_t> labels = sets.Labels();
-  std::map<std::size_t, std::set<ViewId>> components;
-  for (const auto& [view, n] : index) components[labels[n]].insert(view);
-  std::set<ViewId> largest;
-  for (auto& entry : components) {
-    if (entry.second.size() > largest.size()) largest = std::move(entry.second);
-  }
-  return largest;
 }
 
 class SceneRotationSolver {
  public:
   SceneRotationSolver(const Scene& scene,
                       const RotationAveragingOptions& options, double reach,
-                      double least_false_rad)
+                      double least_false_rad, const RunContext& context)
       : scene_(scene),
         options_(options),
+        context_(context),
         reach_(reach),
         least_false_rad_(least_false_rad) {
     for (const auto& entry : scene.relative_poses) kept_.insert(entry.first);
@@ -71,26 +50,27 @@ class SceneRotationSolver {
   }
 
   Status Average() {
-    const std::set<ViewId> component = LargestComponent(kept_);
-    if (component.empty()) {
+    const std::vector<ViewPair> all_kept(kept_.begin(), kept_.end());
+    const auto components = ConnectedComponents(ViewGraph(all_kept));
+    if (components.empty()) {
       return MakeError(ErrorCode::kInsufficientData,
                        "no two relative rotations agree");
     }
-    views_.assign(component.begin(), component.end());
+    views_ = components.front();
     std::map<ViewId, std::size_t> index;
     for (const ViewId view : views_) index.emplace(view, index.size());
-    used_.clear();
-    graph_.clear();
-    is_kept_.clear();
+    std::vector<ViewPair> kept;
+    rejected_.clear();
     std::vector<RotationMeasurement> measurements;
     for (const auto& [views, pose] : scene_.relative_poses) {
       const auto first = index.find(views.first);
       const auto second = index.find(views.second);
       if (first == index.end() || second == index.end()) continue;
-      used_.push_back(views);
-      graph_.push_back({first->second, second->second});
-      is_kept_.push_back(kept_.count(views) > 0);
-      if (!is_kept_.back()) continue;
+      if (kept_.count(views) == 0) {
+        rejected_.push_back(views);
+        continue;
+      }
+      kept.push_back(views);
       RotationMeasurement m;
       m.first = first->second;
       m.second = second->second;
@@ -100,7 +80,9 @@ class SceneRotationSolver {
       m.trusted = trusted_.count(views) > 0;
       measurements.push_back(m);
     }
-    const auto solved = AverageRotations(views_.size(), measurements, options_);
+    graph_ = ViewGraph(std::move(kept));
+    const auto solved =
+        AverageRotations(views_.size(), measurements, options_, context_);
     if (!solved) return tl::unexpected<Error>(solved.error());
     for (std::size_t n = 0; n < views_.size(); ++n) {
       rotations_[views_[n]] = solved->cam_from_world[n];
@@ -113,8 +95,8 @@ class SceneRotationSolver {
           near.push_back(r);
         }
       }
-      sigma_ =
-          std::max(Median(std::move(near)) / kMedianOfNorm, kRotationFloorRad);
+      sigma_ = std::max(Median(std::move(near)) / kMedianOfNorm<3>,
+                        kPoseErrorFloorRad);
     }
     result_.median_residual_rad = Median(solved->residuals_rad);
     return {};
@@ -137,11 +119,11 @@ class SceneRotationSolver {
 
   bool RejectByRotation() {
     bool changed = false;
-    for (std::size_t e = 0; e < used_.size(); ++e) {
-      if (!is_kept_[e] || settled_.count(used_[e]) > 0) continue;
-      const double own = std::max(sigma_, RotationStddev(PoseOf(used_[e])));
-      if (ResidualRad(used_[e]) > std::max(reach_ * own, least_false_rad_)) {
-        LeaveOut(used_[e], OutlierReason::kRotation);
+    for (const ViewPair& views : graph_.pairs()) {
+      if (settled_.count(views) > 0) continue;
+      const double own = std::max(sigma_, RotationStddev(PoseOf(views)));
+      if (ResidualRad(views) > std::max(reach_ * own, least_false_rad_)) {
+        LeaveOut(views, OutlierReason::kRotation);
         changed = true;
       }
     }
@@ -151,30 +133,28 @@ class SceneRotationSolver {
   // Decides on rejected edges whose loop holds two unchecked edges or more, if
   // no other rejected edge crosses any of them: see AverageSceneRotations.
   bool SettleLoops() {
-    const auto states = ExamineBridges(views_.size(), graph_, is_kept_);
-    const auto loops = BridgesClosedBy(views_.size(), graph_, is_kept_);
+    const BridgeReport report = ExamineBridges(graph_, rejected_);
     bool changed = false;
-    for (std::size_t e = 0; e < loops.size(); ++e) {
+    for (const auto& [closing, bridges] : report.crossed) {
       const bool alone = std::all_of(
-          loops[e].begin(), loops[e].end(), [&](std::size_t bridge) {
-            return states[bridge].contradictions.size() == 1;
+          bridges.begin(), bridges.end(), [&](const ViewPair& bridge) {
+            return report.bridges.at(bridge).size() == 1;
           });
-      if (loops[e].size() < 2 || !alone || settled_.count(used_[e]) > 0) {
+      if (bridges.size() < 2 || !alone || settled_.count(closing) > 0) {
         continue;
       }
-      SettleLoop(used_[e], loops[e]);
+      SettleLoop(closing, bridges);
       changed = true;
     }
     return changed;
   }
 
   void SettleLoop(const ViewPair& closing,
-                  const std::vector<std::size_t>& bridges) {
+                  const std::vector<ViewPair>& bridges) {
     LoopClosing loop;
     loop.closing_deg = DegFromRad(ResidualRad(closing));
     loop.edges.push_back(closing);
-    for (const std::size_t bridge : bridges)
-      loop.edges.push_back(used_[bridge]);
+    loop.edges.insert(loop.edges.end(), bridges.begin(), bridges.end());
     double variance = 0;
     for (const ViewPair& views : loop.edges) {
       variance += 3 * std::pow(RotationStddev(PoseOf(views)), 2);
@@ -204,16 +184,16 @@ class SceneRotationSolver {
   }
 
   bool RejectByEvidence() {
-    const auto states = ExamineBridges(views_.size(), graph_, is_kept_);
     bool changed = false;
-    for (std::size_t e = 0; e < states.size(); ++e) {
-      if (settled_.count(used_[e]) > 0) continue;
+    const BridgeReport report = ExamineBridges(graph_, rejected_);
+    for (const auto& [views, contradictions] : report.bridges) {
+      if (settled_.count(views) > 0) continue;
       double against = 0;
-      for (const std::size_t c : states[e].contradictions) {
-        against += Evidence(PoseOf(used_[c]));
+      for (const ViewPair& other : contradictions) {
+        against += Evidence(PoseOf(other));
       }
-      if (against > Evidence(PoseOf(used_[e]))) {
-        LeaveOut(used_[e], OutlierReason::kContradicted);
+      if (against > Evidence(PoseOf(views))) {
+        LeaveOut(views, OutlierReason::kContradicted);
         changed = true;
       }
     }
@@ -224,22 +204,12 @@ class SceneRotationSolver {
     for (const ViewId view : views_) {
       result_.cam_from_world[view] = rotations_.at(view);
     }
-    const auto states = ExamineBridges(views_.size(), graph_, is_kept_);
-    for (std::size_t e = 0; e < states.size(); ++e) {
-      if (!states[e].is_bridge) continue;
-      result_.unchecked.push_back(used_[e]);
-      if (states[e].contradictions.empty() || settled_.count(used_[e]) > 0) {
-        continue;
-      }
-      ContestedLink link;
-      link.edge = used_[e];
-      for (const std::size_t c : states[e].contradictions) {
-        link.contradictions.push_back(used_[c]);
-      }
-      for (const std::size_t n : states[e].beyond) {
-        link.views.push_back(views_[n]);
-      }
-      result_.contested.push_back(std::move(link));
+    const BridgeReport report = ExamineBridges(graph_, rejected_);
+    for (const auto& [views, contradictions] : report.bridges) {
+      result_.unchecked.push_back(views);
+      if (contradictions.empty() || settled_.count(views) > 0) continue;
+      result_.contested.push_back(
+          {views, contradictions, ViewsBeyond(graph_, views)});
     }
     for (const auto& entry : outliers_) {
       result_.outliers.push_back(entry.second);
@@ -248,6 +218,7 @@ class SceneRotationSolver {
 
   const Scene& scene_;
   const RotationAveragingOptions& options_;
+  const RunContext& context_;
   const double reach_;
   const double least_false_rad_;
 
@@ -257,11 +228,10 @@ class SceneRotationSolver {
   std::set<ViewPair> trusted_;  // of these, those that share its closing error
   double sigma_ = 0;  // of the first average: it must not erode what is right
 
-  // Of the last average: the component, and its relative poses.
+  // Of the last average: the component, and the relative poses in it.
   std::vector<ViewId> views_;
-  std::vector<ViewPair> used_;
-  std::vector<DifferenceEdge> graph_;
-  std::vector<bool> is_kept_;
+  ViewGraph graph_;  // of those that are kept
+  std::vector<ViewPair> rejected_;
   std::map<ViewId, Mat3> rotations_;
   SceneRotations result_;
 };
@@ -272,7 +242,7 @@ double RotationStddev(const RelativePose& pose) {
   if (!pose.covariance) return kDefaultRotationRad;
   const double variance = pose.covariance->topLeftCorner<3, 3>().trace() / 3;
   return std::sqrt(std::max(variance, 0.0) +
-                   kRotationFloorRad * kRotationFloorRad);
+                   kPoseErrorFloorRad * kPoseErrorFloorRad);
 }
 
 const char* OutlierReasonName(OutlierReason reason) {
@@ -298,12 +268,13 @@ std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers) {
 
 Result<SceneRotations> AverageSceneRotations(
     const Scene& scene, const RotationAveragingOptions& options,
-    double outlier_reach, double least_false_rad) {
+    double outlier_reach, double least_false_rad, const RunContext& context) {
   if (scene.relative_poses.empty()) {
     return MakeError(ErrorCode::kInsufficientData,
                      "the scene has no relative pose to build on");
   }
-  return SceneRotationSolver(scene, options, outlier_reach, least_false_rad)
+  return SceneRotationSolver(scene, options, outlier_reach, least_false_rad,
+                             context)
       .Solve();
 }
 

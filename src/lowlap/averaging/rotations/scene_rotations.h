@@ -7,6 +7,7 @@
 #include "lowlap/averaging/rotations/rotation_averaging.h"
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -86,6 +87,7 @@ double RotationStddev(const RelativePose& pose);
 /// Errors: those of AverageRotations; kInsufficientData if nothing remains.
 Result<SceneRotations> AverageSceneRotations(
     const Scene& scene, const RotationAveragingOptions& options,
-    double outlier_reach, double least_false_rad = 0);
+    double outlier_reach, double least_false_rad = 0,
+    const RunContext& context = {});
 
 }  // namespace lowlap

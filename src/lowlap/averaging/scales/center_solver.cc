@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/core/median.h"
 #include "lowlap/core/union_find.h"
+#include "lowlap/robust/robust_loss.h"
 
 namespace lowlap {
 namespace {
@@ -27,6 +29,7 @@ void AddBlock(int row, int column, const Mat3& block, Triplets* entries) {
 
 Result<std::vector<Vec3>> SolveCenters(std::size_t num_views,
                                        const std::vector<CenterEdge>& edges,
+                                       const RunContext& context,
                                        int max_iterations) {
   UnionFind sets(num_views);
   for (const CenterEdge& edge : edges) sets.Union(edge.first, edge.second);
@@ -57,9 +60,15 @@ Result<std::vector<Vec3>> SolveCenters(std::size_t num_views,
                           along / (along_size * along_size));
   }
 
-  SparseSolver solver;
+  SparseSolver solver(context);
   std::vector<double> robust(edges.size(), 1.0);
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    if (const Status go_on =
+            AskToGoOn(context, static_cast<std::size_t>(iteration),
+                      static_cast<std::size_t>(max_iterations));
+        !go_on) {
+      return tl::unexpected<Error>(go_on.error());
+    }
     Triplets entries;
     entries.reserve(24 * edges.size());
     Eigen::VectorXd rhs = Eigen::VectorXd::Zero(num_rows);
@@ -105,7 +114,7 @@ Result<std::vector<Vec3>> SolveCenters(std::size_t num_views,
     const double scale = kReach * std::max(1.0, Median(errors));
     for (std::size_t e = 0; e < edges.size(); ++e) {
       const double x = errors[e] / scale;
-      robust[e] = 1.0 / std::pow(1 + x * x, 2);
+      robust[e] = GemanMcClureWeight(x * x);
     }
   }
   return centers;

@@ -4,10 +4,13 @@
 #include <cmath>
 #include <utility>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/core/median.h"
 #include "lowlap/core/union_find.h"
+#include "lowlap/robust/median_deviation.h"
+#include "lowlap/robust/robust_loss.h"
 
 namespace lowlap {
 namespace {
@@ -48,8 +51,11 @@ enum class Loss { kAbsolute, kGemanMcClure };
 /// Reweighted least squares on one problem.
 class Averaging {
  public:
-  explicit Averaging(const TranslationProblem& problem)
-      : problem_(problem), graph_(RatioGraph(problem)) {
+  Averaging(const TranslationProblem& problem, const RunContext& context)
+      : problem_(problem),
+        context_(context),
+        graph_(RatioGraph(problem)),
+        solver_(context) {
     const auto count = static_cast<Eigen::Index>(problem.ratios.size());
     measurements_.resize(count, 1);
     weights_.resize(count);
@@ -63,6 +69,12 @@ class Averaging {
     // The absolute residuals only serve as a start.
     const double tolerance = loss == Loss::kAbsolute ? 1e-3 : 1e-11;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
+      if (const Status go_on =
+              AskToGoOn(context_, static_cast<std::size_t>(iteration),
+                        static_cast<std::size_t>(max_iterations));
+          !go_on) {
+        return go_on;
+      }
       SetWeights(loss, scales->normalised_residuals);
       const auto solution = SolveDifferences(problem_.edges.size(), graph_,
                                              weights_, measurements_, &solver_);
@@ -85,7 +97,8 @@ class Averaging {
     std::vector<double> sizes;
     sizes.reserve(residuals.size());
     for (const double r : residuals) sizes.push_back(std::abs(r));
-    const double scale = std::max(1.0, 1.4826 * Median(std::move(sizes)));
+    const double scale =
+        std::max(1.0, Median(std::move(sizes)) / kMedianOfNorm<1>);
     for (Eigen::Index r = 0; r < weights_.size(); ++r) {
       const double x = std::abs(residuals[r]) / scale;
       double factor = 0;
@@ -93,13 +106,14 @@ class Averaging {
         factor = 1 / std::max(x, 0.1);
       } else {
         constexpr double kReach = 3.0;
-        factor = 1 / std::pow(1 + x * x / (kReach * kReach), 2);
+        factor = GemanMcClureWeight(x * x / (kReach * kReach));
       }
       weights_(r) = factor / std::pow(problem_.ratios[r].stddev, 2);
     }
   }
 
   const TranslationProblem& problem_;
+  const RunContext& context_;
   std::vector<DifferenceEdge> graph_;
   Eigen::MatrixXd measurements_;
   Eigen::VectorXd weights_;
@@ -142,6 +156,7 @@ EdgeScales ChainEdgeScales(const TranslationProblem& problem) {
 }
 
 Result<EdgeScales> AverageEdgeScales(const TranslationProblem& problem,
+                                     const RunContext& context,
                                      int max_iterations) {
   // L1 reweighting gets near soon, and then goes on for long.
   constexpr int kL1Iterations = 15;
@@ -150,7 +165,7 @@ Result<EdgeScales> AverageEdgeScales(const TranslationProblem& problem,
 
   EdgeScales from_chain = ChainEdgeScales(problem);
   if (problem.ratios.empty()) return from_chain;
-  Averaging averaging(problem);
+  Averaging averaging(problem, context);
   EdgeScales from_l1 = from_chain;
   Status status = averaging.Run(Loss::kAbsolute, kL1Iterations, &from_l1);
   if (status) {

@@ -4,8 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/core/median.h"
+#include "lowlap/robust/median_deviation.h"
+#include "lowlap/robust/robust_loss.h"
 
 namespace lowlap {
 namespace {
@@ -15,15 +18,15 @@ struct EdgeState {
   Vec3 unit = Vec3::Zero();
 };
 
-double GemanMcClure(double squared) {
-  constexpr double kReachSquared = 9.0;
-  return kReachSquared * squared / (kReachSquared + squared);
+// Of the loss, in deviations.
+constexpr double kReachSquared = 9.0;
+
+double Loss(double squared) {
+  return kReachSquared * GemanMcClureLoss(squared / kReachSquared);
 }
 
-double GemanMcClureWeight(double squared) {
-  constexpr double kReachSquared = 9.0;
-  const double x = 1.0 + squared / kReachSquared;
-  return 1.0 / (x * x);
+double Weight(double squared) {
+  return GemanMcClureWeight(squared / kReachSquared);
 }
 
 class Refiner {
@@ -57,10 +60,10 @@ class Refiner {
     double cost = 0;
     for (const std::size_t e : edges_) {
       if (!(states[e].length > 0)) return HUGE_VAL;
-      cost += GemanMcClure(DirectionError(e, states[e]).squaredNorm());
+      cost += Loss(DirectionError(e, states[e]).squaredNorm());
     }
     for (const RatioMeasurement* ratio : ratios_) {
-      cost += GemanMcClure(std::pow(RatioError(*ratio, states), 2));
+      cost += Loss(std::pow(RatioError(*ratio, states), 2));
     }
     return cost;
   }
@@ -83,7 +86,7 @@ class Refiner {
       const EdgeState& s = states[e];
       const DirectionEdge& edge = problem_.edges[e];
       const Vec3 error = DirectionError(e, s);
-      const double weight = GemanMcClureWeight(error.squaredNorm());
+      const double weight = Weight(error.squaredNorm());
       const Mat3 jacobian = (Mat3::Identity() - s.unit * s.unit.transpose()) /
                             (s.length * Deviation(edge));
       const Mat3 block = weight * jacobian.transpose() * jacobian;
@@ -97,7 +100,7 @@ class Refiner {
     }
     for (const RatioMeasurement* ratio : ratios_) {
       const double error = RatioError(*ratio, states);
-      const double weight = GemanMcClureWeight(error * error);
+      const double weight = Weight(error * error);
       // d log L / dC_second = u / L, and the negative for C_first.
       const DirectionEdge& target = problem_.edges[ratio->target];
       const DirectionEdge& reference = problem_.edges[ratio->reference];
@@ -124,9 +127,6 @@ class Refiner {
 
  private:
   void SetDeviations(const std::vector<Vec3>& start) {
-    // Medians, in deviations: of the length of a 2-vector of normal errors, and
-    // of the size of a normal error.
-    constexpr double kMedianOfLength = 1.1774, kMedianOfSize = 0.6745;
     const std::vector<EdgeState> states = States(start);
     std::vector<double> directions, ratios;
     for (const std::size_t e : edges_) {
@@ -136,8 +136,8 @@ class Refiner {
       ratios.push_back(std::abs(RatioError(*ratio, states)));
     }
     direction_scale_ =
-        std::max(1.0, Median(std::move(directions)) / kMedianOfLength);
-    ratio_scale_ = std::max(1.0, Median(std::move(ratios)) / kMedianOfSize);
+        std::max(1.0, Median(std::move(directions)) / kMedianOfNorm<2>);
+    ratio_scale_ = std::max(1.0, Median(std::move(ratios)) / kMedianOfNorm<1>);
   }
 
   double Deviation(const DirectionEdge& edge) const {
@@ -180,18 +180,19 @@ class Refiner {
 
 }  // namespace
 
-void RefineCenters(const TranslationProblem& problem,
-                   const std::vector<bool>& placed, std::vector<Vec3>* centers,
-                   int max_iterations) {
-  const Refiner refiner(problem, placed, *centers);
-  if (refiner.num_rows() == 0) return;
-  SparseSolver solver;
+Status RefineCenters(const TranslationProblem& problem,
+                     const std::vector<bool>& placed, std::vector<Vec3>* result,
+                     const RunContext& context, int max_iterations) {
+  std::vector<Vec3> centers = *result;
+  const Refiner refiner(problem, placed, centers);
+  if (refiner.num_rows() == 0) return {};
+  SparseSolver solver(context);
   double damping = 1e-4;
-  double cost = refiner.Cost(*centers);
+  double cost = refiner.Cost(centers);
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
     Eigen::SparseMatrix<double> hessian;
     Eigen::VectorXd gradient;
-    refiner.Linearise(*centers, &hessian, &gradient);
+    refiner.Linearise(centers, &hessian, &gradient);
     bool improved = false;
     double relative_decrease = 0;
     // Damping also closes the gauge, which the Hessian leaves free.
@@ -200,9 +201,18 @@ void RefineCenters(const TranslationProblem& problem,
       for (int r = 0; r < refiner.num_rows(); ++r) {
         damped.coeffRef(r, r) += damping * hessian.coeff(r, r);
       }
+      if (const Status go_on =
+              AskToGoOn(context, static_cast<std::size_t>(iteration),
+                        static_cast<std::size_t>(max_iterations));
+          !go_on) {
+        return go_on;
+      }
       const auto step = solver.Solve(damped, -gradient);
+      if (!step && step.error().code == ErrorCode::kCancelled) {
+        return tl::unexpected<Error>(step.error());
+      }
       if (!step) continue;
-      std::vector<Vec3> trial = *centers;
+      std::vector<Vec3> trial = centers;
       for (std::size_t n = 0; n < trial.size(); ++n) {
         if (placed[n]) trial[n] += step->block<3, 1>(refiner.row()[n], 0);
       }
@@ -210,13 +220,15 @@ void RefineCenters(const TranslationProblem& problem,
       if (trial_cost < cost) {
         relative_decrease = (cost - trial_cost) / cost;
         cost = trial_cost;
-        *centers = std::move(trial);
+        centers = std::move(trial);
         improved = true;
         damping = std::max(damping / 100, 1e-8);
       }
     }
     if (!improved || relative_decrease < 1e-6) break;
   }
+  *result = std::move(centers);
+  return {};
 }
 
 }  // namespace lowlap

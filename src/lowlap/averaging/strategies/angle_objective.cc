@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/direction_system.h"
+#include "lowlap/robust/robust_loss.h"
 
 namespace lowlap {
 
 Result<std::vector<Vec3>> SolveRevisedLud(const DirectionPart& part,
+                                          int max_iterations,
+                                          const RunContext& context,
                                           int* num_iterations) {
-  constexpr int kMaxIterations = 200;
   constexpr double kLeastDelta = 1e-6;  // of the mean length
   constexpr double kDamping = 1e-12;
   constexpr double kDecrease = 1e-12;
@@ -24,7 +27,13 @@ Result<std::vector<Vec3>> SolveRevisedLud(const DirectionPart& part,
   std::vector<Mat3> weights(part.edges.size());
   double delta = HUGE_VAL;  // the first round is least squares
   double last_cost = HUGE_VAL;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+    if (const Status go_on =
+            AskToGoOn(context, static_cast<std::size_t>(iteration),
+                      static_cast<std::size_t>(max_iterations));
+        !go_on) {
+      return tl::unexpected<Error>(go_on.error());
+    }
     for (std::size_t e = 0; e < part.edges.size(); ++e) {
       const DirectionEdge& edge = part.edges[e];
       const Vec3& d = edge.direction_in_world;
@@ -70,10 +79,6 @@ Result<std::vector<Vec3>> SolveRevisedLud(const DirectionPart& part,
   return centers;
 }
 
-double AngleWeight(double sine) {
-  return sine <= kAngleHuber ? 1 : kAngleHuber / sine;
-}
-
 double AngleObjective(const DirectionPart& part,
                       const std::vector<Vec3>& centers) {
   double cost = 0;
@@ -84,8 +89,7 @@ double AngleObjective(const DirectionPart& part,
         is_forward
             ? edge.direction_in_world.cross(offset).norm() / offset.norm()
             : 1.0;
-    cost += sine <= kAngleHuber ? 0.5 * sine * sine
-                                : kAngleHuber * (sine - 0.5 * kAngleHuber);
+    cost += HuberLoss(sine, kAngleHuber);
   }
   return cost;
 }

@@ -2,8 +2,12 @@
 
 #include <Eigen/Core>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/difference_solver.h"
+#include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/averaging/strategies/internal/angle_objective.h"
+#include "lowlap/averaging/strategies/internal/revised_lud.h"
+#include "lowlap/robust/robust_loss.h"
 
 namespace lowlap {
 namespace {
@@ -15,13 +19,14 @@ double InverseLength(const DirectionEdge& edge, const Vec3& offset) {
 }
 
 Result<std::vector<Vec3>> DescendBlocks(const DirectionPart& part,
+                                        const BataOptions& options,
+                                        const RunContext& context,
                                         int* num_iterations) {
-  constexpr int kRounds = 10;
-  constexpr int kStepsPerRound = 10;
   // Of the mean weight: holds edges of inverse length 0 where they are, so that
   // no view comes loose.
   constexpr double kHold = 1e-9;
-  auto start = SolveRevisedLud(part, num_iterations);
+  auto start = SolveRevisedLud(part, RevisedLudOptions().max_iterations,
+                               context, num_iterations);
   if (!start) return start;
   std::vector<Vec3> centers = std::move(*start);
 
@@ -32,15 +37,22 @@ Result<std::vector<Vec3>> DescendBlocks(const DirectionPart& part,
   }
   Eigen::VectorXd robust(num_edges), weights(num_edges);
   Eigen::MatrixXd measured(num_edges, 3);
-  for (int round = 0; round < kRounds; ++round) {
+  SparseSolver solver(context);
+  for (int round = 0; round < options.rounds; ++round) {
     for (Eigen::Index e = 0; e < num_edges; ++e) {
       const DirectionEdge& edge = part.edges[static_cast<std::size_t>(e)];
       const Vec3 offset = centers[edge.second] - centers[edge.first];
       const double inverse = InverseLength(edge, offset);
-      robust(e) =
-          AngleWeight((inverse * offset - edge.direction_in_world).norm());
+      robust(e) = HuberWeight(
+          (inverse * offset - edge.direction_in_world).norm(), kAngleHuber);
     }
-    for (int step = 0; step < kStepsPerRound; ++step) {
+    for (int step = 0; step < options.steps_per_round; ++step) {
+      if (const Status go_on =
+              AskToGoOn(context, static_cast<std::size_t>(round),
+                        static_cast<std::size_t>(options.rounds));
+          !go_on) {
+        return tl::unexpected<Error>(go_on.error());
+      }
       for (Eigen::Index e = 0; e < num_edges; ++e) {
         const DirectionEdge& edge = part.edges[static_cast<std::size_t>(e)];
         const Vec3 offset = centers[edge.second] - centers[edge.first];
@@ -58,8 +70,8 @@ Result<std::vector<Vec3>> DescendBlocks(const DirectionPart& part,
                          "every direction of a part points backwards");
       }
       weights = weights.cwiseMax(hold);
-      const auto moved =
-          SolveDifferences(part.views.size(), differences, weights, measured);
+      const auto moved = SolveDifferences(part.views.size(), differences,
+                                          weights, measured, &solver);
       if (!moved) return tl::unexpected<Error>(moved.error());
       for (std::size_t v = 0; v < centers.size(); ++v) {
         centers[v] = moved->row(static_cast<Eigen::Index>(v)).transpose();
@@ -72,9 +84,23 @@ Result<std::vector<Vec3>> DescendBlocks(const DirectionPart& part,
 
 }  // namespace
 
+Status BataOptions::Validate() const {
+  if (rounds > 0 && steps_per_round > 0) return {};
+  return MakeError(ErrorCode::kInvalidArgument,
+                   "the numbers of rounds and of steps must be positive");
+}
+
 Result<TranslationSolution> BataAverager::Solve(
-    const TranslationProblem& problem, const RunContext&) const {
-  return SolveDirectionParts(problem, DescendBlocks);
+    const TranslationProblem& problem, const RunContext& context) const {
+  if (const Status valid = options_.Validate(); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  return SolveDirectionParts(
+      problem, context,
+      [&](const DirectionPart& part, const RunContext& of_part,
+          int* num_iterations) {
+        return DescendBlocks(part, options_, of_part, num_iterations);
+      });
 }
 
 }  // namespace lowlap

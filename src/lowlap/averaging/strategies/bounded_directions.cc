@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/direction_system.h"
 
 namespace lowlap {
@@ -63,7 +64,8 @@ double BoundedObjective(const DirectionPart& part, double width,
 }
 
 Result<int> MinimiseBounded(const DirectionPart& part, double width,
-                            int max_iterations, std::vector<Vec3>* centers) {
+                            int max_iterations, const RunContext& context,
+                            std::vector<Vec3>* centers) {
   DirectionSystem system(part);
   if (centers->empty()) {
     auto start = UnitLengths(part, &system);
@@ -73,6 +75,12 @@ Result<int> MinimiseBounded(const DirectionPart& part, double width,
   double cost = BoundedObjective(part, width, *centers);
   std::vector<Mat3> weights(part.edges.size());
   for (int iteration = 1; iteration <= max_iterations; ++iteration) {
+    if (const Status go_on =
+            AskToGoOn(context, static_cast<std::size_t>(iteration - 1),
+                      static_cast<std::size_t>(max_iterations));
+        !go_on) {
+      return tl::unexpected<Error>(go_on.error());
+    }
     std::vector<Vec3> forces(part.views.size(), Vec3::Zero());
     for (std::size_t e = 0; e < part.edges.size(); ++e) {
       const DirectionEdge& edge = part.edges[e];
@@ -118,14 +126,16 @@ Result<int> MinimiseBounded(const DirectionPart& part, double width,
 }
 
 Result<std::vector<Vec3>> MinimiseNarrowing(const DirectionPart& part,
-                                            double width, int* num_iterations) {
+                                            double width, int max_iterations,
+                                            const RunContext& context,
+                                            int* num_iterations) {
   constexpr int kMaxEarly = 30;
-  constexpr int kMaxLast = 300;
   std::vector<Vec3> centers;
   double current = HUGE_VAL;
   while (true) {
     const auto iterations = MinimiseBounded(
-        part, current, current == width ? kMaxLast : kMaxEarly, &centers);
+        part, current, current == width ? max_iterations : kMaxEarly, context,
+        &centers);
     if (!iterations) return tl::unexpected<Error>(iterations.error());
     *num_iterations += *iterations;
     if (current == width) return centers;

@@ -14,71 +14,75 @@ constexpr double kSeparation = 10;
 // The ratio of two scales is the same in all solutions up to this.
 constexpr double kSameRatio = 0.1;
 
-struct UnitBody {
-  const Body* body = nullptr;
+struct UnitComponent {
+  const RigidComponent* component = nullptr;
   std::size_t index = 0;  // in the caller's list
   std::vector<Vec3> centers;
   Vec3 mean = Vec3::Zero();
   double size = 1;
 };
 
-UnitBody Normalized(const Body& body, std::size_t index) {
-  UnitBody unit;
-  unit.body = &body;
+UnitComponent Normalized(const RigidComponent& component, std::size_t index) {
+  UnitComponent unit;
+  unit.component = &component;
   unit.index = index;
-  for (const Vec3& center : body.centers) unit.mean += center;
-  unit.mean /= static_cast<double>(body.centers.size());
+  for (const Vec3& center : component.centers) unit.mean += center;
+  unit.mean /= static_cast<double>(component.centers.size());
   double squares = 0;
-  for (const Vec3& center : body.centers) {
+  for (const Vec3& center : component.centers) {
     squares += (center - unit.mean).squaredNorm();
   }
-  unit.size = std::sqrt(squares / static_cast<double>(body.centers.size()));
-  for (const Vec3& center : body.centers) {
+  unit.size =
+      std::sqrt(squares / static_cast<double>(component.centers.size()));
+  for (const Vec3& center : component.centers) {
     unit.centers.push_back((center - unit.mean) / unit.size);
   }
   return unit;
 }
 
-// Only bodies that share two views with others can be held by them.
-std::vector<std::size_t> HeldBodies(const std::vector<Body>& bodies) {
+// Only components that share two views with others can be held by them.
+std::vector<std::size_t> HeldComponents(
+    const std::vector<RigidComponent>& components) {
   std::map<std::size_t, int> uses;
-  std::vector<char> held(bodies.size(), 1);
-  for (const Body& body : bodies) {
-    for (const std::size_t view : body.views) ++uses[view];
+  std::vector<char> held(components.size(), 1);
+  for (const RigidComponent& component : components) {
+    for (const std::size_t view : component.views) ++uses[view];
   }
   for (bool changed = true; changed;) {
     changed = false;
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
+    for (std::size_t b = 0; b < components.size(); ++b) {
       if (!held[b]) continue;
       const auto shared =
-          std::count_if(bodies[b].views.begin(), bodies[b].views.end(),
+          std::count_if(components[b].views.begin(), components[b].views.end(),
                         [&](std::size_t view) { return uses.at(view) > 1; });
       if (shared >= 2) continue;
       held[b] = 0;
       changed = true;
-      for (const std::size_t view : bodies[b].views) --uses[view];
+      for (const std::size_t view : components[b].views) --uses[view];
     }
   }
   std::vector<std::size_t> indices;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
+  for (std::size_t b = 0; b < components.size(); ++b) {
     if (held[b]) indices.push_back(b);
   }
   return indices;
 }
 
-// The bodies that shared views connect with the first.
-std::vector<UnitBody> ConnectedWithFirst(const std::vector<UnitBody>& bodies) {
-  std::vector<char> reached(bodies.size(), 0);
+// The components that shared views connect with the first.
+std::vector<UnitComponent> ConnectedWithFirst(
+    const std::vector<UnitComponent>& components) {
+  std::vector<char> reached(components.size(), 0);
   std::map<std::size_t, char> views;
   const auto reach = [&](std::size_t b) {
     reached[b] = 1;
-    for (const std::size_t view : bodies[b].body->views) views[view] = 1;
+    for (const std::size_t view : components[b].component->views)
+      views[view] = 1;
   };
   reach(0);
   for (bool changed = true; changed;) {
     changed = false;
-    for (std::size_t b = 1; b < bodies.size(); ++b) {
-      const std::vector<std::size_t>& mine = bodies[b].body->views;
+    for (std::size_t b = 1; b < components.size(); ++b) {
+      const std::vector<std::size_t>& mine = components[b].component->views;
       if (reached[b] ||
           std::none_of(mine.begin(), mine.end(), [&](std::size_t view) {
             return views.count(view) > 0;
@@ -89,9 +93,9 @@ std::vector<UnitBody> ConnectedWithFirst(const std::vector<UnitBody>& bodies) {
       changed = true;
     }
   }
-  std::vector<UnitBody> connected;
-  for (std::size_t b = 0; b < bodies.size(); ++b) {
-    if (reached[b]) connected.push_back(bodies[b]);
+  std::vector<UnitComponent> connected;
+  for (std::size_t b = 0; b < components.size(); ++b) {
+    if (reached[b]) connected.push_back(components[b]);
   }
   return connected;
 }
@@ -100,11 +104,11 @@ std::vector<UnitBody> ConnectedWithFirst(const std::vector<UnitBody>& bodies) {
 // the positions of the shared views.
 class Closure {
  public:
-  explicit Closure(const std::vector<UnitBody>& bodies)
-      : bodies_(bodies), count_(static_cast<int>(bodies.size())) {
+  explicit Closure(const std::vector<UnitComponent>& components)
+      : components_(components), count_(static_cast<int>(components.size())) {
     std::map<std::size_t, int> uses;
-    for (const UnitBody& body : bodies_) {
-      for (const std::size_t view : body.body->views) ++uses[view];
+    for (const UnitComponent& component : components_) {
+      for (const std::size_t view : component.component->views) ++uses[view];
     }
     int size = count_ + 3 * (count_ - 1);
     for (const auto& [view, count] : uses) {
@@ -113,7 +117,7 @@ class Closure {
       size += 3;
     }
     normal_ = Eigen::MatrixXd::Zero(size, size);
-    for (int b = 0; b < count_; ++b) AddBody(b);
+    for (int b = 0; b < count_; ++b) AddComponent(b);
     const int rest = size - count_;
     rest_.compute(normal_.bottomRightCorner(rest, rest));
     coupling_ = normal_.bottomLeftCorner(rest, count_);
@@ -135,13 +139,13 @@ class Closure {
   }
 
  private:
-  void AddBody(int b) {
-    const UnitBody& body = bodies_[b];
-    for (std::size_t n = 0; n < body.centers.size(); ++n) {
-      const auto column = column_of_.find(body.body->views[n]);
+  void AddComponent(int b) {
+    const UnitComponent& component = components_[b];
+    for (std::size_t n = 0; n < component.centers.size(); ++n) {
+      const auto column = column_of_.find(component.component->views[n]);
       if (column == column_of_.end()) continue;
       // Residual: X - t - s x.
-      const Vec3& x = body.centers[n];
+      const Vec3& x = component.centers[n];
       for (int axis = 0; axis < 3; ++axis) {
         std::vector<std::pair<int, double>> row = {{b, -x(axis)},
                                                    {column->second + axis, 1}};
@@ -155,7 +159,7 @@ class Closure {
     }
   }
 
-  const std::vector<UnitBody>& bodies_;
+  const std::vector<UnitComponent>& components_;
   const int count_;
   std::map<std::size_t, int> column_of_;  // of shared views
   Eigen::MatrixXd normal_;
@@ -163,7 +167,7 @@ class Closure {
   Eigen::LDLT<Eigen::MatrixXd> rest_;
 };
 
-// Per body, its scale over that of the first; nullopt where it is free.
+// Per component, its scale over that of the first; nullopt where it is free.
 std::vector<std::optional<double>> FixedRatios(
     const Eigen::MatrixXd& scale_normal, double stddev_rad) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale_normal);
@@ -190,13 +194,13 @@ std::vector<std::optional<double>> FixedRatios(
 
 }  // namespace
 
-std::vector<std::optional<BodyPlacement>> CloseBodies(
-    const std::vector<Body>& bodies) {
-  std::vector<std::optional<BodyPlacement>> placements(bodies.size());
-  if (bodies.empty()) return placements;
-  std::vector<UnitBody> units;
-  for (const std::size_t b : HeldBodies(bodies)) {
-    units.push_back(Normalized(bodies[b], b));
+std::vector<std::optional<ComponentPlacement>> CloseComponents(
+    const std::vector<RigidComponent>& components) {
+  std::vector<std::optional<ComponentPlacement>> placements(components.size());
+  if (components.empty()) return placements;
+  std::vector<UnitComponent> units;
+  for (const std::size_t b : HeldComponents(components)) {
+    units.push_back(Normalized(components[b], b));
     if (!(units.back().size > 0)) return placements;
   }
   if (units.size() < 2 || units.front().index != 0) return placements;
@@ -204,15 +208,15 @@ std::vector<std::optional<BodyPlacement>> CloseBodies(
   if (units.size() < 2) return placements;
 
   double stddev_rad = 0;
-  for (const UnitBody& unit : units) {
-    stddev_rad = std::max(stddev_rad, unit.body->stddev_rad);
+  for (const UnitComponent& unit : units) {
+    stddev_rad = std::max(stddev_rad, unit.component->stddev_rad);
   }
   const Closure all(units);
   if (!all.IsSolved()) return placements;
   const std::vector<std::optional<double>> ratios =
       FixedRatios(all.ScaleNormal(), stddev_rad);
 
-  std::vector<UnitBody> fixed;
+  std::vector<UnitComponent> fixed;
   std::vector<double> scales;
   for (std::size_t b = 0; b < units.size(); ++b) {
     if (!ratios[b]) continue;
@@ -228,11 +232,11 @@ std::vector<std::optional<BodyPlacement>> CloseBodies(
   const std::vector<Vec3> translations =
       closure.Translations(Eigen::Map<const Eigen::VectorXd>(
           scales.data(), static_cast<int>(scales.size())));
-  // Back from unit bodies, and into the frame of the first.
-  const UnitBody& frame = fixed.front();
+  // Back from unit components, and into the frame of the first.
+  const UnitComponent& frame = fixed.front();
   const double unit = frame.size / scales[0];
   for (std::size_t b = 0; b < fixed.size(); ++b) {
-    BodyPlacement placement;
+    ComponentPlacement placement;
     placement.scale = unit * scales[b] / fixed[b].size;
     placement.translation =
         unit * translations[b] + frame.mean - placement.scale * fixed[b].mean;

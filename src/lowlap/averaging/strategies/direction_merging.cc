@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/bounded_directions.h"
 #include "lowlap/averaging/strategies/internal/component_closure.h"
 #include "lowlap/core/union_find.h"
@@ -20,8 +21,9 @@ constexpr std::size_t kMaxRing = 100;
 
 class Merger {
  public:
-  explicit Merger(const TranslationProblem& problem)
+  Merger(const TranslationProblem& problem, const RunContext& context)
       : edges_(problem.edges),
+        context_(context),
         incident_(problem.views.size()),
         sets_(problem.edges.size()),
         is_single_(problem.edges.size(), true) {
@@ -31,12 +33,17 @@ class Merger {
     }
   }
 
-  std::vector<std::size_t> Run() {
-    do {
-      while (MergeIntersections() || MergeSharedPairs()) {
+  Result<std::vector<std::size_t>> Run() {
+    for (std::size_t round = 0;; ++round) {
+      if (const Status go_on = AskToGoOn(context_, round, edges_.size());
+          !go_on) {
+        return tl::unexpected<Error>(go_on.error());
       }
-    } while (MergeRings());
-    return sets_.Labels();
+      if (MergeIntersections() || MergeSharedPairs()) continue;
+      const auto merged = MergeRings();
+      if (!merged) return tl::unexpected<Error>(merged.error());
+      if (!*merged) return sets_.Labels();
+    }
   }
 
  private:
@@ -52,51 +59,56 @@ class Merger {
            kSeparation * std::max(edges_[a].stddev_rad, edges_[b].stddev_rad);
   }
 
-  std::vector<std::size_t> BodiesAt(std::size_t view) {
-    std::vector<std::size_t> bodies;
-    for (const std::size_t e : incident_[view]) bodies.push_back(sets_.Find(e));
-    std::sort(bodies.begin(), bodies.end());
-    bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-    return bodies;
+  std::vector<std::size_t> ComponentsAt(std::size_t view) {
+    std::vector<std::size_t> components;
+    for (const std::size_t e : incident_[view])
+      components.push_back(sets_.Find(e));
+    std::sort(components.begin(), components.end());
+    components.erase(std::unique(components.begin(), components.end()),
+                     components.end());
+    return components;
   }
 
-  // A view that two directions from different views of one body intersect. A
-  // body of one edge makes a triangle, all of whose angles must be open.
+  // A view that two directions from different views of one component intersect.
+  // A component of one edge makes a triangle, all of whose angles must be open.
   bool MergeIntersections() {
     bool merged = false;
-    std::vector<std::vector<std::size_t>> bodies_at(incident_.size());
+    std::vector<std::vector<std::size_t>> components_at(incident_.size());
     for (std::size_t v = 0; v < incident_.size(); ++v) {
-      bodies_at[v] = BodiesAt(v);
+      components_at[v] = ComponentsAt(v);
     }
     struct Ray {
-      std::size_t body, from, edge;
+      std::size_t component, from, edge;
     };
     for (std::size_t v = 0; v < incident_.size(); ++v) {
       std::vector<Ray> rays;
       for (const std::size_t e : incident_[v]) {
         const std::size_t from =
             edges_[e].first == v ? edges_[e].second : edges_[e].first;
-        for (const std::size_t stale : bodies_at[from]) {
-          const std::size_t body = sets_.Find(stale);
-          if (body != sets_.Find(e)) rays.push_back({body, from, e});
+        for (const std::size_t stale : components_at[from]) {
+          const std::size_t component = sets_.Find(stale);
+          if (component != sets_.Find(e)) rays.push_back({component, from, e});
         }
       }
       std::stable_sort(
           rays.begin(), rays.end(),
-          [](const Ray& a, const Ray& b) { return a.body < b.body; });
+          [](const Ray& a, const Ray& b) { return a.component < b.component; });
       for (std::size_t begin = 0, end = 0; begin < rays.size(); begin = end) {
-        while (end < rays.size() && rays[end].body == rays[begin].body) ++end;
+        while (end < rays.size() &&
+               rays[end].component == rays[begin].component)
+          ++end;
         // Merged a moment ago: the next round sees it.
-        if (sets_.Find(rays[begin].body) != rays[begin].body) continue;
+        if (sets_.Find(rays[begin].component) != rays[begin].component)
+          continue;
         for (std::size_t n = begin + 1; n < end; ++n) {
           const Ray &a = rays[begin], &b = rays[n];
           if (a.from == b.from || !AreSeparate(a.edge, b.edge)) continue;
-          if (is_single_[a.body] &&
-              (!AreSeparate(a.edge, a.body) || !AreSeparate(b.edge, a.body))) {
+          if (is_single_[a.component] && (!AreSeparate(a.edge, a.component) ||
+                                          !AreSeparate(b.edge, a.component))) {
             continue;
           }
-          Merge(a.body, a.edge);
-          Merge(a.body, b.edge);
+          Merge(a.component, a.edge);
+          Merge(a.component, b.edge);
           merged = true;
           break;
         }
@@ -109,11 +121,12 @@ class Merger {
     bool merged = false;
     std::map<std::pair<std::size_t, std::size_t>, std::size_t> first_view;
     for (std::size_t v = 0; v < incident_.size(); ++v) {
-      const std::vector<std::size_t> bodies = BodiesAt(v);
-      for (std::size_t a = 0; a < bodies.size(); ++a) {
-        for (std::size_t b = a + 1; b < bodies.size(); ++b) {
-          if (first_view.insert({{bodies[a], bodies[b]}, v}).second) continue;
-          Merge(bodies[a], bodies[b]);
+      const std::vector<std::size_t> components = ComponentsAt(v);
+      for (std::size_t a = 0; a < components.size(); ++a) {
+        for (std::size_t b = a + 1; b < components.size(); ++b) {
+          if (first_view.insert({{components[a], components[b]}, v}).second)
+            continue;
+          Merge(components[a], components[b]);
           merged = true;
         }
       }
@@ -130,24 +143,24 @@ class Merger {
     }
     std::map<std::size_t, std::set<std::size_t>> views_of;
     std::vector<int> uses(incident_.size(), 0);
-    for (const auto& [body, edges] : members) {
+    for (const auto& [component, edges] : members) {
       for (const std::size_t e : edges) {
-        views_of[body].insert({edges_[e].first, edges_[e].second});
+        views_of[component].insert({edges_[e].first, edges_[e].second});
       }
-      for (const std::size_t view : views_of[body]) ++uses[view];
+      for (const std::size_t view : views_of[component]) ++uses[view];
     }
     for (bool changed = true; changed;) {
       changed = false;
-      for (auto body = views_of.begin(); body != views_of.end();) {
+      for (auto component = views_of.begin(); component != views_of.end();) {
         const auto shared =
-            std::count_if(body->second.begin(), body->second.end(),
+            std::count_if(component->second.begin(), component->second.end(),
                           [&](std::size_t view) { return uses[view] > 1; });
         if (shared >= 2) {
-          ++body;
+          ++component;
           continue;
         }
-        for (const std::size_t view : body->second) --uses[view];
-        body = views_of.erase(body);
+        for (const std::size_t view : component->second) --uses[view];
+        component = views_of.erase(component);
         changed = true;
       }
     }
@@ -159,33 +172,41 @@ class Merger {
                      });
     if (order.size() > kMaxRing) order.resize(kMaxRing);
     std::vector<DirectionPart> parts;
-    for (const std::size_t body : order) {
-      parts.push_back(MakePart(edges_, members[body]));
-      edge_of_part->push_back(body);
+    for (const std::size_t component : order) {
+      parts.push_back(MakePart(edges_, members[component]));
+      edge_of_part->push_back(component);
     }
     return parts;
   }
 
-  bool MergeRings() {
+  Result<bool> MergeRings() {
     std::vector<std::size_t> edge_of_part;
-    std::vector<Body> bodies;
+    std::vector<RigidComponent> components;
     for (const DirectionPart& part : PartsInRings(&edge_of_part)) {
-      Body body;
-      body.stddev_rad = 0;
+      RigidComponent component;
+      component.stddev_rad = 0;
       for (const DirectionEdge& edge : part.edges) {
-        body.stddev_rad = std::max(body.stddev_rad, edge.stddev_rad);
+        component.stddev_rad = std::max(component.stddev_rad, edge.stddev_rad);
       }
-      body.views = part.views;
+      component.views = part.views;
       constexpr int kShapeIterations = 50;
-      const auto done =
-          MinimiseBounded(part, HUGE_VAL, kShapeIterations, &body.centers);
+      const auto done = MinimiseBounded(part, HUGE_VAL, kShapeIterations,
+                                        context_, &component.centers);
+      if (!done && done.error().code == ErrorCode::kCancelled) {
+        return tl::unexpected<Error>(done.error());
+      }
       if (!done) return false;
-      bodies.push_back(std::move(body));
+      components.push_back(std::move(component));
     }
     // Each in turn is the frame, until something moves with one.
-    for (std::size_t frame = 0; frame + 2 < bodies.size(); ++frame) {
-      const std::vector<Body> rest(bodies.begin() + frame, bodies.end());
-      const auto placements = CloseBodies(rest);
+    for (std::size_t frame = 0; frame + 2 < components.size(); ++frame) {
+      if (const Status go_on = AskToGoOn(context_, frame, components.size());
+          !go_on) {
+        return tl::unexpected<Error>(go_on.error());
+      }
+      const std::vector<RigidComponent> rest(components.begin() + frame,
+                                             components.end());
+      const auto placements = CloseComponents(rest);
       bool merged = false;
       for (std::size_t b = 1; b < rest.size(); ++b) {
         if (!placements[b]) continue;
@@ -198,15 +219,17 @@ class Merger {
   }
 
   const std::vector<DirectionEdge>& edges_;
+  const RunContext& context_;
   std::vector<std::vector<std::size_t>> incident_;
   UnionFind sets_;
-  std::vector<char> is_single_;  // per root: a body of one edge, itself
+  std::vector<char> is_single_;  // per root: a component of one edge, itself
 };
 
 }  // namespace
 
-std::vector<std::size_t> LabelRigidEdges(const TranslationProblem& problem) {
-  return Merger(problem).Run();
+Result<std::vector<std::size_t>> LabelRigidEdges(
+    const TranslationProblem& problem, const RunContext& context) {
+  return Merger(problem, context).Run();
 }
 
 }  // namespace lowlap

@@ -30,9 +30,11 @@ DirectionPart MakePart(const std::vector<DirectionEdge>& edges,
   return part;
 }
 
-std::vector<DirectionPart> FindDirectionParts(
-    const TranslationProblem& problem) {
-  const std::vector<std::size_t> labels = LabelRigidEdges(problem);
+Result<std::vector<DirectionPart>> FindDirectionParts(
+    const TranslationProblem& problem, const RunContext& context) {
+  const auto labelled = LabelRigidEdges(problem, context);
+  if (!labelled) return tl::unexpected<Error>(labelled.error());
+  const std::vector<std::size_t>& labels = *labelled;
   std::vector<std::vector<std::size_t>> members;
   for (std::size_t e = 0; e < labels.size(); ++e) {
     if (labels[e] >= members.size()) members.resize(labels[e] + 1);
@@ -56,7 +58,8 @@ std::vector<DirectionPart> FindDirectionParts(
 }
 
 Result<TranslationSolution> SolveDirectionParts(
-    const TranslationProblem& problem, const PartSolver& solve) {
+    const TranslationProblem& problem, const RunContext& context,
+    const PartSolver& solve) {
   if (const Status valid = ValidateProblem(problem); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
@@ -69,13 +72,15 @@ Result<TranslationSolution> SolveDirectionParts(
   };
   std::vector<Placed> placed;
   std::vector<char> is_taken(problem.views.size(), 0);
-  for (const DirectionPart& part : FindDirectionParts(problem)) {
+  const auto parts = FindDirectionParts(problem, context);
+  if (!parts) return tl::unexpected<Error>(parts.error());
+  for (const DirectionPart& part : *parts) {
     std::vector<std::size_t> own;
     for (std::size_t n = 0; n < part.views.size(); ++n) {
       if (!is_taken[part.views[n]]) own.push_back(n);
     }
     if (own.size() < 2) continue;
-    const auto centers = solve(part, &solution.num_iterations);
+    const auto centers = solve(part, context, &solution.num_iterations);
     if (!centers) return tl::unexpected<Error>(centers.error());
     Placed& component = placed.emplace_back();
     for (const std::size_t n : own) {

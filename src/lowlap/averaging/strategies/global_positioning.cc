@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/positioning_solver.h"
 #include "lowlap/averaging/strategies/internal/track_groups.h"
 #include "lowlap/core/random.h"
@@ -180,7 +181,7 @@ Result<std::vector<Part>> SolveGroup(Part group,
 
 }  // namespace
 
-Status GlobalPositioningOptions::Validate(std::size_t num_views) const {
+Status GlobalPositioningOptions::Validate() const {
   const auto invalid = [](const std::string& message) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "global positioning: " + message);
@@ -194,9 +195,6 @@ Status GlobalPositioningOptions::Validate(std::size_t num_views) const {
   }
   if (!(max_angle_deg > 0))
     return invalid("the largest angle must be positive");
-  if (!start.empty() && start.size() != num_views) {
-    return invalid("the start needs one centre per view");
-  }
   for (const Vec3& center : start) {
     if (!center.allFinite()) return invalid("the start is not finite");
   }
@@ -206,7 +204,14 @@ Status GlobalPositioningOptions::Validate(std::size_t num_views) const {
 Result<TranslationSolution> GlobalPositioningAverager::Solve(
     const TranslationProblem& problem, const RunContext& context) const {
   Status status = ValidateProblem(problem);
-  if (status) status = options_.Validate(problem.views.size());
+  if (status) status = options_.Validate();
+  if (status && !options_.start.empty() &&
+      options_.start.size() != problem.views.size()) {
+    status =
+        MakeError(ErrorCode::kInvalidArgument,
+                  "global positioning: the start needs one centre per view");
+  }
+  if (status) status = AskToGoOn(context, 0, 1);
   if (!status) return tl::unexpected<Error>(status.error());
   TranslationSolution solution;
   solution.component.assign(problem.views.size(), -1);

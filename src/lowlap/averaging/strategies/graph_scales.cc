@@ -6,6 +6,7 @@
 #include <cmath>
 #include <optional>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/scales/internal/center_solver.h"
 #include "lowlap/averaging/scales/internal/edge_groups.h"
 #include "lowlap/averaging/scales/internal/edge_scales.h"
@@ -19,7 +20,8 @@ namespace {
 // unspecified.
 Result<std::vector<Vec3>> SolveGroup(const TranslationProblem& problem,
                                      const EdgeScales& scales,
-                                     const EdgeGroup& group) {
+                                     const EdgeGroup& group,
+                                     const RunContext& context) {
   constexpr double kAlongLog = 0.02;
   std::vector<CenterEdge> edges;
   edges.reserve(group.edges.size());
@@ -29,15 +31,16 @@ Result<std::vector<Vec3>> SolveGroup(const TranslationProblem& problem,
                      std::exp(scales.log_length[e]), edge.stddev_rad,
                      kAlongLog});
   }
-  return SolveCenters(problem.views.size(), edges);
+  return SolveCenters(problem.views.size(), edges, context);
 }
 
 /// One component under construction.
 class Growth {
  public:
   Growth(const TranslationProblem& problem, const EdgeScales& scales,
-         const std::vector<EdgeGroup>& groups)
+         const std::vector<EdgeGroup>& groups, const RunContext& context)
       : problem_(problem),
+        context_(context),
         scales_(scales),
         groups_(groups),
         placed_(problem.views.size(), false),
@@ -49,7 +52,7 @@ class Growth {
   std::vector<Vec3>* mutable_centers() { return &centers_; }
 
   Status Start(std::size_t g) {
-    const auto local = SolveGroup(problem_, scales_, groups_[g]);
+    const auto local = SolveGroup(problem_, scales_, groups_[g], context_);
     if (!local) return tl::unexpected<Error>(local.error());
     used_[g] = true;
     for (const std::size_t view : groups_[g].views) {
@@ -68,7 +71,11 @@ class Growth {
         if (!joined) return tl::unexpected<Error>(joined.error());
         grown = grown || *joined;
       }
-      if (!grown) grown = IntersectOneView();
+      if (!grown) {
+        const auto placed = IntersectOneView();
+        if (!placed) return tl::unexpected<Error>(placed.error());
+        grown = *placed;
+      }
       if (!grown) {
         const auto closed = CloseGroups();
         if (!closed) return tl::unexpected<Error>(closed.error());
@@ -97,7 +104,7 @@ class Growth {
     }
     if (!adds_views || shared.size() < 2) return false;
     used_[g] = true;
-    const auto local = SolveGroup(problem_, scales_, groups_[g]);
+    const auto local = SolveGroup(problem_, scales_, groups_[g], context_);
     if (!local) return tl::unexpected<Error>(local.error());
     Vec3 local_mean = Vec3::Zero(), mean = Vec3::Zero();
     for (const std::size_t view : shared) {
@@ -124,41 +131,41 @@ class Growth {
   Result<bool> CloseGroups() {
     // The closure is dense; the largest groups come first.
     constexpr std::size_t kMaxGroups = 150;
-    Body frame;
+    RigidComponent frame;
     frame.stddev_rad = 0;
     for (std::size_t view = 0; view < placed_.size(); ++view) {
       if (!placed_[view]) continue;
       frame.views.push_back(view);
       frame.centers.push_back(centers_[view]);
     }
-    std::vector<Body> bodies = {frame};
+    std::vector<RigidComponent> components = {frame};
     std::vector<std::size_t> group_of = {0};
     for (std::size_t g = 0; g < groups_.size(); ++g) {
-      if (used_[g] || bodies.size() > kMaxGroups) continue;
-      const auto local = SolveGroup(problem_, scales_, groups_[g]);
+      if (used_[g] || components.size() > kMaxGroups) continue;
+      const auto local = SolveGroup(problem_, scales_, groups_[g], context_);
       if (!local) return tl::unexpected<Error>(local.error());
-      Body body;
-      body.stddev_rad = 0;
+      RigidComponent component;
+      component.stddev_rad = 0;
       for (const std::size_t e : groups_[g].edges) {
-        body.stddev_rad =
-            std::max(body.stddev_rad, problem_.edges[e].stddev_rad);
+        component.stddev_rad =
+            std::max(component.stddev_rad, problem_.edges[e].stddev_rad);
       }
-      body.views = groups_[g].views;
-      for (const std::size_t view : body.views) {
-        body.centers.push_back((*local)[view]);
+      component.views = groups_[g].views;
+      for (const std::size_t view : component.views) {
+        component.centers.push_back((*local)[view]);
       }
-      bodies.push_back(std::move(body));
+      components.push_back(std::move(component));
       group_of.push_back(g);
     }
-    const auto placements = CloseBodies(bodies);
+    const auto placements = CloseComponents(components);
     bool grown = false;
-    for (std::size_t b = 1; b < bodies.size(); ++b) {
+    for (std::size_t b = 1; b < components.size(); ++b) {
       if (!placements[b]) continue;
       used_[group_of[b]] = true;
-      for (std::size_t n = 0; n < bodies[b].views.size(); ++n) {
-        const std::size_t view = bodies[b].views[n];
+      for (std::size_t n = 0; n < components[b].views.size(); ++n) {
+        const std::size_t view = components[b].views[n];
         if (placed_[view]) continue;
-        Place(view, placements[b]->scale * bodies[b].centers[n] +
+        Place(view, placements[b]->scale * components[b].centers[n] +
                         placements[b]->translation);
         grown = true;
       }
@@ -168,12 +175,16 @@ class Growth {
 
   // The best-conditioned view that two or more directions from placed views
   // determine.
-  bool IntersectOneView() {
+  Result<bool> IntersectOneView() {
     double best_strength = 0;
     std::size_t best_view = 0;
     Vec3 best_center = Vec3::Zero();
     for (std::size_t view = 0; view < placed_.size(); ++view) {
       if (placed_[view]) continue;
+      if (const Status go_on = AskToGoOn(context_, view, placed_.size());
+          !go_on) {
+        return tl::unexpected<Error>(go_on.error());
+      }
       Mat3 normal = Mat3::Zero();
       Vec3 rhs = Vec3::Zero();
       double stddev = 0;
@@ -229,6 +240,7 @@ class Growth {
   }
 
   const TranslationProblem& problem_;
+  const RunContext& context_;
   const EdgeScales& scales_;
   const std::vector<EdgeGroup>& groups_;
   std::vector<bool> placed_;
@@ -238,13 +250,21 @@ class Growth {
 
 }  // namespace
 
+Status GraphScalesOptions::Validate() const {
+  if (max_scale_iterations > 0 && max_refinement_iterations >= 0) return {};
+  return MakeError(ErrorCode::kInvalidArgument,
+                   "the number of iterations for the scales must be positive, "
+                   "that of the refinement not negative");
+}
+
 Result<TranslationSolution> GraphScalesAverager::Solve(
-    const TranslationProblem& problem, const RunContext&) const {
-  if (const Status valid = ValidateProblem(problem); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+    const TranslationProblem& problem, const RunContext& context) const {
+  Status status = ValidateProblem(problem);
+  if (status) status = options_.Validate();
+  if (!status) return tl::unexpected<Error>(status.error());
   const std::size_t num_views = problem.views.size();
-  const auto scales = AverageEdgeScales(problem);
+  const auto scales =
+      AverageEdgeScales(problem, context, options_.max_scale_iterations);
   if (!scales) return tl::unexpected<Error>(scales.error());
   const std::vector<EdgeGroup> groups = RankedEdgeGroups(problem, *scales);
 
@@ -257,11 +277,14 @@ Result<TranslationSolution> GraphScalesAverager::Solve(
         groups[g].views.begin(), groups[g].views.end(),
         [&](std::size_t view) { return solution.component[view] < 0; });
     if (!starts_here) continue;
-    Growth growth(problem, *scales, groups);
-    Status status = growth.Start(g);
+    Growth growth(problem, *scales, groups, context);
+    status = growth.Start(g);
     if (status) status = growth.Grow();
+    if (status) {
+      status = RefineCenters(problem, growth.placed(), growth.mutable_centers(),
+                             context, options_.max_refinement_iterations);
+    }
     if (!status) return tl::unexpected<Error>(status.error());
-    RefineCenters(problem, growth.placed(), growth.mutable_centers());
     for (std::size_t view = 0; view < num_views; ++view) {
       if (!growth.placed()[view] || solution.component[view] >= 0) continue;
       solution.component[view] = solution.num_components;

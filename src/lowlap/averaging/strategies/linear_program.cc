@@ -1,11 +1,40 @@
 #include "lowlap/averaging/strategies/internal/linear_program.h"
 
-#include <coin/Clp_C_Interface.h>
-
+#include <coin/ClpEventHandler.hpp>
+#include <coin/ClpSimplex.hpp>
 #include <exception>
-#include <memory>
+
+#include "lowlap/averaging/internal/cancellation.h"
 
 namespace lowlap {
+namespace {
+
+/// Lets the host stop the simplex method, every few of its steps.
+class StepAsker : public ClpEventHandler {
+ public:
+  StepAsker(const RunContext& context, int max_steps, Status* answer)
+      : context_(context), max_steps_(max_steps), answer_(answer) {}
+  int event(Event which) override {
+    constexpr int kStop = 5;  // Clp's status of a run that its user stops
+    if (which != endOfIteration || model_->numberIterations() % 16 != 0) {
+      return -1;
+    }
+    if (*answer_) {
+      *answer_ = AskToGoOn(context_,
+                           static_cast<std::size_t>(model_->numberIterations()),
+                           static_cast<std::size_t>(max_steps_));
+    }
+    return *answer_ ? -1 : kStop;
+  }
+  ClpEventHandler* clone() const override { return new StepAsker(*this); }
+
+ private:
+  const RunContext& context_;
+  int max_steps_;
+  Status* answer_;  // shared by the copies that Clp makes
+};
+
+}  // namespace
 
 std::size_t LinearProgram::AddVariable(double lower, double upper,
                                        double cost) {
@@ -26,7 +55,7 @@ void LinearProgram::AddRow(const std::vector<Term>& terms, double lower,
 }
 
 Result<LinearProgram::Optimum> LinearProgram::Minimize(
-    int max_iterations) const {
+    const RunContext& context, int max_iterations) const {
   std::vector<CoinBigIndex> starts = {0};
   std::vector<int> rows;
   std::vector<double> factors;
@@ -38,26 +67,30 @@ Result<LinearProgram::Optimum> LinearProgram::Minimize(
     starts.push_back(static_cast<CoinBigIndex>(rows.size()));
   }
   try {
-    const std::unique_ptr<Clp_Simplex, void (*)(Clp_Simplex*)> model(
-        Clp_newModel(), [](Clp_Simplex* m) { Clp_deleteModel(m); });
-    Clp_setLogLevel(model.get(), 0);
-    Clp_loadProblem(model.get(), static_cast<int>(num_variables()),
-                    static_cast<int>(num_rows()), starts.data(), rows.data(),
-                    factors.data(), lower_.data(), upper_.data(), cost_.data(),
-                    row_lower_.data(), row_upper_.data());
-    Clp_setMaximumIterations(model.get(), max_iterations);
-    Clp_initialSolve(model.get());
+    Status answer = AskToGoOn(context, 0, 1);
+    if (!answer) return tl::unexpected<Error>(answer.error());
+    const StepAsker asker(context, max_iterations, &answer);
+    ClpSimplex model;
+    model.setLogLevel(0);
+    model.passInEventHandler(&asker);
+    model.loadProblem(static_cast<int>(num_variables()),
+                      static_cast<int>(num_rows()), starts.data(), rows.data(),
+                      factors.data(), lower_.data(), upper_.data(),
+                      cost_.data(), row_lower_.data(), row_upper_.data());
+    model.setMaximumIterations(max_iterations);
+    model.initialSolve();
+    if (!answer) return tl::unexpected<Error>(answer.error());
     constexpr int kOptimal = 0;
-    if (Clp_status(model.get()) != kOptimal) {
+    if (model.status() != kOptimal) {
       return MakeError(ErrorCode::kNumerical,
                        "the linear program of the camera centres has no "
                        "optimum within the allowed iterations");
     }
     Optimum optimum;
-    const double* values = Clp_primalColumnSolution(model.get());
+    const double* values = model.primalColumnSolution();
     optimum.values.assign(values, values + num_variables());
-    optimum.objective = Clp_objectiveValue(model.get());
-    optimum.num_iterations = Clp_numberIterations(model.get());
+    optimum.objective = model.objectiveValue();
+    optimum.num_iterations = model.numberIterations();
     return optimum;
   } catch (const std::exception& error) {
     return MakeError(ErrorCode::kNumerical,

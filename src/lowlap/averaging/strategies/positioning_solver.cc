@@ -5,8 +5,10 @@
 #include <cmath>
 #include <utility>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/averaging/strategies/internal/block_matrix.h"
+#include "lowlap/robust/robust_loss.h"
 
 namespace lowlap {
 namespace {
@@ -98,7 +100,7 @@ class StepEquations {
       term.offset = state.points[k] - state.centers[seen[n].view];
       const Vec3 residual = seen[n].ray_in_world - s * term.offset;
       const double size = residual.norm();
-      const double w = size <= reach ? 1.0 : reach / size;
+      const double w = HuberWeight(size, reach);
       const double square =
           std::max(term.offset.squaredNorm(), 1e-300) * (1 + damping);
       term.step_s = term.offset.dot(residual) / square;
@@ -175,8 +177,7 @@ double PositioningCost(const std::vector<TrackRays>& tracks,
           (seen[n].ray_in_world -
            state.scales[k][n] * (state.points[k] - state.centers[seen[n].view]))
               .norm();
-      cost += size <= huber_reach ? size * size
-                                  : huber_reach * (2 * size - huber_reach);
+      cost += 2 * HuberLoss(size, huber_reach);
     }
   }
   return cost;
@@ -199,11 +200,11 @@ Result<int> SolvePositions(const std::vector<TrackRays>& tracks,
   int iteration = 0, small_steps = 0;
   while (iteration < options.max_iterations && small_steps < 3 &&
          cost > kNoCost * static_cast<double>(num_observations)) {
-    if (!context.Progress("global positioning",
-                          static_cast<std::size_t>(iteration),
-                          static_cast<std::size_t>(options.max_iterations))) {
-      return MakeError(ErrorCode::kCancelled, "stopped on request", {},
-                       "global positioning");
+    if (const Status go_on =
+            AskToGoOn(context, static_cast<std::size_t>(iteration),
+                      static_cast<std::size_t>(options.max_iterations));
+        !go_on) {
+      return tl::unexpected<Error>(go_on.error());
     }
     ++iteration;
     double next_cost = std::nan("");

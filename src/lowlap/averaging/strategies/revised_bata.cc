@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/angle_objective.h"
 #include "lowlap/averaging/strategies/internal/direction_system.h"
+#include "lowlap/averaging/strategies/internal/revised_lud.h"
+#include "lowlap/robust/robust_loss.h"
 
 namespace lowlap {
 namespace {
@@ -27,7 +30,7 @@ EdgeTerms Linearise(const DirectionEdge& edge, const Vec3& offset) {
   const Vec3 error = d - u.dot(d) * u;
   const Mat3 jacobian = -(u * d.transpose() + u.dot(d) * Mat3::Identity()) *
                         (Mat3::Identity() - u * u.transpose()) / length;
-  const double weight = AngleWeight(error.norm());
+  const double weight = HuberWeight(error.norm(), kAngleHuber);
   terms.hessian = weight * jacobian.transpose() * jacobian;
   terms.gradient = weight * jacobian.transpose() * error;
   return terms;
@@ -45,12 +48,14 @@ void FixScale(const DirectionPart& part, std::vector<Vec3>* centers) {
 }
 
 Result<std::vector<Vec3>> MinimiseJointly(const DirectionPart& part,
+                                          int max_iterations,
+                                          const RunContext& context,
                                           int* num_iterations) {
-  constexpr int kMaxIterations = 200;
   constexpr double kDecrease = 1e-10;
   constexpr double kLeastDamping = 1e-9;
   constexpr double kMostDamping = 1e6;
-  auto start = SolveRevisedLud(part, num_iterations);
+  auto start = SolveRevisedLud(part, RevisedLudOptions().max_iterations,
+                               context, num_iterations);
   if (!start) return start;
   std::vector<Vec3> centers = std::move(*start);
   FixScale(part, &centers);
@@ -58,7 +63,7 @@ Result<std::vector<Vec3>> MinimiseJointly(const DirectionPart& part,
   double cost = AngleObjective(part, centers);
   double damping = 1e-4;
   std::vector<Mat3> hessians(part.edges.size());
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+  for (int iteration = 0; iteration < max_iterations; ++iteration) {
     ++*num_iterations;
     std::vector<Vec3> forces(part.views.size(), Vec3::Zero());
     for (std::size_t e = 0; e < part.edges.size(); ++e) {
@@ -72,6 +77,12 @@ Result<std::vector<Vec3>> MinimiseJointly(const DirectionPart& part,
     bool is_lower = false;
     double decrease = 0;
     while (!is_lower && damping <= kMostDamping) {
+      if (const Status go_on =
+              AskToGoOn(context, static_cast<std::size_t>(iteration),
+                        static_cast<std::size_t>(max_iterations));
+          !go_on) {
+        return tl::unexpected<Error>(go_on.error());
+      }
       if (const Status status = system.Factor(hessians, damping); !status) {
         return tl::unexpected<Error>(status.error());
       }
@@ -101,9 +112,24 @@ Result<std::vector<Vec3>> MinimiseJointly(const DirectionPart& part,
 
 }  // namespace
 
+Status RevisedBataOptions::Validate() const {
+  if (max_iterations > 0) return {};
+  return MakeError(ErrorCode::kInvalidArgument,
+                   "the number of iterations must be positive");
+}
+
 Result<TranslationSolution> RevisedBataAverager::Solve(
-    const TranslationProblem& problem, const RunContext&) const {
-  return SolveDirectionParts(problem, MinimiseJointly);
+    const TranslationProblem& problem, const RunContext& context) const {
+  if (const Status valid = options_.Validate(); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  return SolveDirectionParts(
+      problem, context,
+      [&](const DirectionPart& part, const RunContext& of_part,
+          int* num_iterations) {
+        return MinimiseJointly(part, options_.max_iterations, of_part,
+                               num_iterations);
+      });
 }
 
 }  // namespace lowlap

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/scales/internal/edge_groups.h"
 #include "lowlap/averaging/scales/internal/edge_scales.h"
@@ -9,7 +10,7 @@
 namespace lowlap {
 
 Result<TranslationSolution> ScaleChainAverager::Solve(
-    const TranslationProblem& problem, const RunContext&) const {
+    const TranslationProblem& problem, const RunContext& context) const {
   if (const Status valid = ValidateProblem(problem); !valid) {
     return tl::unexpected<Error>(valid.error());
   }
@@ -18,7 +19,12 @@ Result<TranslationSolution> ScaleChainAverager::Solve(
   solution.component.assign(num_views, -1);
   solution.center_in_world.assign(num_views, Vec3::Zero());
   const EdgeScales scales = ChainEdgeScales(problem);
-  for (const EdgeGroup& group : RankedEdgeGroups(problem, scales)) {
+  const std::vector<EdgeGroup> groups = RankedEdgeGroups(problem, scales);
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    if (const Status go_on = AskToGoOn(context, g, groups.size()); !go_on) {
+      return tl::unexpected<Error>(go_on.error());
+    }
+    const EdgeGroup& group = groups[g];
     std::vector<DifferenceEdge> graph;
     std::vector<double> costs;
     for (const std::size_t e : group.edges) {

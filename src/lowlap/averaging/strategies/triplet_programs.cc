@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/linear_program.h"
 #include "lowlap/averaging/strategies/internal/triplet_baselines.h"
 
@@ -48,8 +49,8 @@ class CenterProgram {
     }
   }
 
-  Result<LinearProgram::Optimum> Minimize() const {
-    return program_.Minimize();
+  Result<LinearProgram::Optimum> Minimize(const RunContext& context) const {
+    return program_.Minimize(context);
   }
 
   /// View -> first of its three variables.
@@ -95,11 +96,21 @@ class CenterProgram {
 
 }  // namespace
 
-Result<TranslationSolution> TripletProgramAverager::Solve(
-    const TranslationProblem& problem, const RunContext&) const {
-  if (const Status valid = ValidateProblem(problem); !valid) {
-    return tl::unexpected<Error>(valid.error());
+Status TripletProgramOptions::Validate() const {
+  if (max_closure_deg >= 0 && min_angle_deg >= 0 && max_triplets_per_edge > 0) {
+    return {};
   }
+  return MakeError(ErrorCode::kInvalidArgument,
+                   "angles must not be negative, and the number of triplets "
+                   "must be positive");
+}
+
+Result<TranslationSolution> TripletProgramAverager::Solve(
+    const TranslationProblem& problem, const RunContext& context) const {
+  Status status = ValidateProblem(problem);
+  if (status) status = options_.Validate();
+  if (status) status = AskToGoOn(context, 0, 1);
+  if (!status) return tl::unexpected<Error>(status.error());
   TranslationSolution solution;
   solution.component.assign(problem.views.size(), -1);
   solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
@@ -115,7 +126,7 @@ Result<TranslationSolution> TripletProgramAverager::Solve(
       adds_views = adds_views || solution.component[entry.first] < 0;
     }
     if (!adds_views) continue;
-    const auto optimum = program.Minimize();
+    const auto optimum = program.Minimize(context);
     if (!optimum) return tl::unexpected<Error>(optimum.error());
     solution.num_iterations += optimum->num_iterations;
     for (const auto& [view, x] : program.centers()) {

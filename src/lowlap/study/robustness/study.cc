@@ -11,7 +11,6 @@
 #include <tuple>
 #include <utility>
 
-#include "lowlap/averaging/strategies.h"
 #include "lowlap/core/parallel.h"
 #include "lowlap/study/robustness/problem.h"
 
@@ -211,7 +210,7 @@ class StudyRun {
     const RobustnessLevel& level = LevelOf(key);
     const int num_views = level.scene.num_views;
     const auto averager =
-        MakeTranslationAverager(options.strategies[key.strategy]);
+        options.registry.Make(options.strategies[key.strategy]);
     if (!averager) {
       return Missing(RobustnessStatus::kFailed, num_views,
                      averager.error().message);
@@ -296,7 +295,7 @@ Status RobustnessOptions::Validate() const {
     if (!made) return tl::unexpected<Error>(made.error());
   }
   for (const std::string& name : strategies) {
-    const auto made = MakeTranslationAverager(name);
+    const auto made = registry.Make(name);
     if (!made) return tl::unexpected<Error>(made.error());
   }
   return {};
@@ -312,7 +311,7 @@ Result<RobustnessStudy> PlanRobustnessStudy(const RobustnessOptions& options) {
     study.options.scenarios = RobustnessScenarioNames();
   }
   if (options.strategies.empty()) {
-    study.options.strategies = TranslationAveragerNames();
+    study.options.strategies = options.registry.Names();
   }
   DropRepetitions(&study.options.scenarios);
   DropRepetitions(&study.options.strategies);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/averaging/averager_registry.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/study/robustness/outcome.h"
@@ -15,7 +16,9 @@
 namespace lowlap {
 
 struct RobustnessOptions {
-  std::vector<std::string> scenarios;   // empty: all
+  std::vector<std::string> scenarios;  // empty: all
+  /// Where strategies come from; register your own there.
+  AveragerRegistry registry = AveragerRegistry::WithBuiltIns();
   std::vector<std::string> strategies;  // empty: all
   int num_seeds = 2;                    // simulations per level
   bool quick = false;

@@ -7,11 +7,11 @@
 
 namespace lowlap {
 
-/// The cameras that scale groups hinge on, by camera, from the groups by
+/// The cameras that scale groups articulation on, by camera, from the groups by
 /// directions and by ratios of `diagnosis`.
-std::vector<ScaleHinge> FindScaleHinges(const std::vector<ScaleRatio>& ratios,
-                                        const ScaleDiagnosis& diagnosis,
-                                        const DiagnosisOptions& options);
+std::vector<ScaleArticulation> FindScaleArticulations(
+    const std::vector<ScaleRatio>& ratios, const ScaleDiagnosis& diagnosis,
+    const DiagnosisOptions& options);
 
 /// Most meaningful first.
 void SortByEvidence(const std::vector<ScaleRatio>& ratios,

@@ -1,36 +1,32 @@
 #pragma once
 
-#include <cstddef>
+#include <map>
 #include <vector>
 
-#include "lowlap/averaging/internal/difference_solver.h"
+#include "lowlap/core/ids.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 
-/// What cycles say about one edge of a graph, some edges of which were
-/// rejected.
-struct BridgeState {
-  /// Kept, and on no cycle of kept edges: nothing confirms it.
-  bool is_bridge = false;
-  /// Rejected edges that join the two sides of this bridge: each contradicts
-  /// it.
-  std::vector<std::size_t> contradictions;
-  /// The views on the smaller side of a contradicted bridge, sorted.
-  std::vector<std::size_t> beyond;
+/// Pairs of a view graph that were kept, and those that were rejected.
+struct BridgeReport {
+  /// The bridges, kept pairs that are on no cycle of kept pairs, so that
+  /// nothing confirms them, with the rejected pairs that join the two sides, in
+  /// the order given: each contradicts it.
+  std::map<ViewPair, std::vector<ViewPair>> bridges;
+  /// By rejected pair that crosses any: the bridges on the path of kept pairs
+  /// between its views, from the first view on.
+  std::map<ViewPair, std::vector<ViewPair>> crossed;
 };
 
-/// The bridges of the kept part of a graph; entries of other edges keep their
-/// defaults. Linear in the size of the graph, and in the length of the path
-/// that each rejected edge closes.
-std::vector<BridgeState> ExamineBridges(
-    std::size_t num_views, const std::vector<DifferenceEdge>& edges,
-    const std::vector<bool>& kept);
+/// Rejected pairs whose views `kept` does not join are passed over. Linear in
+/// the size of the graph and in the length of the path that each rejected pair
+/// closes.
+BridgeReport ExamineBridges(const ViewGraph& kept,
+                            const std::vector<ViewPair>& rejected);
 
-/// The bridges on the path of kept edges between the two ends of every rejected
-/// edge, from its first view on; empty for kept edges, and where no path of
-/// kept edges joins the ends.
-std::vector<std::vector<std::size_t>> BridgesClosedBy(
-    std::size_t num_views, const std::vector<DifferenceEdge>& edges,
-    const std::vector<bool>& kept);
+/// The views on the smaller side of a bridge (ties: the side without the least
+/// id), sorted.
+std::vector<ViewId> ViewsBeyond(const ViewGraph& kept, const ViewPair& bridge);
 
 }  // namespace lowlap

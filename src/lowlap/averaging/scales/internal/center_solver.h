@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
 #include "lowlap/geometry/types.h"
 
 namespace lowlap {
@@ -24,9 +25,11 @@ struct CenterEdge {
 ///   W = (I - d d^T) / (length across)^2 + d d^T / (length along)^2
 /// per edge, reweighted (Geman-McClure) until the robust optimum. Gauge: the
 /// first view of every connected component is the origin; scale is that of the
-/// lengths. A tree is reproduced exactly. kNumerical if a factorisation fails.
+/// lengths. A tree is reproduced exactly. kNumerical if a factorisation fails;
+/// kCancelled.
 Result<std::vector<Vec3>> SolveCenters(std::size_t num_views,
                                        const std::vector<CenterEdge>& edges,
+                                       const RunContext& context = {},
                                        int max_iterations = 30);
 
 }  // namespace lowlap

@@ -31,8 +31,9 @@ struct EdgeScales {
 /// is taken; beyond 10,000 ratios only the second start is tried. On a chain
 /// both are the paper's recursion, exactly. Gauge: one edge of every component
 /// has length 1. The problem must be valid (ValidateProblem). kNumerical if a
-/// factorisation fails.
+/// factorisation fails; kCancelled.
 Result<EdgeScales> AverageEdgeScales(const TranslationProblem& problem,
+                                     const RunContext& context = {},
                                      int max_iterations = 30);
 
 /// The lengths along the spanning forest alone, without averaging.

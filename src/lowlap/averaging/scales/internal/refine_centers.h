@@ -22,9 +22,10 @@ namespace lowlap {
 /// is not estimated again: it would shrink with what is given up.
 ///
 /// Where no step can be computed, or none lowers the sum, the centres stay as
-/// they are.
-void RefineCenters(const TranslationProblem& problem,
-                   const std::vector<bool>& placed, std::vector<Vec3>* centers,
-                   int max_iterations = 50);
+/// they are. kCancelled, with the centres as they were.
+Status RefineCenters(const TranslationProblem& problem,
+                     const std::vector<bool>& placed,
+                     std::vector<Vec3>* centers, const RunContext& context = {},
+                     int max_iterations = 50);
 
 }  // namespace lowlap

@@ -10,8 +10,11 @@ namespace lowlap {
 /// min over C  sum |P_e (C_j - C_i)|,  P_e = I - d_e d_e^T, subject to
 /// sum d_e . (C_j - C_i) = number of edges: the revised LUD of Zhuang, Cheong,
 /// Lee 2018, by reweighted least squares. View 0 is at the origin. Adds to
-/// `num_iterations`; kNumerical if a factorisation fails.
+/// `num_iterations`; kNumerical if a factorisation fails;
+/// kCancelled.
 Result<std::vector<Vec3>> SolveRevisedLud(const DirectionPart& part,
+                                          int max_iterations,
+                                          const RunContext& context,
                                           int* num_iterations);
 
 /// sum rho(e) over the edges, e the sine of the angle between C_j - C_i and d_e
@@ -22,8 +25,5 @@ double AngleObjective(const DirectionPart& part,
 
 /// The turn of Huber's loss, a sine: that of the published program.
 inline constexpr double kAngleHuber = 0.1;
-
-/// rho'(e) / e.
-double AngleWeight(double sine);
 
 }  // namespace lowlap

@@ -4,6 +4,19 @@
 
 namespace lowlap {
 
+struct BataOptions {
+  /// Each sets the weights, then descends by `steps_per_round`.
+  int rounds = 10;
+  int steps_per_round = 10;
+
+  Status Validate() const;
+  template <class Visit>
+  void VisitOptions(const Visit& visit) {
+    visit("rounds", &rounds, "how often the robust weights are set");
+    visit("steps_per_round", &steps_per_round, "steps of descent for each");
+  }
+};
+
 /// Bilinear angle-based translation averaging (Zhuang, Cheong, Lee, "Baseline
 /// desensitizing in translation averaging", CVPR 2018):
 ///
@@ -22,9 +35,13 @@ namespace lowlap {
 /// (SolveDirectionParts), each in a component of its own.
 class BataAverager : public TranslationAverager {
  public:
+  explicit BataAverager(BataOptions options = {}) : options_(options) {}
   std::string Name() const override { return "bata"; }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
+
+ private:
+  BataOptions options_;
 };
 
 }  // namespace lowlap

@@ -21,15 +21,19 @@ namespace lowlap {
 /// (reweighted least squares), and a line search; sparse LDL^T. `centers` is
 /// the start (empty: all lengths are 1) and the result; its first view is at
 /// the origin. Stops where the objective decreases by less than 1e-13 of
-/// itself. Returns the iterations; kNumerical if a factorisation fails.
+/// itself. Returns the iterations; kNumerical if a factorisation fails;
+/// kCancelled.
 Result<int> MinimiseBounded(const DirectionPart& part, double width,
-                            int max_iterations, std::vector<Vec3>* centers);
+                            int max_iterations, const RunContext& context,
+                            std::vector<Vec3>* centers);
 
 /// MinimiseBounded from least squares over tenfold narrower losses down to
-/// `width`: narrow losses converge slowly from far away. Adds to
-/// `num_iterations`.
+/// `width`: narrow losses converge slowly from far away. `max_iterations` are
+/// those of the last one. Adds to `num_iterations`.
 Result<std::vector<Vec3>> MinimiseNarrowing(const DirectionPart& part,
-                                            double width, int* num_iterations);
+                                            double width, int max_iterations,
+                                            const RunContext& context,
+                                            int* num_iterations);
 
 /// The objective of MinimiseBounded.
 double BoundedObjective(const DirectionPart& part, double width,

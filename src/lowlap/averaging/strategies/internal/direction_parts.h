@@ -27,22 +27,24 @@ DirectionPart MakePart(const std::vector<DirectionEdge>& edges,
 /// ones: an intersection counts if its directions are ten standard deviations
 /// from parallel, so that collinear centres determine nothing. Edges are joined
 /// by triangles, by views that two directions from one part intersect, by parts
-/// that share two views, and by rings of parts (CloseBodies; at most the 100
-/// largest parts that are in a ring at all). Ratios are ignored. Parts may
+/// that share two views, and by rings of parts (CloseComponents; at most the
+/// 100 largest parts that are in a ring at all). Ratios are ignored. Parts may
 /// share single views. Whether an edge is an outlier is not asked here.
-std::vector<DirectionPart> FindDirectionParts(
-    const TranslationProblem& problem);
+/// kCancelled.
+Result<std::vector<DirectionPart>> FindDirectionParts(
+    const TranslationProblem& problem, const RunContext& context = {});
 
 /// Centres of the views of one part, in any gauge of positive scale; adds to
 /// `num_iterations`.
 using PartSolver = std::function<Result<std::vector<Vec3>>(
-    const DirectionPart& part, int* num_iterations)>;
+    const DirectionPart& part, const RunContext& context, int* num_iterations)>;
 
 /// The common frame of strategies that use directions only: validates, solves
 /// every part by itself, and gives each a component. A view of several parts
 /// goes to the largest; a view of none, and one that its part would leave alone
 /// in a component, gets component -1.
 Result<TranslationSolution> SolveDirectionParts(
-    const TranslationProblem& problem, const PartSolver& solve);
+    const TranslationProblem& problem, const RunContext& context,
+    const PartSolver& solve);
 
 }  // namespace lowlap

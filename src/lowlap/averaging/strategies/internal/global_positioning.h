@@ -23,7 +23,19 @@ struct GlobalPositioningOptions {
   /// Centres to start from, one per view; empty: random ones (context.seed).
   std::vector<Vec3> start;
 
-  Status Validate(std::size_t num_views) const;
+  Status Validate() const;
+  template <class Visit>
+  void VisitOptions(const Visit& visit) {
+    visit("min_views_per_track", &min_views_per_track,
+          "shorter tracks are left out");
+    visit("min_shared_points", &min_shared_points,
+          "a view must share so many points with those that are placed");
+    visit("huber_reach", &huber_reach, "where Huber's loss turns");
+    visit("max_angle_deg", &max_angle_deg,
+          "rays that miss their point by more are dropped after the first "
+          "solution; 180: none");
+    visit("max_iterations", &max_iterations, "at most so many iterations");
+  }
 };
 
 /// Centres and points together from the rays of tracks (Pan, Barath, Pollefeys,
@@ -52,10 +64,7 @@ class GlobalPositioningAverager : public TranslationAverager {
  public:
   explicit GlobalPositioningAverager(GlobalPositioningOptions options = {})
       : options_(std::move(options)) {}
-  std::string Name() const override {
-    return options_.min_views_per_track > 2 ? "global_positioning"
-                                            : "global_positioning_2view";
-  }
+  std::string Name() const override { return "global_positioning"; }
   bool NeedsTracks() const override { return true; }
   std::string Needs() const override {
     return std::to_string(options_.min_shared_points) +

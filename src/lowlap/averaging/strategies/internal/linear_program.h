@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
 
 namespace lowlap {
 
@@ -33,8 +34,9 @@ class LinearProgram {
 
   /// By the simplex method (COIN-OR Clp), in one thread; the same program gives
   /// the same optimum. kNumerical if it is infeasible, unbounded, or not done
-  /// within `max_iterations`.
-  Result<Optimum> Minimize(int max_iterations = 200000) const;
+  /// within `max_iterations`; kCancelled.
+  Result<Optimum> Minimize(const RunContext& context = {},
+                           int max_iterations = 200000) const;
 
  private:
   struct Entry {

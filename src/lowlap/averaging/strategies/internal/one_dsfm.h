@@ -16,6 +16,12 @@ struct OneDSfmOptions {
   double max_contradiction = 0.1;
 
   Status Validate() const;
+  template <class Visit>
+  void VisitOptions(const Visit& visit) {
+    visit("num_projections", &num_projections, "axes that views are put on");
+    visit("max_contradiction", &max_contradiction,
+          "relative poses that are contradicted more are left out");
+  }
 };
 
 /// Per edge: how strongly orderings of the views contradict it (Wilson,
@@ -43,7 +49,7 @@ TranslationProblem WithoutEdges(const TranslationProblem& problem,
 /// views are not changed: one that keeps no edge is for the strategy to report.
 class OneDSfmAverager : public TranslationAverager {
  public:
-  explicit OneDSfmAverager(std::unique_ptr<TranslationAverager> inner,
+  explicit OneDSfmAverager(std::shared_ptr<const TranslationAverager> inner,
                            OneDSfmOptions options = {})
       : inner_(std::move(inner)), options_(options) {}
   std::string Name() const override { return "1dsfm+" + inner_->Name(); }
@@ -55,7 +61,7 @@ class OneDSfmAverager : public TranslationAverager {
                                     const RunContext& context) const override;
 
  private:
-  std::unique_ptr<TranslationAverager> inner_;
+  std::shared_ptr<const TranslationAverager> inner_;
   OneDSfmOptions options_;
 };
 

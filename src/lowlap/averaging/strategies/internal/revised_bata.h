@@ -4,6 +4,16 @@
 
 namespace lowlap {
 
+struct RevisedBataOptions {
+  int max_iterations = 200;
+
+  Status Validate() const;
+  template <class Visit>
+  void VisitOptions(const Visit& visit) {
+    visit("max_iterations", &max_iterations, "at most so many iterations");
+  }
+};
+
 /// The objective of BATA (BataAverager: Zhuang, Cheong, Lee 2018; Huber's loss
 /// of the sine of the angle between C_j - C_i and d_ij) at its minimum: the
 /// inverse lengths are eliminated, and Levenberg-Marquardt runs over the
@@ -26,9 +36,14 @@ namespace lowlap {
 /// (SolveDirectionParts), each in a component of its own.
 class RevisedBataAverager : public TranslationAverager {
  public:
+  explicit RevisedBataAverager(RevisedBataOptions options = {})
+      : options_(options) {}
   std::string Name() const override { return "revised_bata"; }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
+
+ private:
+  RevisedBataOptions options_;
 };
 
 }  // namespace lowlap

@@ -4,6 +4,16 @@
 
 namespace lowlap {
 
+struct RevisedLudOptions {
+  int max_iterations = 200;
+
+  Status Validate() const;
+  template <class Visit>
+  void VisitOptions(const Visit& visit) {
+    visit("max_iterations", &max_iterations, "at most so many iterations");
+  }
+};
+
 /// Revised LUD (Zhuang, Cheong, Lee, "Baseline desensitizing in translation
 /// averaging", CVPR 2018): LUD with one linear constraint on the scale in place
 /// of a bound on every length, which frees it from the shortest baseline:
@@ -17,9 +27,14 @@ namespace lowlap {
 /// placed (SolveDirectionParts), each in a component of its own.
 class RevisedLudAverager : public TranslationAverager {
  public:
+  explicit RevisedLudAverager(RevisedLudOptions options = {})
+      : options_(options) {}
   std::string Name() const override { return "revised_lud"; }
   Result<TranslationSolution> Solve(const TranslationProblem& problem,
                                     const RunContext& context) const override;
+
+ private:
+  RevisedLudOptions options_;
 };
 
 }  // namespace lowlap

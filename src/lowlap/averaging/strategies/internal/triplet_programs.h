@@ -15,6 +15,17 @@ struct TripletProgramOptions {
   double min_angle_deg = 3.0;
   /// An edge that this many better triplets hold already asks for no more.
   int max_triplets_per_edge = 3;
+
+  Status Validate() const;
+  template <class Visit>
+  void VisitOptions(const Visit& visit) {
+    visit("max_closure_deg", &max_closure_deg,
+          "triangles that miss closing by more do not count");
+    visit("min_angle_deg", &min_angle_deg,
+          "triangles without a ratio and with a smaller angle do not count");
+    visit("max_triplets_per_edge", &max_triplets_per_edge,
+          "an edge that so many better triplets hold asks for no more");
+  }
 };
 
 /// Centres from the motions of view triplets by one linear program (Moulon,

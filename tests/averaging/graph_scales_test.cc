@@ -1,8 +1,9 @@
-#include "lowlap/averaging/strategies.h"
+#include "lowlap/averaging/strategies/internal/graph_scales.h"
 
 #include <gtest/gtest.h>
 
 #include "averaging/random_problem.h"
+#include "lowlap/averaging/averager_registry.h"
 
 namespace lowlap {
 namespace {
@@ -21,7 +22,7 @@ std::vector<bool> PlacedInFirst(const TranslationSolution& solution) {
 class RatioStrategy : public ::testing::TestWithParam<std::string> {
  protected:
   TranslationSolution Solve(const TranslationProblem& problem) {
-    const auto averager = MakeTranslationAverager(GetParam());
+    const auto averager = AveragerRegistry::WithBuiltIns().Make(GetParam());
     auto solution = (*averager)->Solve(problem, RunContext());
     EXPECT_TRUE(solution);
     return *solution;
@@ -65,36 +66,15 @@ TEST_P(RatioStrategy, AFloatingPartIsAComponentOfItsOwn) {
   EXPECT_EQ(solution.component, (std::vector<int>{0, 0, 0, 0, 1, 1}));
 }
 
-class EveryStrategy : public ::testing::TestWithParam<std::string> {};
-
-TEST_P(EveryStrategy, RefusesInvalidProblems) {
-  RandomProblem made = MakeRandomProblem(3, Edges{{0, 1}, {1, 2}}, 4);
-  made.problem.ratios[0].target = 7;
-  const auto averager = MakeTranslationAverager(GetParam());
-  const auto solution = (*averager)->Solve(made.problem, RunContext());
-  ASSERT_FALSE(solution);
-  EXPECT_EQ(solution.error().code, ErrorCode::kInvalidArgument);
-}
-
 INSTANTIATE_TEST_SUITE_P(All, RatioStrategy,
                          ::testing::Values("graph", "chain"));
-INSTANTIATE_TEST_SUITE_P(All, EveryStrategy,
-                         ::testing::ValuesIn(TranslationAveragerNames()));
-
-TEST(Strategies, UnknownNameListsTheKnownOnes) {
-  const auto averager = MakeTranslationAverager("magic");
-  ASSERT_FALSE(averager);
-  EXPECT_NE(averager.error().message.find("graph"), std::string::npos);
-}
-
 TEST(GraphScales, DirectionsAloneFixATriangleWithoutRatios) {
   // Edges {0, 1} and {1, 2} have a ratio; view 3 hangs on directions only.
   RandomProblem made =
       MakeRandomProblem(4, Edges{{0, 1}, {1, 2}, {0, 3}, {2, 3}, {1, 3}}, 5,
                         /*with_ratios=*/false);
   made.AddRatio(0, 1);
-  const auto averager = MakeTranslationAverager("graph");
-  const auto solution = (*averager)->Solve(made.problem, RunContext());
+  const auto solution = GraphScalesAverager().Solve(made.problem, RunContext());
   ASSERT_TRUE(solution);
   EXPECT_EQ(solution->num_components, 1);
   EXPECT_LT(GaugeFreeError(made.centers, solution->center_in_world,
@@ -111,8 +91,7 @@ TEST(GraphScales, GroupsThatShareTwoViewsShareAScale) {
   made.AddRatio(0, 1);
   made.AddRatio(1, 2);
   made.AddRatio(3, 4);
-  const auto averager = MakeTranslationAverager("graph");
-  const auto solution = (*averager)->Solve(made.problem, RunContext());
+  const auto solution = GraphScalesAverager().Solve(made.problem, RunContext());
   ASSERT_TRUE(solution);
   EXPECT_EQ(solution->num_components, 1);
   EXPECT_LT(GaugeFreeError(made.centers, solution->center_in_world,
@@ -141,13 +120,22 @@ TEST(GraphScales, ToleratesWrongEdgesAndRatios) {
     ratio.log_ratio += wrong ? random.Uniform(-2, 2) : random.Gaussian(0.01);
     if (wrong) ratio.log10_nfa = -2;
   }
-  const auto averager = MakeTranslationAverager("graph");
-  const auto solution = (*averager)->Solve(made.problem, RunContext());
+  const auto solution = GraphScalesAverager().Solve(made.problem, RunContext());
   ASSERT_TRUE(solution);
   EXPECT_EQ(solution->num_components, 1);
   EXPECT_LT(GaugeFreeError(made.centers, solution->center_in_world,
                            PlacedInFirst(*solution)),
             0.01);
+}
+
+TEST(GraphScales, RefusesOptionsWithoutIterations) {
+  GraphScalesOptions options;
+  options.max_scale_iterations = 0;
+  const RandomProblem made = MakeRandomProblem(3, Edges{{0, 1}, {1, 2}}, 1);
+  const auto solution =
+      GraphScalesAverager(options).Solve(made.problem, RunContext());
+  ASSERT_FALSE(solution);
+  EXPECT_EQ(solution.error().code, ErrorCode::kInvalidArgument);
 }
 
 }  // namespace
