@@ -3,7 +3,6 @@
 // The parser inside cereal needs cereal's macros before it.
 #include <cereal/macros.hpp>
 //
-#include <algorithm>
 #include <cereal/external/rapidxml/rapidxml.hpp>
 #include <cstring>
 #include <nlohmann/json.hpp>
@@ -11,6 +10,7 @@
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/io/scene_json.h"
+#include "third_party_adapters/openmvg/internal/xml_structure.h"
 
 namespace lowlap::openmvg {
 namespace {
@@ -25,23 +25,6 @@ bool IsStringItem(const std::string& name) {
                                                "local_path", "filename",
                                                "polymorphic_name"};
   return kNames.count(name) > 0;
-}
-
-/// Deepest nesting of elements; the parser recurses, so this is checked before.
-int Depth(const std::string& text) {
-  int depth = 0, deepest = 0;
-  for (std::size_t open = text.find('<'); open != std::string::npos;
-       open = text.find('<', open + 1)) {
-    const char next = open + 1 < text.size() ? text[open + 1] : '\0';
-    if (next == '/') {
-      --depth;
-    } else if (next != '?' && next != '!') {
-      const std::size_t close = text.find('>', open);
-      if (close != std::string::npos && text[close - 1] == '/') continue;
-      deepest = std::max(deepest, ++depth);
-    }
-  }
-  return deepest;
 }
 
 /// Turns the elements of cereal's XML into the JSON of the same archive:
@@ -109,9 +92,9 @@ class JsonFromXml {
 Result<Scene> ParseSfmDataXml(const std::string& text,
                               const std::string& file) {
   constexpr int kMaxDepth = 64;  // OpenMVG's files have 10
-  if (Depth(text) > kMaxDepth) {
-    return MakeError(ErrorCode::kParse, "the elements are nested too deeply",
-                     file);
+  if (const Status checked = internal::CheckXmlStructure(text, kMaxDepth, file);
+      !checked) {
+    return tl::unexpected<Error>(checked.error());
   }
   std::string buffer = text;  // the parser writes into it
   std::string json;

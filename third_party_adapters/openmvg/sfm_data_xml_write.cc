@@ -13,8 +13,20 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// One element; `name` is its tag.
-void AppendElement(const std::string& name, const Json& value, int level,
+/// Whether XML 1.0 has every character of the text (which is UTF-8).
+bool FitsIntoXml(const std::string& text) {
+  for (const char c : text) {
+    if (static_cast<unsigned char>(c) < 0x20 && c != '\t' && c != '\n' &&
+        c != '\r') {
+      return false;
+    }
+  }
+  return text.find("\xEF\xBF\xBE") == std::string::npos &&
+         text.find("\xEF\xBF\xBF") == std::string::npos;
+}
+
+/// One element; `name` is its tag. False if a text does not fit into XML.
+bool AppendElement(const std::string& name, const Json& value, int level,
                    std::string& xml) {
   const std::string indent(static_cast<std::size_t>(level), '\t');
   xml += indent + "<" + name;
@@ -22,21 +34,24 @@ void AppendElement(const std::string& name, const Json& value, int level,
   if (value.is_structured()) {
     if (value.empty()) {
       xml += "/>\n";
-      return;
+      return true;
     }
     xml += ">\n";
     int index = 0;
     for (const auto& [key, child] : value.items()) {
       const std::string child_name =
           value.is_array() ? "value" + std::to_string(index++) : key;
-      AppendElement(child_name, child, level + 1, xml);
+      if (!AppendElement(child_name, child, level + 1, xml)) return false;
     }
     xml += indent + "</" + name + ">\n";
-    return;
+    return true;
   }
   if (value.is_string()) {
     const std::string& text = value.get_ref<const std::string&>();
-    const auto is_space = [](char c) { return c == ' ' || c == '\t'; };
+    if (!FitsIntoXml(text)) return false;
+    const auto is_space = [](char c) {
+      return c == ' ' || c == '\t' || c == '\n' || c == '\r';
+    };
     if (!text.empty() && (is_space(text.front()) || is_space(text.back()))) {
       xml += " xml:space=\"preserve\"";
     }
@@ -58,6 +73,9 @@ void AppendElement(const std::string& name, const Json& value, int level,
         case '\'':
           xml += "&apos;";
           break;
+        case '\r':  // readers turn a plain one into a line feed
+          xml += "&#13;";
+          break;
         default:
           xml += c;
       }
@@ -71,6 +89,7 @@ void AppendElement(const std::string& name, const Json& value, int level,
     xml += '>' + value.dump();
   }
   xml += "</" + name + ">\n";
+  return true;
 }
 
 }  // namespace
@@ -84,7 +103,11 @@ Result<std::string> FormatSfmDataXml(const Scene& scene) {
   }
   json.erase("lowlap");
   std::string xml = "<?xml version=\"1.0\" encoding=\"utf-8\"?>\n";
-  AppendElement("cereal", json, 0, xml);
+  if (!AppendElement("cereal", json, 0, xml)) {
+    return MakeError(ErrorCode::kInvalidScene,
+                     "a path or file name holds a character that XML cannot "
+                     "hold");
+  }
   xml += '\n';
   return xml;
 }
