@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <memory>
-#include <ostream>
 #include <utility>
 
 #include "cli/command.h"
@@ -45,10 +44,7 @@ int RunDiagnose(const Flags& flags) {
   if (!diagnosis) return Fail(diagnosis.error());
   if (!flags.json.empty()) {
     const Status written =
-        WriteFileAtomically(flags.json, [&](std::ostream& out) -> Status {
-          out << ToJson(*diagnosis, scene) << '\n';
-          return {};
-        });
+        WriteFileAtomically(flags.json, ToJson(*diagnosis, scene) + "\n");
     if (!written) return Fail(written.error());
   }
   std::printf("%s", ToText(*diagnosis, scene).c_str());

@@ -3,8 +3,9 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <filesystem>
-#include <ostream>
+#include <system_error>
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/pipeline/output_folder.h"
@@ -28,7 +29,8 @@ Status ResultFile::Append(const std::string& line) const {
 }
 
 Status ResultFile::Failure(const std::string& what) const {
-  return MakeError(ErrorCode::kIo, what, path_);
+  return MakeError(ErrorCode::kIo,
+                   what + ": " + std::generic_category().message(errno), path_);
 }
 
 Result<std::string> TakeUpTable(const std::string& folder,
@@ -41,7 +43,8 @@ Result<std::string> TakeUpTable(const std::string& folder,
   if (const Status made = PrepareOutputFolder(folder); !made) {
     return tl::unexpected<Error>(made.error());
   }
-  if (fs::exists(table_path)) {
+  std::error_code ignored;
+  if (fs::exists(table_path, ignored)) {
     const auto before = ReadWholeFile(settings_path);
     if (!before || *before != settings) {
       return MakeError(ErrorCode::kInvalidArgument,
@@ -51,16 +54,9 @@ Result<std::string> TakeUpTable(const std::string& folder,
     }
     return ReadWholeFile(table_path);
   }
-  const Status written = WriteText(settings_path, settings);
+  const Status written = WriteFileAtomically(settings_path, settings);
   if (!written) return tl::unexpected<Error>(written.error());
   return std::string();
-}
-
-Status WriteText(const std::string& path, const std::string& text) {
-  return WriteFileAtomically(path, [&](std::ostream& out) -> Status {
-    out << text;
-    return {};
-  });
 }
 
 }  // namespace lowlap::cli

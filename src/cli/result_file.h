@@ -33,7 +33,4 @@ Result<std::string> TakeUpTable(const std::string& folder,
                                 const std::string& table_name,
                                 const std::string& settings);
 
-/// The whole file at once, atomically.
-Status WriteText(const std::string& path, const std::string& text);
-
 }  // namespace lowlap::cli

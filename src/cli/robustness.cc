@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/result_file.h"
+#include "lowlap/core/atomic_file.h"
 #include "lowlap/pipeline/output_folder.h"
 #include "lowlap/report/table_text.h"
 #include "lowlap/study/robustness/output.h"
@@ -55,7 +56,7 @@ Status Complete(const Flags& flags, const RunContext& context,
     context.Log(LogLevel::kInfo, std::to_string(study->outcomes.size()) +
                                      " trials are in trials.csv already");
   }
-  Status status = WriteText(path, TrialsCsv(*study));
+  Status status = WriteFileAtomically(path, TrialsCsv(*study));
   ResultFile file(path);
   if (status) status = file.Open();
   if (!status) return status;

@@ -279,7 +279,8 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
 Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
                                                    const Scene& scene) {
   if (path.empty()) return std::optional<GroundTruth>();
-  if (std::filesystem::is_regular_file(path)) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) {
     const auto solved = ReadScene(path);
     if (!solved) return tl::unexpected<Error>(solved.error());
     auto truth = GroundTruthFromScene(*solved, scene);
@@ -335,8 +336,7 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
   summary.solve = std::move(*result);
   summary.stages = stages->stages();
   if (IsInterrupted()) return Fail({ErrorCode::kCancelled, {}, {}, {}});
-  Status written = PrepareOutputFolder(output);
-  if (written) written = WriteOutputs(scene, summary, output);
+  const Status written = WriteOutputs(scene, summary, output);
   if (!written) return Fail(written.error());
 
   PrintPoses(summary.solve->poses, scene);

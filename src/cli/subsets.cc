@@ -13,6 +13,7 @@
 #include "cli/result_file.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
+#include "lowlap/core/atomic_file.h"
 #include "lowlap/core/hash.h"
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/pipeline/output_folder.h"
@@ -91,7 +92,7 @@ Result<std::vector<SubsetOutcome>> Resume(const std::string& folder,
     }
     outcomes = std::move(*parsed);
   }
-  const Status written = WriteText(path, ToCsv(outcomes, scene));
+  const Status written = WriteFileAtomically(path, ToCsv(outcomes, scene));
   if (!written) return tl::unexpected<Error>(written.error());
   return outcomes;
 }
@@ -112,15 +113,12 @@ void PrintSilentFailures(const std::vector<SubsetOutcome>& outcomes,
 
 int Finish(std::vector<SubsetOutcome> outcomes, const Scene& scene,
            const Flags& flags) {
-  const auto path = [&](const char* name) {
-    return (std::filesystem::path(flags.output) / name).string();
-  };
   const SubsetSummary summary = SummarizeSubsets(outcomes, flags.bounds);
   const auto plot = DrawSubsets(outcomes);
   if (!plot) return Fail(plot.error());
-  Status written =
-      WriteText(path("summary.json"), ToJson(summary, flags.bounds));
-  if (written) written = WriteText(path("results.svg"), *plot);
+  const Status written = WriteTextFiles(
+      {{"summary.json", ToJson(summary, flags.bounds)}, {"results.svg", *plot}},
+      flags.output);
   if (!written) return Fail(written.error());
   PrintSilentFailures(outcomes, scene, flags.bounds);
   std::printf("%s", ToText(summary, flags.bounds).c_str());
@@ -241,7 +239,8 @@ int Subsets(const Flags& flags) {
     asked_for.push_back(outcomes.at(dropped));
   }
   // In the order of the subsets, whatever order they were finished in.
-  if (const Status written = WriteText(table, ToCsv(all, scene)); !written) {
+  if (const Status written = WriteFileAtomically(table, ToCsv(all, scene));
+      !written) {
     return Fail(written.error());
   }
   return Finish(std::move(asked_for), scene, flags);

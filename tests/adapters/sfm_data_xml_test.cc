@@ -151,8 +151,8 @@ TEST(SfmDataXml, DeepNestingIsAnErrorAndNoCrash) {
 // What a parser may take apart in more than one way is refused before it.
 TEST(SfmDataXml, MalformedTagsAreRefusedAtTheFirst) {
   for (const char* part :
-       {"<", "<a<b>", "<a x'=\"1\">", "<a b>", "<a b=c>", "<a\"b>",
-        "< a>", "<!--", "<![CDATA[", "<?", "<!DOCTYPE [", "</a>"}) {
+       {"<", "<a<b>", "<a x'=\"1\">", "<a b>", "<a b=c>", "<a\"b>", "< a>",
+        "<!--", "<![CDATA[", "<?", "<!DOCTYPE [", "</a>"}) {
     const Result<Scene> scene = ParseSfmDataXml(Repeated(part, 1000000));
     ASSERT_FALSE(scene.has_value()) << part;
     EXPECT_EQ(scene.error().code, ErrorCode::kParse) << part;

@@ -104,11 +104,6 @@ Result<ImportedProject> ImportProject(const std::string& sfm_data_path,
   project.scene.root_path = std::move(listing->root_path);
   project.scene.views = std::move(listing->views);
   project.scene.intrinsics = std::move(listing->intrinsics);
-  if (options.read_poses) {
-    project.scene.poses = std::move(listing->poses);
-    project.scene.structure = std::move(listing->structure);
-    project.scene.control_points = std::move(listing->control_points);
-  }
 
   // The match file first: a wrong name is found before the slow part.
   Result<std::string> match_file =

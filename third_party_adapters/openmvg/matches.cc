@@ -1,11 +1,9 @@
 #include "third_party_adapters/openmvg/matches.h"
 
-#include <ostream>
 #include <utility>
 
 #include "lowlap/core/atomic_file.h"
 #include "third_party_adapters/openmvg/internal/archive_reader.h"
-#include "third_party_adapters/openmvg/internal/archive_writer.h"
 #include "third_party_adapters/openmvg/internal/text_reader.h"
 
 namespace lowlap::openmvg {
@@ -134,46 +132,6 @@ Result<PairMatches> ReadMatches(const std::string& path) {
   if (!content) return tl::unexpected<Error>(content.error());
   return is_text ? ParseMatchesText(*content, path)
                  : ParseMatchesBin(*content, path);
-}
-
-std::string SerializeMatchesText(const PairMatches& matches) {
-  std::string text;
-  const auto append = [&text](std::size_t a, std::size_t b) {
-    text += std::to_string(a) + " " + std::to_string(b) + "\n";
-  };
-  for (const auto& [pair, pair_matches] : matches) {
-    append(pair.first, pair.second);
-    text += std::to_string(pair_matches.size()) + "\n";
-    for (const FeatureMatch& match : pair_matches) {
-      append(match.first, match.second);
-    }
-  }
-  return text;
-}
-
-std::string SerializeMatchesBin(const PairMatches& matches) {
-  internal::ArchiveWriter out;
-  out.Count(matches.size());
-  for (const auto& [pair, pair_matches] : matches) {
-    out.U32(pair.first);
-    out.U32(pair.second);
-    out.Count(pair_matches.size());
-    for (const FeatureMatch& match : pair_matches) {
-      out.U32(match.first);
-      out.U32(match.second);
-    }
-  }
-  return out.TakeBytes();
-}
-
-Status WriteMatches(const PairMatches& matches, const std::string& path) {
-  const bool is_text = EndsWith(path, ".txt");
-  if (!is_text && !EndsWith(path, ".bin")) return UnknownExtension(path);
-  return WriteFileAtomically(path, [&](std::ostream& stream) -> Status {
-    stream << (is_text ? SerializeMatchesText(matches)
-                       : SerializeMatchesBin(matches));
-    return {};
-  });
 }
 
 }  // namespace lowlap::openmvg

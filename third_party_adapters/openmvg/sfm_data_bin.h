@@ -2,7 +2,6 @@
 
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "lowlap/core/result.h"
 #include "lowlap/scene/scene.h"
@@ -24,10 +23,6 @@ Result<Scene> ReadSfmDataBin(const std::string& path);
 /// The same from memory, without ValidateScene; `file` is for messages only.
 Result<Scene> ParseSfmDataBin(std::string_view bytes,
                               const std::string& file = {});
-
-/// Writes PrepareForOpenMvg(scene) and returns its notes.
-Result<std::vector<std::string>> WriteSfmDataBin(const Scene& scene,
-                                                 const std::string& path);
 
 /// The bytes of a scene as it is, little-endian, version 0.3, every map in the
 /// order of its ids. Only fx_px of an intrinsic fits into the format.

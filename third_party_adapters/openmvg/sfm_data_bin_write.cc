@@ -1,12 +1,7 @@
 #include <map>
-#include <ostream>
-#include <utility>
 
-#include "lowlap/core/atomic_file.h"
-#include "lowlap/scene/validation.h"
 #include "third_party_adapters/openmvg/internal/archive_writer.h"
 #include "third_party_adapters/openmvg/internal/polymorphic.h"
-#include "third_party_adapters/openmvg/prepare.h"
 #include "third_party_adapters/openmvg/sfm_data_bin.h"
 
 namespace lowlap::openmvg {
@@ -113,22 +108,6 @@ class SfmDataWriter {
 
 std::string SerializeSfmDataBin(const Scene& scene) {
   return SfmDataWriter().Write(scene);
-}
-
-Result<std::vector<std::string>> WriteSfmDataBin(const Scene& scene,
-                                                 const std::string& path) {
-  PreparedScene prepared = PrepareForOpenMvg(scene);
-  if (const Status valid = ValidateScene(prepared.scene); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
-  const std::string bytes = SerializeSfmDataBin(prepared.scene);
-  const Status status =
-      WriteFileAtomically(path, [&bytes](std::ostream& stream) -> Status {
-        stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-        return {};
-      });
-  if (!status) return tl::unexpected<Error>(status.error());
-  return std::move(prepared.notes);
 }
 
 }  // namespace lowlap::openmvg

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "lowlap/core/result.h"
 #include "lowlap/scene/scene.h"
@@ -15,10 +14,6 @@ namespace lowlap::openmvg {
 Result<Scene> ReadSfmDataXml(const std::string& path);
 Result<Scene> ParseSfmDataXml(const std::string& text,
                               const std::string& file = {});
-
-/// Writes PrepareForOpenMvg(scene) and returns its notes.
-Result<std::vector<std::string>> WriteSfmDataXml(const Scene& scene,
-                                                 const std::string& path);
 
 /// The text of a scene as it is (without what OpenMVG does not know), all
 /// numbers with 17 digits. kInvalidScene if ValidateScene refuses it.

@@ -1,11 +1,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <ostream>
-#include <utility>
 
-#include "lowlap/core/atomic_file.h"
 #include "lowlap/io/scene_json.h"
-#include "third_party_adapters/openmvg/prepare.h"
 #include "third_party_adapters/openmvg/sfm_data_xml.h"
 
 namespace lowlap::openmvg {
@@ -110,23 +106,6 @@ Result<std::string> FormatSfmDataXml(const Scene& scene) {
   }
   xml += '\n';
   return xml;
-}
-
-Result<std::vector<std::string>> WriteSfmDataXml(const Scene& scene,
-                                                 const std::string& path) {
-  PreparedScene prepared = PrepareForOpenMvg(scene);
-  Result<std::string> xml = FormatSfmDataXml(prepared.scene);
-  if (!xml) {
-    xml.error().file = path;
-    return tl::unexpected<Error>(std::move(xml.error()));
-  }
-  const Status status =
-      WriteFileAtomically(path, [&xml](std::ostream& stream) -> Status {
-        stream << *xml;
-        return {};
-      });
-  if (!status) return tl::unexpected<Error>(status.error());
-  return std::move(prepared.notes);
 }
 
 }  // namespace lowlap::openmvg

@@ -1,7 +1,6 @@
 #include "lowlap/io/scene_binary.h"
 
 #include <array>
-#include <ostream>
 #include <string_view>
 
 #include "lowlap/core/atomic_file.h"
@@ -172,10 +171,7 @@ Status WriteSceneBinary(const Scene& scene, const std::string& path) {
     bytes.error().file = path;
     return tl::unexpected<Error>(std::move(bytes).error());
   }
-  return WriteFileAtomically(path, [&](std::ostream& stream) -> Status {
-    stream.write(bytes->data(), static_cast<std::streamsize>(bytes->size()));
-    return {};
-  });
+  return WriteFileAtomically(path, *bytes);
 }
 
 }  // namespace lowlap

@@ -1,7 +1,5 @@
 #include "lowlap/io/scene_json.h"
 
-#include <ostream>
-
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/io/internal/json_tree.h"
 #include "lowlap/io/internal/json_value.h"
@@ -61,10 +59,7 @@ Status WriteSceneJson(const Scene& scene, const std::string& path) {
     text.error().file = path;
     return tl::unexpected<Error>(std::move(text).error());
   }
-  return WriteFileAtomically(path, [&](std::ostream& stream) -> Status {
-    stream.write(text->data(), static_cast<std::streamsize>(text->size()));
-    return {};
-  });
+  return WriteFileAtomically(path, *text);
 }
 
 }  // namespace lowlap

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
-#include <ostream>
 #include <system_error>
 #include <vector>
 
@@ -98,10 +97,7 @@ Result<std::optional<std::string>> CacheFolder::Read(
 Status CacheFolder::Write(const std::string& kind, const Hash128::Value& key,
                           const std::string& bytes) const {
   return WriteFileAtomically(EntryPath(kind, key),
-                             [&](std::ostream& stream) -> Status {
-                               stream << Header(kind, key, bytes) << bytes;
-                               return {};
-                             });
+                             Header(kind, key, bytes) + bytes);
 }
 
 void CacheFolder::Prune(double max_bytes) const {
