@@ -13,8 +13,6 @@
 namespace lowlap::cli {
 namespace {
 
-constexpr int kNotFirm = 2;
-
 struct Flags {
   CommonFlags common;
   SceneInputFlags input;

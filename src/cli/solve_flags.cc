@@ -196,6 +196,12 @@ CLI::Option* AddTruthFlag(CLI::App* command, std::string* path) {
       "scene file");
 }
 
+void AddStrictFlag(CLI::App* command, bool* strict) {
+  command->add_flag("--strict", *strict,
+                    "Exit code 2 if a camera is not placed, or its place is "
+                    "doubtful; the results are written all the same");
+}
+
 Status SetAdjustedFeatures(const std::vector<std::string>& features,
                            AdjustmentOptions* options) {
   const auto kinds = ParseKinds(features);
@@ -354,7 +360,10 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
       "written to %s: report.html sfm_data.json scene.lowlap cloud.ply "
       "summary.json\n",
       output.c_str());
-  return 0;
+  const PoseSummary& poses = summary.solve->poses;
+  const bool is_firm =
+      poses.num_placed == poses.num_views && !poses.IsDoubtful();
+  return flags.strict && !is_firm ? kNotFirm : 0;
 }
 
 }  // namespace lowlap::cli

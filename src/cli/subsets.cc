@@ -269,7 +269,7 @@ void AddSubsets(CLI::App* program, Action* action) {
   command
       ->add_option("--sample,--limit", flags->sample,
                    "Only so many of the ways, drawn with --seed; 0: all")
-      ->check(NonNegative())
+      ->check(WholeNumber())
       ->capture_default_str();
   command
       ->add_option("--jobs", flags->jobs,

@@ -102,5 +102,42 @@ TEST_F(Output, WhatAKilledRunLeftGoesWithTheNextOne) {
   EXPECT_FALSE(fs::exists(Path("b.json.tmp0")));
 }
 
+TEST_F(Output, TheSameInputGivesTheSameBytes) {
+  for (const char* out : {"first", "second"}) {
+    ASSERT_EQ(
+        Lowlap("solve " + Path("room.lowlap") + " --threads 1 -o " + Path(out))
+            .exit_code,
+        0);
+  }
+  for (const char* name :
+       {"report.html", "sfm_data.json", "scene.lowlap", "cloud.ply"}) {
+    EXPECT_EQ(ReadText(Path("first/") + name), ReadText(Path("second/") + name))
+        << name;
+  }
+}
+
+TEST_F(Output, StrictIsForWhatIsNotBeyondDoubt) {
+  const std::string solve = "solve " + Path("firm.lowlap") +
+                            " --strict --no-adjust -o " + Path("out");
+  ASSERT_EQ(Lowlap("simulate --views 6 --pairs window:3 --noise 0.3 -o " +
+                   Path("firm.lowlap"))
+                .exit_code,
+            0);
+  const Outcome firm = Lowlap(solve);
+  EXPECT_EQ(firm.exit_code, 0) << firm.output;
+  // Without its middle, a chain falls apart.
+  ASSERT_EQ(
+      Lowlap("simulate --views 7 --pairs chain -o " + Path("chain.lowlap"))
+          .exit_code,
+      0);
+  const std::string chain = "solve " + Path("chain.lowlap") +
+                            " --exclude 2 --no-adjust -o " + Path("parts");
+  EXPECT_EQ(Lowlap(chain).exit_code, 0);
+  const Outcome parts = Lowlap(chain + " --strict");
+  EXPECT_EQ(parts.exit_code, 2) << parts.output;
+  EXPECT_THAT(parts.output, HasSubstr("cameras placed: 4/6"));
+  EXPECT_EQ(FilesIn("parts"), 5u);
+}
+
 }  // namespace
 }  // namespace lowlap

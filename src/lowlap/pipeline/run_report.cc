@@ -73,17 +73,6 @@ ReportTable ErrorTable(const PoseEvaluation& evaluation) {
   return table;
 }
 
-ReportTable CostTable(const std::vector<StageCost>& stages) {
-  ReportTable table;
-  table.title = "Cost";
-  table.columns = {"stage", "wall (s)", "CPU (s)"};
-  for (const StageCost& stage : stages) {
-    table.rows.push_back({stage.name, Number(stage.wall_s, "%.2f"),
-                          Number(stage.cpu_s, "%.2f")});
-  }
-  return table;
-}
-
 void AddSolve(const SolveResult& solve, const Scene& scene,
               ReportContent* content) {
   const PoseSummary& poses = solve.poses;
@@ -121,7 +110,6 @@ ReportContent MakeReport(const RunSummary& summary, const Scene& scene) {
   if (!summary.pairs.empty()) {
     content.tables.push_back(PairTable(summary.pairs, scene));
   }
-  content.tables.push_back(CostTable(summary.stages));
   return content;
 }
 
