@@ -1,53 +1,29 @@
 #include "lowlap/study/robustness/table.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <limits>
-#include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include "lowlap/core/median.h"
-#include "lowlap/study/internal/csv_line.h"
+#include "lowlap/report/table_text.h"
 
 namespace lowlap {
 namespace {
 
-constexpr std::size_t kNumFields = 12;
+using Json = nlohmann::ordered_json;
 
 std::string Number(double value) {
-  if (!std::isfinite(value)) return "";
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6g", value);
-  return text;
+  return std::isfinite(value) ? NumberText(value, 6) : "";
 }
 
-// scenario, world and value: the start of a line.
-std::string LevelFields(const RobustnessStudy& study, std::size_t scenario,
-                        std::size_t level) {
+// scenario, world and value: the start of a record.
+std::vector<std::string> LevelCells(const RobustnessStudy& study,
+                                    std::size_t scenario, std::size_t level) {
   const RobustnessScenario& info = study.scenarios[scenario];
-  return info.name + "," + info.world + "," + Number(info.levels[level].value) +
-         ",";
-}
-
-template <class T>
-bool ParseNumber(const std::string& text, T* value) {
-  char* end = nullptr;
-  const double number = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(number >= 0) ||
-      number > static_cast<double>(std::numeric_limits<T>::max())) {
-    return false;
-  }
-  *value = static_cast<T>(number);
-  return true;
-}
-
-bool ParseSeed(const std::string& text, std::uint64_t* seed) {
-  char* end = nullptr;
-  *seed = std::strtoull(text.c_str(), &end, 10);
-  return !text.empty() && *end == '\0';
+  return {info.name, info.world, Number(info.levels[level].value)};
 }
 
 std::optional<RobustnessStatus> StatusFromName(const std::string& name) {
@@ -59,101 +35,91 @@ std::optional<RobustnessStatus> StatusFromName(const std::string& name) {
   return std::nullopt;
 }
 
-/// Where a line belongs, by its first three fields and its strategy.
-class Index {
- public:
-  explicit Index(const RobustnessStudy& study) {
-    for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
-      for (std::size_t l = 0; l < study.scenarios[s].levels.size(); ++l) {
-        levels_[LevelFields(study, s, l)] = {s, l};
-      }
-    }
-    for (const std::string& name : study.options.strategies) {
-      strategies_.emplace(name, strategies_.size());
-    }
-  }
-
-  bool Find(const std::vector<std::string>& fields, RobustnessKey* key) const {
-    const auto level =
-        levels_.find(fields[0] + "," + fields[1] + "," + fields[2] + ",");
-    const auto strategy = strategies_.find(fields[4]);
-    if (level == levels_.end() || strategy == strategies_.end()) return false;
-    key->scenario = level->second.first;
-    key->level = level->second.second;
-    key->strategy = strategy->second;
-    return ParseSeed(fields[3], &key->seed);
-  }
-
- private:
-  std::map<std::string, std::pair<std::size_t, std::size_t>> levels_;
-  std::map<std::string, std::size_t> strategies_;
-};
-
-bool ParseLine(const std::string& line, const Index& index,
-               RobustnessStudy* study) {
-  const std::vector<std::string> fields = SplitCsvLine(line);
-  if (fields.size() != kNumFields) return false;
+// Where a record belongs.
+std::optional<RobustnessKey> FindKey(const Json& json,
+                                     const RobustnessStudy& study) {
+  const std::vector<std::string>& strategies = study.options.strategies;
   RobustnessKey key;
-  RobustnessOutcome outcome;
-  const auto status = StatusFromName(fields[5]);
-  if (!status || !index.Find(fields, &key)) return false;
-  outcome.status = *status;
-  outcome.median_error = HUGE_VAL;
-  outcome.note = fields[11];
-  const bool is_whole =
-      ParseNumber(fields[6], &outcome.num_views) &&
-      ParseNumber(fields[7], &outcome.num_placed) &&
-      ParseNumber(fields[8], &outcome.num_right) &&
-      (fields[9].empty() || ParseNumber(fields[9], &outcome.median_error)) &&
-      ParseNumber(fields[10], &outcome.seconds);
-  if (is_whole) study->outcomes[key] = std::move(outcome);
-  return is_whole;
+  json.at("seed").get_to(key.seed);
+  for (; key.scenario < study.scenarios.size(); ++key.scenario) {
+    const RobustnessScenario& scenario = study.scenarios[key.scenario];
+    if (scenario.name != json.at("scenario") ||
+        scenario.world != json.at("world")) {
+      continue;
+    }
+    const auto level = std::find_if(
+        scenario.levels.begin(), scenario.levels.end(),
+        [&](const auto& each) { return each.value == json.at("value"); });
+    const auto strategy = std::find(strategies.begin(), strategies.end(),
+                                    json.at("strategy").get<std::string>());
+    if (level == scenario.levels.end() || strategy == strategies.end()) break;
+    key.level = static_cast<std::size_t>(level - scenario.levels.begin());
+    key.strategy = static_cast<std::size_t>(strategy - strategies.begin());
+    return key;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::string TrialsCsvHeader() {
-  return "scenario,world,value,seed,strategy,status,views,placed,right,"
-         "median_error,seconds,note\n";
-}
-
-std::string ToCsvLine(const RobustnessStudy& study, const RobustnessKey& key,
-                      const RobustnessOutcome& outcome) {
-  return LevelFields(study, key.scenario, key.level) +
-         std::to_string(key.seed) + "," +
-         study.options.strategies[key.strategy] + "," +
-         RobustnessStatusName(outcome.status) + "," +
-         std::to_string(outcome.num_views) + "," +
-         std::to_string(outcome.num_placed) + "," +
-         std::to_string(outcome.num_right) + "," +
-         Number(outcome.median_error) + "," + Number(outcome.seconds) + "," +
-         QuotedCsvField(outcome.note) + "\n";
-}
-
 std::string TrialsCsv(const RobustnessStudy& study) {
-  std::string csv = TrialsCsvHeader();
+  TextTable table;
+  table.columns = {"scenario", "world",        "value",   "seed",
+                   "strategy", "status",       "views",   "placed",
+                   "right",    "median_error", "seconds", "note"};
   for (const auto& [key, outcome] : study.outcomes) {
-    csv += ToCsvLine(study, key, outcome);
+    std::vector<std::string> row = LevelCells(study, key.scenario, key.level);
+    for (std::string cell :
+         {std::to_string(key.seed), study.options.strategies[key.strategy],
+          std::string(RobustnessStatusName(outcome.status)),
+          std::to_string(outcome.num_views), std::to_string(outcome.num_placed),
+          std::to_string(outcome.num_right), Number(outcome.median_error),
+          Number(outcome.seconds), outcome.note}) {
+      row.push_back(std::move(cell));
+    }
+    table.rows.push_back(std::move(row));
   }
-  return csv;
+  return ToCsv(table);
 }
 
-Status ParseTrialsCsv(const std::string& text, RobustnessStudy* study) {
-  const Index index(*study);
-  std::size_t number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = text.find('\n', at);
-    if (end == std::string::npos) break;
-    const std::string line = text.substr(at, end - at);
-    at = end + 1;
-    ++number;
-    if (number == 1 ? line + "\n" != TrialsCsvHeader()
-                    : !ParseLine(line, index, study)) {
-      return MakeError(ErrorCode::kParse, "is no trial of this study", {},
-                       "line " + std::to_string(number));
-    }
+std::string ToJsonLine(const RobustnessStudy& study, const RobustnessKey& key,
+                       const RobustnessOutcome& outcome) {
+  const RobustnessScenario& scenario = study.scenarios[key.scenario];
+  const Json json = {{"scenario", scenario.name},
+                     {"world", scenario.world},
+                     {"value", scenario.levels[key.level].value},
+                     {"seed", key.seed},
+                     {"strategy", study.options.strategies[key.strategy]},
+                     {"status", RobustnessStatusName(outcome.status)},
+                     {"views", outcome.num_views},
+                     {"placed", outcome.num_placed},
+                     {"right", outcome.num_right},
+                     {"median_error", outcome.median_error},  // infinite: null
+                     {"seconds", outcome.seconds},
+                     {"note", outcome.note}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+bool AddJsonLine(const std::string& line, RobustnessStudy* study) {
+  try {
+    const Json json = Json::parse(line);
+    const std::optional<RobustnessKey> key = FindKey(json, *study);
+    const auto status = StatusFromName(json.at("status"));
+    if (!key || !status) return false;
+    RobustnessOutcome outcome;
+    outcome.status = *status;
+    json.at("views").get_to(outcome.num_views);
+    json.at("placed").get_to(outcome.num_placed);
+    json.at("right").get_to(outcome.num_right);
+    const Json& error = json.at("median_error");
+    outcome.median_error = error.is_null() ? HUGE_VAL : error.get<double>();
+    json.at("seconds").get_to(outcome.seconds);
+    json.at("note").get_to(outcome.note);
+    study->outcomes[*key] = std::move(outcome);
+    return true;
+  } catch (const Json::exception&) {
+    return false;
   }
-  return {};
 }
 
 CurvePoint PointOf(const RobustnessStudy& study, std::size_t scenario,
@@ -191,25 +157,27 @@ CurvePoint PointOf(const RobustnessStudy& study, std::size_t scenario,
 }
 
 std::string CurvesCsv(const RobustnessStudy& study) {
-  std::string csv =
-      "scenario,world,value,strategy,placed_share,right_share,median_error,"
-      "seconds,note\n";
+  TextTable table;
+  table.columns = {"scenario",     "world",        "value",
+                   "strategy",     "placed_share", "right_share",
+                   "median_error", "seconds",      "note"};
   for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
     for (std::size_t l = 0; l < study.scenarios[s].levels.size(); ++l) {
       for (std::size_t n = 0; n < study.options.strategies.size(); ++n) {
         const CurvePoint point = PointOf(study, s, l, n);
         if (!point.is_known && point.note.empty()) continue;
-        csv += LevelFields(study, s, l) + study.options.strategies[n] + ",";
-        csv += point.is_known ? Number(point.placed_share) + "," +
-                                    Number(point.right_share) + "," +
-                                    Number(point.median_error) + "," +
-                                    Number(point.seconds)
-                              : ",,,";
-        csv += "," + QuotedCsvField(point.note) + "\n";
+        std::vector<std::string> row = LevelCells(study, s, l);
+        row.push_back(study.options.strategies[n]);
+        for (const double value : {point.placed_share, point.right_share,
+                                   point.median_error, point.seconds}) {
+          row.push_back(point.is_known ? Number(value) : "");
+        }
+        row.push_back(point.note);
+        table.rows.push_back(std::move(row));
       }
     }
   }
-  return csv;
+  return ToCsv(table);
 }
 
 }  // namespace lowlap

@@ -3,24 +3,21 @@
 #include <cstddef>
 #include <string>
 
-#include "lowlap/core/result.h"
 #include "lowlap/study/robustness/study.h"
 
 namespace lowlap {
 
-/// One line per strategy and simulation: scenario, world, value, seed,
+/// One record per strategy and simulation: scenario, world, value, seed,
 /// strategy, status, views, placed, right, median_error (empty if infinite),
 /// seconds, note.
-std::string TrialsCsvHeader();
-std::string ToCsvLine(const RobustnessStudy& study, const RobustnessKey& key,
-                      const RobustnessOutcome& outcome);
-/// The header and the outcomes of the study in their order.
 std::string TrialsCsv(const RobustnessStudy& study);
 
-/// Reads outcomes into a study of the same options. A last line without an
-/// end, as a study that was killed may leave it, is ignored. kParse, with the
-/// line, for anything else that is malformed or not of the study.
-Status ParseTrialsCsv(const std::string& text, RobustnessStudy* study);
+/// A record of a ResultLog.
+std::string ToJsonLine(const RobustnessStudy& study, const RobustnessKey& key,
+                       const RobustnessOutcome& outcome);
+/// The inverse: adds the outcome to a study of the same options; false, and
+/// nothing is added, for anything else.
+bool AddJsonLine(const std::string& line, RobustnessStudy* study);
 
 /// A strategy at a level, over the seeds.
 struct CurvePoint {
