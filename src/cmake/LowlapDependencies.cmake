@@ -10,6 +10,9 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(cereal REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tl-expected REQUIRED)
+find_package(ZLIB 1.2.9 REQUIRED)
+# xxHash is compiled into core from its header.
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 # libexif and Clp have no CMake package; they are linked by their names, as
 # -lexif and -lClp.
 find_library(LIBEXIF_LIBRARY exif REQUIRED)

@@ -1,11 +1,12 @@
 #include "lowlap/io/scene_binary.h"
 
+#include <zlib.h>
+
 #include <array>
 #include <string_view>
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/io/internal/byte_archive.h"
-#include "lowlap/io/internal/crc32.h"
 #include "lowlap/io/internal/scale_ratio_records.h"
 #include "lowlap/io/internal/scene_records.h"
 #include "lowlap/io/internal/transfer.h"
@@ -28,6 +29,11 @@ constexpr std::uint32_t kOldestVersion = 2;
 constexpr std::array<std::string_view, 14> kSections = {
     "ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT",
     "RELP", "PTRK", "LTRK", "RATI", "LINE", "COPL", "RATD"};
+
+std::uint32_t Crc32(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
 
 template <class Archive, class SceneType>
 void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
@@ -77,7 +83,7 @@ void ReadSection(std::string_view tag, ByteReader& file, std::size_t size,
   }
   const std::size_t offset = size - file.BytesLeft();
   const std::string_view payload = file.Take(length);
-  if (internal::Crc32(payload) != checksum) {
+  if (Crc32(payload) != checksum) {
     file.Fail("section " + name + " is damaged: its checksum is wrong");
   }
   ByteReader section(payload, "section " + name + ", ", offset);
@@ -158,7 +164,7 @@ Result<std::string> FormatSceneBinary(const Scene& scene) {
     ByteWriter writer(payload);
     TransferSection(tag, writer, scene);
     bytes += tag;
-    bytes += Encoded(internal::Crc32(payload));
+    bytes += Encoded(Crc32(payload));
     bytes += Encoded(static_cast<std::uint64_t>(payload.size()));
     bytes += payload;
   }

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kMagic[] = "lowlap cache 1\n";
+constexpr char kMagic[] = "lowlap cache 2\n";
 constexpr char kExtension[] = ".entry";
 constexpr std::chrono::hours kRecent{1};
 
