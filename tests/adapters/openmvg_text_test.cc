@@ -78,7 +78,7 @@ TEST(Matches, MalformedContentIsNamed) {
     EXPECT_FALSE(matches.has_value()) << text;
     return matches ? std::string() : matches.error().ToString();
   };
-  EXPECT_THAT(text_error("0 1\n2\n3 4\n5\n"), HasSubstr("end of the file"));
+  EXPECT_THAT(text_error("0 1\n2\n3 4\n5\n"), HasSubstr("the file ends"));
   EXPECT_THAT(text_error("0 1\n2\n3 4\n-5 6\n"), HasSubstr("line 4"));
   EXPECT_THAT(text_error("0 x\n"), HasSubstr("'x'"));
   EXPECT_THAT(text_error("0"), HasSubstr("view id"));

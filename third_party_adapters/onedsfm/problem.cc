@@ -16,7 +16,6 @@ namespace lowlap::onedsfm {
 namespace {
 
 namespace fs = std::filesystem;
-using internal::ImageIndex;
 
 std::string PathOf(const std::string& folder, const char* name) {
   return (fs::path(folder) / name).string();
@@ -38,34 +37,31 @@ Result<std::optional<T>> ReadIfThere(const std::string& path,
 
 /// The files of a folder.
 struct Files {
-  std::vector<internal::RelativeGeometry> geometries;
+  std::vector<RelativeGeometry> geometries;
   std::optional<std::vector<ImageIndex>> used;
-  std::optional<std::vector<internal::ListedImage>> list;
-  std::optional<std::map<ImageIndex, internal::ImageKeys>> coords;
-  std::optional<std::vector<internal::KeyTrack>> tracks;
+  std::optional<std::vector<ListedImage>> list;
+  std::optional<std::map<ImageIndex, ImageKeys>> coords;
+  std::optional<std::vector<KeyTrack>> tracks;
 };
 
 Result<Files> ReadFiles(const std::string& folder) {
   Files files;
-  auto geometries =
-      ReadIfThere(PathOf(folder, "EGs.txt"), internal::ParseGeometries);
+  auto geometries = ReadIfThere(PathOf(folder, "EGs.txt"), ParseGeometries);
   if (!geometries) return tl::unexpected<Error>(geometries.error());
   if (!*geometries) {
     return MakeError(ErrorCode::kNotFound, "there is no EGs.txt", folder);
   }
   files.geometries = std::move(**geometries);
-  auto used = ReadIfThere(PathOf(folder, "cc.txt"), internal::ParseIndices);
+  auto used = ReadIfThere(PathOf(folder, "cc.txt"), ParseIndices);
   if (!used) return tl::unexpected<Error>(used.error());
   files.used = std::move(*used);
-  auto list = ReadIfThere(PathOf(folder, "list.txt"), internal::ParseList);
+  auto list = ReadIfThere(PathOf(folder, "list.txt"), ParseList);
   if (!list) return tl::unexpected<Error>(list.error());
   files.list = std::move(*list);
-  auto coords =
-      ReadIfThere(PathOf(folder, "coords.txt"), internal::ParseCoords);
+  auto coords = ReadIfThere(PathOf(folder, "coords.txt"), ParseCoords);
   if (!coords) return tl::unexpected<Error>(coords.error());
   files.coords = std::move(*coords);
-  auto tracks =
-      ReadIfThere(PathOf(folder, "tracks.txt"), internal::ParseTracks);
+  auto tracks = ReadIfThere(PathOf(folder, "tracks.txt"), ParseTracks);
   if (!tracks) return tl::unexpected<Error>(tracks.error());
   files.tracks = std::move(*tracks);
   return files;
@@ -74,7 +70,7 @@ Result<Files> ReadFiles(const std::string& folder) {
 std::set<ImageIndex> UsedImages(const Files& files) {
   if (files.used) return {files.used->begin(), files.used->end()};
   std::set<ImageIndex> used;
-  for (const internal::RelativeGeometry& geometry : files.geometries) {
+  for (const RelativeGeometry& geometry : files.geometries) {
     used.insert(geometry.i);
     used.insert(geometry.j);
   }
@@ -105,7 +101,7 @@ Status AddView(const Files& files, const std::string& folder, ImageIndex index,
           "has no image " + std::to_string(index) + ", which is used",
           PathOf(folder, "coords.txt"));
     }
-    const internal::ImageKeys& keys = found->second;
+    const ImageKeys& keys = found->second;
     if (!files.list && !keys.name.empty()) path = keys.name;
     if (keys.focal_px > 0) focal_px = keys.focal_px;
     view.width_px = static_cast<int>(std::lround(2 * keys.half_size_px.x()));
@@ -142,7 +138,7 @@ void AddRelativePoses(const Files& files, Problem* problem) {
   Scene& scene = problem->scene;
   const Vec3 axes(1, -1, -1);
   std::size_t num_unused = 0, num_repeated = 0;
-  for (const internal::RelativeGeometry& geometry : files.geometries) {
+  for (const RelativeGeometry& geometry : files.geometries) {
     if (scene.views.count(geometry.i) == 0 ||
         scene.views.count(geometry.j) == 0) {
       ++num_unused;
@@ -183,8 +179,8 @@ void AddMatches(const Track& track, Scene* scene) {
   }
 }
 
-Status AddTracks(const std::vector<internal::KeyTrack>& tracks,
-                 const std::string& folder, Problem* problem) {
+Status AddTracks(const std::vector<KeyTrack>& tracks, const std::string& folder,
+                 Problem* problem) {
   Scene& scene = problem->scene;
   std::size_t num_ambiguous = 0;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
@@ -256,7 +252,7 @@ Result<Problem> ReadProblem(const std::string& folder) {
 
 Result<std::map<ViewId, Pose>> ReadTruePoses(const std::string& folder) {
   const std::string path = PathOf(folder, "gt_bundle.out");
-  auto poses = ReadIfThere(path, internal::ParseBundlePoses);
+  auto poses = ReadIfThere(path, ParseBundlePoses);
   if (!poses) return tl::unexpected<Error>(poses.error());
   if (!*poses) {
     return MakeError(ErrorCode::kNotFound,

@@ -1,50 +1,38 @@
 #include "third_party_adapters/openmvg/feat.h"
 
 #include "lowlap/core/atomic_file.h"
-#include "third_party_adapters/openmvg/internal/text_reader.h"
+#include "lowlap/core/internal/token_reader.h"
 
 namespace lowlap::openmvg {
 
 Result<std::vector<Vec2>> ParseFeat(std::string_view text,
                                     const std::string& file) {
   std::vector<Vec2> points_px;
-  std::size_t numbers_per_line = 0;
-  internal::LineReader lines(text);
-  std::string_view line;
-  while (lines.Next(line)) {
+  int numbers_per_line = 0;
+  TokenReader reader(text, file);
+  // Blank lines are skipped, as OpenMVG's reader does.
+  while (reader.status() && !reader.AtEnd()) {
     Vec2 point = Vec2::Zero();
-    std::size_t count = 0;
-    for (std::string_view token = internal::TakeToken(line); !token.empty();
-         token = internal::TakeToken(line), ++count) {
-      double value = 0;
-      if (!internal::ParseNumber(token, value)) {
-        return MakeError(
-            ErrorCode::kParse,
-            "'" + std::string(token.substr(0, 32)) + "' is not a finite number",
-            file, lines.Place());
-      }
-      if (count < 2) point[static_cast<Eigen::Index>(count)] = value;
+    int count = 0;
+    for (; reader.status() && !reader.AtLineEnd(); ++count) {
+      const double number = reader.Next<double>("a finite number");
+      if (count < 2) point[count] = number;
     }
-    if (count == 0) continue;  // OpenMVG's reader skips white space as well
     if (numbers_per_line == 0) {
       if (count != 2 && count != 4 && count != 8) {
-        return MakeError(ErrorCode::kParse,
-                         "a feature has 2, 4 or 8 numbers, this line " +
-                             std::to_string(count),
-                         file, lines.Place());
+        reader.Fail("a feature has 2, 4 or 8 numbers, this line " +
+                    std::to_string(count));
       }
       numbers_per_line = count;
     }
     if (count != numbers_per_line) {
-      return MakeError(ErrorCode::kParse,
-                       std::to_string(count) +
-                           " numbers, where the lines "
-                           "before have " +
-                           std::to_string(numbers_per_line),
-                       file, lines.Place());
+      reader.Fail(std::to_string(count) +
+                  " numbers, where the lines before have " +
+                  std::to_string(numbers_per_line));
     }
     points_px.push_back(point);
   }
+  if (!reader.status()) return reader.error();
   return points_px;
 }
 

@@ -15,10 +15,6 @@
 namespace lowlap::openmvg {
 namespace {
 
-using internal::ArchiveReader;
-using internal::kDefines;
-using internal::kStaticType;
-
 /// Reads one file; the ids of types and objects run over the whole archive.
 class SfmDataReader {
  public:

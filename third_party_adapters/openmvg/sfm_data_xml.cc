@@ -92,7 +92,7 @@ class JsonFromXml {
 Result<Scene> ParseSfmDataXml(const std::string& text,
                               const std::string& file) {
   constexpr int kMaxDepth = 64;  // OpenMVG's files have 10
-  if (const Status checked = internal::CheckXmlStructure(text, kMaxDepth, file);
+  if (const Status checked = CheckXmlStructure(text, kMaxDepth, file);
       !checked) {
     return tl::unexpected<Error>(checked.error());
   }

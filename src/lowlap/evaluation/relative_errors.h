@@ -51,8 +51,6 @@ ScaleRatioEvaluation EvaluateScaleRatios(const Scene& scene,
                                          const GroundTruth& truth);
 
 std::string ToText(const RelativePoseEvaluation& evaluation);
-std::string ToJson(const RelativePoseEvaluation& evaluation);
 std::string ToText(const ScaleRatioEvaluation& evaluation);
-std::string ToJson(const ScaleRatioEvaluation& evaluation);
 
 }  // namespace lowlap

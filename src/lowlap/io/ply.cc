@@ -25,7 +25,7 @@ struct Drawing {
   bool is_finite = true;
 
   std::uint32_t AddVertex(const Vec3& position, const Color& color) {
-    internal::ByteWriter writer(vertices);
+    ByteWriter writer(vertices);
     writer.Reals(position.data(), 3);
     for (const std::uint8_t channel : color) writer.Integer(channel);
     is_finite = is_finite && position.allFinite();
@@ -33,7 +33,7 @@ struct Drawing {
   }
 
   void AddEdge(std::uint32_t a, std::uint32_t b, const Color& color) {
-    internal::ByteWriter writer(edges);
+    ByteWriter writer(edges);
     writer.Integer(a);
     writer.Integer(b);
     for (const std::uint8_t channel : color) writer.Integer(channel);

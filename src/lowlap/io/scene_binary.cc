@@ -15,9 +15,6 @@
 namespace lowlap {
 namespace {
 
-using internal::ByteReader;
-using internal::ByteWriter;
-
 // Like PNG's, the first byte is not text and the last ones show a file that was
 // sent as text.
 constexpr std::string_view kMagic("\x89LOWLAP\n", 8);
@@ -40,30 +37,30 @@ void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
   if (tag == "ROOT") {
     archive.Text(scene.root_path);
   } else if (tag == "VIEW") {
-    TransferMap(archive, scene.views, internal::kTransferView);
+    TransferMap(archive, scene.views, kTransferView);
   } else if (tag == "INTR") {
-    TransferMap(archive, scene.intrinsics, internal::kTransferIntrinsic);
+    TransferMap(archive, scene.intrinsics, kTransferIntrinsic);
   } else if (tag == "POSE") {
-    TransferMap(archive, scene.poses, internal::kTransferPose);
+    TransferMap(archive, scene.poses, kTransferPose);
   } else if (tag == "STRU") {
-    TransferMap(archive, scene.structure, internal::kTransferLandmark);
+    TransferMap(archive, scene.structure, kTransferLandmark);
   } else if (tag == "CTRL") {
-    TransferMap(archive, scene.control_points, internal::kTransferLandmark);
+    TransferMap(archive, scene.control_points, kTransferLandmark);
   } else if (tag == "FEAT") {
-    TransferMap(archive, scene.features, internal::kTransferFeatures);
+    TransferMap(archive, scene.features, kTransferFeatures);
   } else if (tag == "RELP") {
     TransferRelativePoses(archive, scene.relative_poses);
   } else if (tag == "PTRK") {
-    TransferMap(archive, scene.point_tracks, internal::kTransferTrack);
+    TransferMap(archive, scene.point_tracks, kTransferTrack);
   } else if (tag == "LTRK") {
-    TransferMap(archive, scene.line_tracks, internal::kTransferTrack);
+    TransferMap(archive, scene.line_tracks, kTransferTrack);
   } else if (tag == "RATI") {
-    TransferVector(archive, scene.scale_ratios, internal::kScaleRatioMinBytes,
-                   internal::kTransferScaleRatio);
+    TransferVector(archive, scene.scale_ratios, kScaleRatioMinBytes,
+                   kTransferScaleRatio);
   } else if (tag == "LINE") {
-    TransferMap(archive, scene.line_structure, internal::kTransferLine);
+    TransferMap(archive, scene.line_structure, kTransferLine);
   } else if (tag == "COPL") {
-    TransferVector(archive, scene.coplanar_pairs, 8, internal::kTransferMatch);
+    TransferVector(archive, scene.coplanar_pairs, 8, kTransferMatch);
   } else if (tag == "RATD") {
     TransferRatioDetails(archive, scene.scale_ratios);
   }
@@ -99,12 +96,12 @@ Scene ReadSections(const std::string& bytes) {
   std::uint32_t version = 0, section_count = 0;
   file.Integer(version);
   if (version < kOldestVersion || version > kVersion) {
-    throw internal::Failure{Error{
-        ErrorCode::kUnsupported,
-        "version " + std::to_string(version) + " is not " +
-            std::to_string(kOldestVersion) + " or " + std::to_string(kVersion),
-        {},
-        "byte " + std::to_string(kMagic.size())}};
+    throw Failure{Error{ErrorCode::kUnsupported,
+                        "version " + std::to_string(version) + " is not " +
+                            std::to_string(kOldestVersion) + " or " +
+                            std::to_string(kVersion),
+                        {},
+                        "byte " + std::to_string(kMagic.size())}};
   }
   file.Integer(section_count);
   const std::size_t num_sections = kSections.size() - (version < kVersion);
@@ -133,7 +130,7 @@ Result<Scene> ParseSceneBinary(const std::string& bytes,
   Result<Scene> scene;
   try {
     scene = ReadSections(bytes);
-  } catch (internal::Failure& failure) {
+  } catch (Failure& failure) {
     scene = tl::unexpected<Error>(std::move(failure.error));
   }
   if (scene) {

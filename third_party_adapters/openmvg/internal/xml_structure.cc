@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace lowlap::openmvg::internal {
+namespace lowlap::openmvg {
 namespace {
 
 constexpr std::string_view kSpace = " \t\r\n";
@@ -108,4 +108,4 @@ Status CheckXmlStructure(std::string_view text, int max_depth,
                    "byte " + std::to_string(scanner.offset()));
 }
 
-}  // namespace lowlap::openmvg::internal
+}  // namespace lowlap::openmvg

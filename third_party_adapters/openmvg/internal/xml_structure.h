@@ -5,7 +5,7 @@
 
 #include "lowlap/core/result.h"
 
-namespace lowlap::openmvg::internal {
+namespace lowlap::openmvg {
 
 /// Reads the tags of an XML text once, in linear time and without recursion,
 /// before it goes to a parser that recurses. kParse, with the byte, for
@@ -14,4 +14,4 @@ namespace lowlap::openmvg::internal {
 Status CheckXmlStructure(std::string_view text, int max_depth,
                          const std::string& file);
 
-}  // namespace lowlap::openmvg::internal
+}  // namespace lowlap::openmvg

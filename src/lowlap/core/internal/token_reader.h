@@ -11,10 +11,11 @@
 
 #include "lowlap/core/result.h"
 
-namespace lowlap::onedsfm::internal {
+namespace lowlap {
 
-/// Takes numbers off a text, one after the other. The first failure stays: what
-/// is read after it is 0, and `status` tells the file, line and cause.
+/// Takes numbers off a text, one after the other; white space stands between
+/// them. The first failure stays: what is read after it is 0, and `status`
+/// tells the file, line and cause. Independent of the locale.
 class TokenReader {
  public:
   TokenReader(std::string_view text, std::string file)
@@ -26,7 +27,14 @@ class TokenReader {
     return offset_ >= text_.size();
   }
 
-  /// The next token as a number; `what` it is, for the message.
+  /// Only blanks are left on the line.
+  bool AtLineEnd() {
+    offset_ = std::min(text_.find_first_not_of(" \t\r", offset_), text_.size());
+    return offset_ >= text_.size() || text_[offset_] == '\n';
+  }
+
+  /// The next token as a number; `what` it is, for the message. Numbers that
+  /// are not finite are none.
   template <class T>
   T Next(const char* what) {
     T value{};
@@ -105,4 +113,4 @@ class TokenReader {
   Status status_;
 };
 
-}  // namespace lowlap::onedsfm::internal
+}  // namespace lowlap
