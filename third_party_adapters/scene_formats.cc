@@ -7,8 +7,8 @@
 #include <system_error>
 #include <utility>
 
-#include "third_party_adapters/onedsfm/scene_format.h"
-#include "third_party_adapters/openmvg/scene_format.h"
+#include "third_party_adapters/onedsfm/internal/scene_format.h"
+#include "third_party_adapters/openmvg/internal/scene_format.h"
 
 namespace lowlap {
 namespace {

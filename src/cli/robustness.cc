@@ -6,12 +6,12 @@
 
 #include "cli/command.h"
 #include "lowlap/pipeline/output_folder.h"
-#include "lowlap/report/table_text.h"
-#include "lowlap/study/result_log.h"
-#include "lowlap/study/robustness/output.h"
-#include "lowlap/study/robustness/study.h"
-#include "lowlap/study/robustness/summary.h"
-#include "lowlap/study/robustness/table.h"
+#include "lowlap/report/internal/table_text.h"
+#include "lowlap/study/internal/result_log.h"
+#include "lowlap/study/internal/robustness/output.h"
+#include "lowlap/study/internal/robustness/study.h"
+#include "lowlap/study/internal/robustness/summary.h"
+#include "lowlap/study/internal/robustness/table.h"
 
 namespace lowlap::cli {
 namespace {

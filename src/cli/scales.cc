@@ -10,7 +10,7 @@
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
 #include "lowlap/core/atomic_file.h"
-#include "lowlap/evaluation/relative_errors.h"
+#include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/pipeline/ratio_table.h"
 #include "lowlap/pipeline/summary_json.h"
 #include "lowlap/scale/ratio_profile.h"

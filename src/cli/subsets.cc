@@ -16,8 +16,8 @@
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/pipeline/output_folder.h"
 #include "lowlap/pipeline/scene_reduction.h"
-#include "lowlap/report/table_text.h"
-#include "lowlap/study/result_log.h"
+#include "lowlap/report/internal/table_text.h"
+#include "lowlap/study/internal/result_log.h"
 #include "lowlap/study/subset_runs.h"
 #include "lowlap/study/subset_table.h"
 

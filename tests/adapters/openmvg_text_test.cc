@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "adapters/openmvg_vectors.h"
-#include "third_party_adapters/openmvg/feat.h"
+#include "third_party_adapters/openmvg/internal/feat.h"
 #include "third_party_adapters/openmvg/matches.h"
 
 namespace lowlap::openmvg {

@@ -1,10 +1,10 @@
-#include "third_party_adapters/openmvg/sfm_data_xml.h"
+#include "third_party_adapters/openmvg/internal/sfm_data_xml.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "adapters/openmvg_vectors.h"
-#include "third_party_adapters/openmvg/sfm_data_bin.h"
+#include "third_party_adapters/openmvg/internal/sfm_data_bin.h"
 
 namespace lowlap::openmvg {
 namespace {

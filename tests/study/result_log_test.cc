@@ -1,4 +1,4 @@
-#include "lowlap/study/result_log.h"
+#include "lowlap/study/internal/result_log.h"
 
 #include <gtest/gtest.h>
 

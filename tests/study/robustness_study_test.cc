@@ -6,10 +6,10 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/study/robustness/output.h"
-#include "lowlap/study/robustness/study.h"
-#include "lowlap/study/robustness/summary.h"
-#include "lowlap/study/robustness/table.h"
+#include "lowlap/study/internal/robustness/output.h"
+#include "lowlap/study/internal/robustness/study.h"
+#include "lowlap/study/internal/robustness/summary.h"
+#include "lowlap/study/internal/robustness/table.h"
 #include "read_csv.h"
 
 namespace lowlap {

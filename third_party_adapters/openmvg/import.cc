@@ -8,8 +8,8 @@
 
 #include "lowlap/io/scene_format.h"
 #include "lowlap/scene/validation.h"
-#include "third_party_adapters/openmvg/feat.h"
-#include "third_party_adapters/openmvg/scene_format.h"
+#include "third_party_adapters/openmvg/internal/feat.h"
+#include "third_party_adapters/openmvg/internal/scene_format.h"
 
 namespace lowlap::openmvg {
 namespace {

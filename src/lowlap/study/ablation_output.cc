@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "lowlap/pipeline/output_folder.h"
-#include "lowlap/report/svg_plot.h"
-#include "lowlap/report/table_text.h"
+#include "lowlap/report/internal/svg_plot.h"
+#include "lowlap/report/internal/table_text.h"
 #include "lowlap/study/ablation.h"
 
 namespace lowlap {

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "lowlap/pipeline/output_folder.h"
-#include "lowlap/report/table_text.h"
+#include "lowlap/report/internal/table_text.h"
 #include "lowlap/study/internal/comparison_figures.h"
 
 namespace lowlap {

@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "lowlap/report/svg_plot.h"
+#include "lowlap/report/internal/svg_plot.h"
 #include "lowlap/study/comparison_output.h"
 #include "lowlap/study/internal/comparison_figures.h"
 

@@ -6,8 +6,8 @@
 
 #include "lowlap/core/format.h"
 #include "lowlap/core/median.h"
-#include "lowlap/report/svg_plot.h"
-#include "lowlap/report/table_text.h"
+#include "lowlap/report/internal/svg_plot.h"
+#include "lowlap/report/internal/table_text.h"
 
 namespace lowlap {
 namespace {

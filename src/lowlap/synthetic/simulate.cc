@@ -6,7 +6,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/synthetic/coplanar_truth.h"
+#include "lowlap/synthetic/internal/coplanar_truth.h"
 #include "lowlap/synthetic/internal/observe.h"
 #include "lowlap/synthetic/internal/pair_graph.h"
 #include "lowlap/synthetic/internal/pose_noise.h"
