@@ -140,7 +140,12 @@ Result<std::map<std::string, Camera>> ReadCameras(const std::string& dir) {
   std::map<std::string, Camera> cameras;
   fs::directory_iterator entry(folder, error);
   if (error) {
-    return MakeError(ErrorCode::kNotFound, "no such folder", folder.string());
+    const bool is_missing = error == std::errc::no_such_file_or_directory ||
+                            error == std::errc::not_a_directory;
+    return MakeError(
+        is_missing ? ErrorCode::kNotFound : ErrorCode::kIo,
+        is_missing ? "no such folder" : "cannot be opened: " + error.message(),
+        folder.string());
   }
   for (; entry != fs::directory_iterator(); entry.increment(error)) {
     if (entry->path().extension() != extension) continue;
