@@ -7,7 +7,7 @@
 #include "cli/solve_flags.h"
 #include "lowlap/averaging/diagnosis.h"
 #include "lowlap/core/atomic_file.h"
-#include "lowlap/pipeline/diagnosis_output.h"
+#include "lowlap/pipeline/internal/diagnosis_output.h"
 #include "lowlap/scale/scale_ratios.h"
 
 namespace lowlap::cli {

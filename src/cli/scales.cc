@@ -11,7 +11,7 @@
 #include "cli/solve_flags.h"
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/evaluation/internal/relative_errors.h"
-#include "lowlap/pipeline/ratio_table.h"
+#include "lowlap/pipeline/internal/ratio_table.h"
 #include "lowlap/pipeline/summary_json.h"
 #include "lowlap/scale/ratio_profile.h"
 #include "lowlap/scale/scale_ratios.h"

@@ -10,7 +10,7 @@
 #include "lowlap/io/ply.h"
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/io/scene_json.h"
-#include "lowlap/pipeline/run_report.h"
+#include "lowlap/pipeline/internal/run_report.h"
 
 namespace lowlap {
 namespace fs = std::filesystem;

@@ -1,10 +1,10 @@
-#include "lowlap/pipeline/run_report.h"
+#include "lowlap/pipeline/internal/run_report.h"
 
 #include <cstdio>
 #include <utility>
 
 #include "lowlap/averaging/pose_warnings.h"
-#include "lowlap/pipeline/ratio_table.h"
+#include "lowlap/pipeline/internal/ratio_table.h"
 
 namespace lowlap {
 namespace {

@@ -8,7 +8,7 @@
 #include "lowlap/core/run_context.h"
 #include "lowlap/features/features.h"
 #include "lowlap/matching/matching.h"
-#include "lowlap/pipeline/cache_folder.h"
+#include "lowlap/pipeline/internal/cache_folder.h"
 
 namespace lowlap {
 

@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/cached_measurements.h"
+#include "lowlap/pipeline/internal/cached_measurements.h"
 
 #include <mutex>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/cache_folder.h"
+#include "lowlap/pipeline/internal/cache_folder.h"
 
 #include <algorithm>
 #include <chrono>
