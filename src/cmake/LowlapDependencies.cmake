@@ -24,4 +24,5 @@ find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 # Debian's packages of what the static libraries are linked with.
 set(LOWLAP_DEVELOPMENT_PACKAGES
     libeigen3-dev libceres-dev libsuitesparse-dev coinor-libclp-dev
-    libopencv-dev libopencv-contrib-dev libexif-dev libexpected-dev)
+    libopencv-dev libopencv-contrib-dev libexif-dev libexpected-dev
+    zlib1g-dev)
