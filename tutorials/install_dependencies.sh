@@ -11,6 +11,7 @@ packages=(
   libeigen3-dev libceres-dev libsuitesparse-dev coinor-libclp-dev
   libopencv-dev libopencv-contrib-dev libexif-dev
   nlohmann-json3-dev libcereal-dev libcli11-dev libexpected-dev
+  zlib1g-dev libxxhash-dev
   libgtest-dev libgmock-dev
   "$@"
 )

@@ -92,10 +92,7 @@ int Adjust(const Flags& flags) {
   }
   summary.solve = std::move(result);
   summary.stages = stages.stages();
-  Status written = PrepareOutputFolder(flags.output);
-  if (written) {
-    written = WriteOutputs(*scene, summary, flags.output);
-  }
+  const Status written = WriteOutputs(*scene, summary, flags.output);
   if (!written) return Fail(written.error());
   const AdjustmentSummary& adjustment = *summary.solve->adjustment;
   std::printf("cost %.6g -> %.6g in %d iterations, %d outlier rounds\n",

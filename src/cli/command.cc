@@ -2,9 +2,11 @@
 
 #include <unistd.h>
 
+#include <cerrno>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 
 namespace lowlap::cli {
 namespace {
@@ -46,6 +48,20 @@ CLI::Validator NonNegative() {
                     [](double v) { return v >= 0; });
 }
 
+CLI::Validator WholeNumber() {
+  return CLI::Validator(
+      [](const std::string& text) -> std::string {
+        const bool has_digit =
+            !text.empty() && text[0] >= '0' && text[0] <= '9';
+        errno = 0;
+        char* end = nullptr;
+        std::strtoull(text.c_str(), &end, 0);
+        if (has_digit && *end == '\0' && errno == 0) return {};
+        return "'" + text + "' is not a non-negative number of at most 64 bits";
+      },
+      "WHOLE");
+}
+
 void CatchInterrupts() {
   struct sigaction action {};
   action.sa_handler = OnSignal;
@@ -70,7 +86,7 @@ void AddCommonFlags(CLI::App* command, CommonFlags* flags) {
       ->add_option("--seed", flags->seed,
                    "Seed of the random draws; the same seed gives the same "
                    "result")
-      ->check(NonNegative())
+      ->check(WholeNumber())
       ->capture_default_str();
   command->add_flag("-v,--verbose", flags->verbose, "Say more while working");
   command->add_flag("-q,--quiet", flags->quiet, "No progress, no notes");

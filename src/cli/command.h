@@ -24,6 +24,8 @@ void AddCommonFlags(CLI::App* command, CommonFlags* flags);
 /// their messages.)
 CLI::Validator Positive();
 CLI::Validator NonNegative();
+/// Of an integer from 0 to 2^64 - 1.
+CLI::Validator WholeNumber();
 
 /// Messages and progress go to standard error, so that standard output holds
 /// only the command's result. Progress needs a terminal. An interrupt stops
@@ -38,6 +40,9 @@ bool IsInterrupted();
 /// Prints "error: file: place: message" and returns the exit code: 1, or 128 +
 /// the signal's number (130 for Ctrl-C) after an interrupt.
 int Fail(const Error& error);
+
+/// Exit code of --strict: there is a result, and it is not beyond doubt.
+inline constexpr int kNotFirm = 2;
 
 /// What a parsed command line asks for; returns the exit code.
 using Action = std::function<int()>;

@@ -6,7 +6,7 @@
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
 #include "lowlap/pipeline/output_folder.h"
-#include "lowlap/study/comparison_output.h"
+#include "lowlap/study/compare_strategies.h"
 
 namespace lowlap::cli {
 namespace {

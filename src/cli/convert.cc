@@ -19,7 +19,8 @@ struct Flags {
 };
 
 int Convert(const Flags& flags) {
-  auto scene = ReadScene(flags.input);
+  SceneNotes notes;
+  auto scene = ReadScene(flags.input, &notes);
   if (!scene) return Fail(scene.error());
   if (flags.drop_solution) DropSolution(&*scene);
   if (flags.max_point_matches > 0) {
@@ -27,12 +28,11 @@ int Convert(const Flags& flags) {
     if (!limited) return Fail(limited.error());
   }
   if (flags.root_path) scene->root_path = *flags.root_path;
-  const auto notes = WriteScene(*scene, flags.output, flags.format);
-  if (!notes) return Fail(notes.error());
+  const auto written = WriteScene(*scene, flags.output, flags.format);
+  if (!written) return Fail(written.error());
+  notes.insert(notes.end(), written->begin(), written->end());
   const RunContext context = MakeContext(flags.common);
-  for (const std::string& note : *notes) {
-    context.Log(LogLevel::kWarning, note);
-  }
+  for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
   return 0;
 }
 
@@ -59,7 +59,7 @@ void AddConvert(CLI::App* program, Action* action) {
   command->add_option("--root-path", flags->root_path,
                       "Image folder to write into the scene, where the images "
                       "have moved");
-  command->footer("Formats:\n" + DescribeSceneFormats());
+  command->footer("Formats:\n" + DescribeSceneFormats(AllSceneFormats()));
   AddCommonFlags(command, &flags->common);
   command->callback(
       [flags, action] { *action = [flags] { return Convert(*flags); }; });

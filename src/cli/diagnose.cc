@@ -1,6 +1,5 @@
 #include <cstdio>
 #include <memory>
-#include <ostream>
 #include <utility>
 
 #include "cli/command.h"
@@ -8,13 +7,11 @@
 #include "cli/solve_flags.h"
 #include "lowlap/averaging/rigidity/diagnosis.h"
 #include "lowlap/core/atomic_file.h"
-#include "lowlap/pipeline/diagnosis_output.h"
+#include "lowlap/pipeline/internal/diagnosis_output.h"
 #include "lowlap/scale/scale_ratios.h"
 
 namespace lowlap::cli {
 namespace {
-
-constexpr int kNotFirm = 2;
 
 struct Flags {
   CommonFlags common;
@@ -45,10 +42,7 @@ int RunDiagnose(const Flags& flags) {
   if (!diagnosis) return Fail(diagnosis.error());
   if (!flags.json.empty()) {
     const Status written =
-        WriteFileAtomically(flags.json, [&](std::ostream& out) -> Status {
-          out << ToJson(*diagnosis, scene) << '\n';
-          return {};
-        });
+        WriteFileAtomically(flags.json, ToJson(*diagnosis, scene) + "\n");
     if (!written) return Fail(written.error());
   }
   std::printf("%s", ToText(*diagnosis, scene).c_str());

@@ -5,8 +5,8 @@
 
 #include "cli/command.h"
 #include "cli/solve_flags.h"
-#include "lowlap/evaluation/line_match_errors.h"
-#include "lowlap/evaluation/pair_errors.h"
+#include "lowlap/evaluation/internal/line_match_errors.h"
+#include "lowlap/evaluation/internal/pair_errors.h"
 #include "lowlap/matching/pair_selection.h"
 #include "third_party_adapters/scene_formats.h"
 

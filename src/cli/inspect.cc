@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <memory>
-#include <ostream>
 
 #include "cli/command.h"
 #include "cli/scene_input.h"
@@ -108,12 +107,9 @@ int Inspect(const Flags& flags) {
   const RigidityReport by_triplets =
       AnalyzeTripletRigidity(scene, kMinSharedTracks);
   if (!flags.json.empty()) {
-    const Status written =
-        WriteFileAtomically(flags.json, [&](std::ostream& out) -> Status {
-          out << "{\"by_directions\": " << ToJson(by_directions)
-              << ",\n\"by_triplets\": " << ToJson(by_triplets) << "}\n";
-          return {};
-        });
+    const Status written = WriteFileAtomically(
+        flags.json, "{\"by_directions\": " + ToJson(by_directions) +
+                        ",\n\"by_triplets\": " + ToJson(by_triplets) + "}\n");
     if (!written) return Fail(written.error());
   }
   PrintContent(scene);

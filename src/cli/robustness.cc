@@ -5,14 +5,14 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "cli/result_file.h"
 #include "cli/solve_flags.h"
 #include "lowlap/pipeline/output_folder.h"
-#include "lowlap/report/table_text.h"
-#include "lowlap/study/robustness/output.h"
-#include "lowlap/study/robustness/study.h"
-#include "lowlap/study/robustness/summary.h"
-#include "lowlap/study/robustness/table.h"
+#include "lowlap/report/internal/table_text.h"
+#include "lowlap/study/internal/result_log.h"
+#include "lowlap/study/internal/robustness/output.h"
+#include "lowlap/study/internal/robustness/study.h"
+#include "lowlap/study/internal/robustness/summary.h"
+#include "lowlap/study/internal/robustness/table.h"
 
 namespace lowlap::cli {
 namespace {
@@ -42,28 +42,20 @@ std::string SettingsText(const RobustnessOptions& options, std::uint64_t seed) {
 
 Status Complete(const Flags& flags, const RunContext& context,
                 RobustnessStudy* study) {
-  const std::string path =
-      (std::filesystem::path(flags.output) / "trials.csv").string();
-  const auto known =
-      TakeUpTable(flags.output, "trials.csv",
-                  SettingsText(study->options, flags.common.seed));
-  if (!known) return tl::unexpected<Error>(known.error());
-  if (Status parsed = ParseTrialsCsv(*known, study); !parsed) {
-    parsed.error().file = path;
-    return parsed;
-  }
+  if (Status made = PrepareOutputFolder(flags.output); !made) return made;
+  const auto log = ResultLog::Open(
+      (std::filesystem::path(flags.output) / "trials.jsonl").string(),
+      SettingsText(study->options, flags.common.seed),
+      [&](const std::string& record) { return AddJsonLine(record, study); });
+  if (!log) return tl::unexpected<Error>(log.error());
   if (!study->outcomes.empty()) {
     context.Log(LogLevel::kInfo, std::to_string(study->outcomes.size()) +
-                                     " trials are in trials.csv already");
+                                     " trials are in trials.jsonl already");
   }
-  Status status = WriteText(path, TrialsCsv(*study));
-  ResultFile file(path);
-  if (status) status = file.Open();
-  if (!status) return status;
   const auto start = std::chrono::steady_clock::now();
   RobustnessSinks sinks;
   sinks.cell = [&](const RobustnessKey& key, const RobustnessOutcome& outcome) {
-    return file.Append(ToCsvLine(*study, key, outcome));
+    return log->Append(ToJsonLine(*study, key, outcome));
   };
   sinks.scenario = [&](const RobustnessStudy& so_far,
                        std::size_t scenario) -> Status {

@@ -197,6 +197,7 @@ void AddRun(CLI::App* program, Action* action) {
                     "Align matched points by their grey values, to a fraction "
                     "of a pixel");
   AddSolveFlags(command, &flags->solve);
+  AddStrictFlag(command, &flags->solve.strict);
   AddCommonFlags(command, &flags->common);
   command->callback(
       [flags, action] { *action = [flags] { return Run(*flags); }; });

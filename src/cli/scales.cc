@@ -2,7 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <ostream>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -10,8 +10,8 @@
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
 #include "lowlap/core/atomic_file.h"
-#include "lowlap/evaluation/relative_errors.h"
-#include "lowlap/pipeline/ratio_table.h"
+#include "lowlap/evaluation/internal/relative_errors.h"
+#include "lowlap/pipeline/internal/ratio_table.h"
 #include "lowlap/pipeline/summary_json.h"
 #include "lowlap/scale/ratio_profile.h"
 #include "lowlap/scale/scale_ratios.h"
@@ -30,41 +30,39 @@ struct Flags {
 };
 
 // One line per ratio of the grid, mode, second mode and end of the interval.
-Status WriteProfiles(const std::string& path,
-                     const std::vector<RatioProfile>& profiles) {
-  return WriteFileAtomically(path, [&](std::ostream& out) -> Status {
-    out.precision(9);
-    out << "first,middle,last,what,log_ratio,log10_nfa,points,lines,coplanar\n";
-    for (const RatioProfile& profile : profiles) {
-      const auto start = [&](const char* what, double log_ratio) {
-        const ViewTriplet& views = profile.ratio.views;
-        out << views.first << ',' << views.middle << ',' << views.last << ','
-            << what << ',' << log_ratio;
-      };
-      const auto write = [&](const char* what, const RatioOptimum& optimum) {
-        start(what, optimum.log_ratio);
-        const RatioNfa& nfa = optimum.nfa;
-        out << ',' << nfa.log10_nfa << ',' << nfa.points.log10_nfa << ','
-            << nfa.lines.log10_nfa << ','
-            << nfa.coplanar.log10_nfa + nfa.plane_points.log10_nfa << '\n';
-      };
-      if (profile.nodes.empty()) continue;
-      write("mode", profile.mode);
-      if (profile.second_mode) write("second mode", *profile.second_mode);
-      start("interval low", profile.ratio.IntervalLow());
-      out << ",,,,\n";
-      start("interval high", profile.ratio.IntervalHigh());
-      out << ",,,,\n";
-      // Shares of the information in the columns of the kinds.
-      const ScaleRatio& ratio = profile.ratio;
-      start("information", ratio.log_ratio);
-      out << ",," << ratio.points.information_share << ','
-          << ratio.lines.information_share << ','
-          << ratio.coplanar.information_share << '\n';
-      for (const RatioOptimum& node : profile.nodes) write("node", node);
-    }
-    return {};
-  });
+std::string ProfileCsv(const std::vector<RatioProfile>& profiles) {
+  std::ostringstream out;
+  out.precision(9);
+  out << "first,middle,last,what,log_ratio,log10_nfa,points,lines,coplanar\n";
+  for (const RatioProfile& profile : profiles) {
+    const auto start = [&](const char* what, double log_ratio) {
+      const ViewTriplet& views = profile.ratio.views;
+      out << views.first << ',' << views.middle << ',' << views.last << ','
+          << what << ',' << log_ratio;
+    };
+    const auto write = [&](const char* what, const RatioOptimum& optimum) {
+      start(what, optimum.log_ratio);
+      const RatioNfa& nfa = optimum.nfa;
+      out << ',' << nfa.log10_nfa << ',' << nfa.points.log10_nfa << ','
+          << nfa.lines.log10_nfa << ','
+          << nfa.coplanar.log10_nfa + nfa.plane_points.log10_nfa << '\n';
+    };
+    if (profile.nodes.empty()) continue;
+    write("mode", profile.mode);
+    if (profile.second_mode) write("second mode", *profile.second_mode);
+    start("interval low", profile.ratio.IntervalLow());
+    out << ",,,,\n";
+    start("interval high", profile.ratio.IntervalHigh());
+    out << ",,,,\n";
+    // Shares of the information in the columns of the kinds.
+    const ScaleRatio& ratio = profile.ratio;
+    start("information", ratio.log_ratio);
+    out << ",," << ratio.points.information_share << ','
+        << ratio.lines.information_share << ','
+        << ratio.coplanar.information_share << '\n';
+    for (const RatioOptimum& node : profile.nodes) write("node", node);
+  }
+  return out.str();
 }
 
 void PrintTable(const std::vector<ScaleRatio>& ratios) {
@@ -103,22 +101,20 @@ int Scales(const Flags& flags) {
   if (!truth) return Fail(truth.error());
   const auto ratios = EstimateScaleRatios(loaded->scene, *options, context);
   if (!ratios) return Fail(ratios.error());
+  FileSet files;
+  Status written;
   if (!flags.json.empty()) {
-    const Status written =
-        WriteFileAtomically(flags.json, [&](std::ostream& out) -> Status {
-          out << ToJson(*ratios) << '\n';
-          return {};
-        });
-    if (!written) return Fail(written.error());
+    written = files.Add(flags.json, ToJson(*ratios) + "\n");
   }
-  if (!flags.profile.empty()) {
+  if (written && !flags.profile.empty()) {
     const auto profiles = ProfileScaleRatios(
         loaded->scene, FindTriplets(ViewGraph(loaded->scene)), *options,
         context);
     if (!profiles) return Fail(profiles.error());
-    const Status written = WriteProfiles(flags.profile, *profiles);
-    if (!written) return Fail(written.error());
+    written = files.Add(flags.profile, ProfileCsv(*profiles));
   }
+  if (written) written = files.Commit();
+  if (!written) return Fail(written.error());
   PrintTable(*ratios);
   if (*truth) {
     loaded->scene.scale_ratios = *ratios;

@@ -4,7 +4,6 @@
 
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/relative_poses.h"
-#include "third_party_adapters/onedsfm/problem.h"
 #include "third_party_adapters/openmvg/import.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -54,22 +53,13 @@ Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
   return loaded;
 }
 
-// A scene file, or a problem folder, whose notes are passed on.
-Result<Scene> ReadAnyScene(const std::string& path, const RunContext& context) {
-  if (!onedsfm::IsProblemFolder(path)) return ReadScene(path);
-  auto problem = onedsfm::ReadProblem(path);
-  if (!problem) return tl::unexpected<Error>(problem.error());
-  for (const std::string& note : problem->notes) {
-    context.Log(LogLevel::kWarning, note);
-  }
-  return std::move(problem->scene);
-}
-
 Result<LoadedScene> ReadOwnScene(const SceneInputFlags& flags,
                                  const RunContext& context, StageLog* stages) {
   const StageLog::Scope scope(stages, "read");
-  auto scene = ReadAnyScene(flags.scene, context);
+  SceneNotes notes;
+  auto scene = ReadScene(flags.scene, &notes);
   if (!scene) return tl::unexpected<Error>(scene.error());
+  for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
   const auto excluded = ExcludedViews(*scene, flags);
   if (!excluded) return tl::unexpected<Error>(excluded.error());
   return LoadedScene{

@@ -31,12 +31,16 @@ int RunSimulation(Flags flags) {
   flags.options.seed = flags.common.seed;
   const auto synthetic = Simulate(flags.options);
   if (!synthetic) return Fail(synthetic.error());
-  const auto written = WriteScene(synthetic->scene, flags.output);
-  if (!written) return Fail(written.error());
+  FileSet files;
+  const auto added = WriteScene(synthetic->scene, flags.output, {}, &files);
+  if (!added) return Fail(added.error());
   if (!flags.truth.empty()) {
-    const auto truth_written =
-        WriteScene(TrueSolution(*synthetic), flags.truth);
-    if (!truth_written) return Fail(truth_written.error());
+    const auto truth_added =
+        WriteScene(TrueSolution(*synthetic), flags.truth, {}, &files);
+    if (!truth_added) return Fail(truth_added.error());
+  }
+  if (const Status written = files.Commit(); !written) {
+    return Fail(written.error());
   }
   std::printf("%zu views, %zu pairs, %zu point tracks, %zu line tracks\n",
               synthetic->scene.views.size(),

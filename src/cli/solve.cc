@@ -50,6 +50,7 @@ void AddSolve(CLI::App* program, Action* action) {
                    "Folder for the results")
       ->required();
   AddSolveFlags(command, &flags->solve);
+  AddStrictFlag(command, &flags->solve.strict);
   AddCommonFlags(command, &flags->common);
   command->callback(
       [flags, action] { *action = [flags] { return Solve(*flags); }; });

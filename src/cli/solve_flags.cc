@@ -219,6 +219,12 @@ CLI::Option* AddTruthFlag(CLI::App* command, std::string* path) {
       "scene file");
 }
 
+void AddStrictFlag(CLI::App* command, bool* strict) {
+  command->add_flag("--strict", *strict,
+                    "Exit code 2 if a camera is not placed, or its place is "
+                    "doubtful; the results are written all the same");
+}
+
 Status SetAdjustedFeatures(const std::vector<std::string>& features,
                            AdjustmentOptions* options) {
   const auto kinds = ParseKinds(features);
@@ -304,7 +310,8 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
 Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
                                                    const Scene& scene) {
   if (path.empty()) return std::optional<GroundTruth>();
-  if (std::filesystem::is_regular_file(path)) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) {
     const auto solved = ReadScene(path);
     if (!solved) return tl::unexpected<Error>(solved.error());
     auto truth = GroundTruthFromScene(*solved, scene);
@@ -359,8 +366,7 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
   summary.solve = std::move(*result);
   summary.stages = stages->stages();
   if (IsInterrupted()) return Fail({ErrorCode::kCancelled, {}, {}, {}});
-  Status written = PrepareOutputFolder(output);
-  if (written) written = WriteOutputs(scene, summary, output);
+  const Status written = WriteOutputs(scene, summary, output);
   if (!written) return Fail(written.error());
 
   PrintPoses(summary.solve->poses, scene);
@@ -378,7 +384,10 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
       "written to %s: report.html sfm_data.json scene.lowlap cloud.ply "
       "summary.json\n",
       output.c_str());
-  return 0;
+  const PoseSummary& poses = summary.solve->poses;
+  const bool is_firm =
+      poses.num_placed == poses.num_views && !poses.IsDoubtful();
+  return flags.strict && !is_firm ? kNotFirm : 0;
 }
 
 }  // namespace lowlap::cli

@@ -34,6 +34,7 @@ struct SolveFlags {
   std::string refine_intrinsics;
   double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;
   std::string ground_truth;
+  bool strict = false;
 };
 
 void AddSolveFlags(CLI::App* command, SolveFlags* flags);
@@ -73,8 +74,12 @@ void PrintIntrinsics(const Scene& before, const Scene& after);
 Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
                                                    const Scene& scene);
 
+/// --strict, of the commands that SolveAndWrite.
+void AddStrictFlag(CLI::App* command, bool* strict);
+
 /// Solves a measured scene, writes the output folder, prints what a person
-/// wants to know, and returns the exit code. `input` is what the scene came
+/// wants to know, and returns the exit code: with `strict` 2 if a camera is
+/// doubtful or not placed. `input` is what the scene came
 /// from, for messages.
 int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
                   StageLog* stages, const RunContext& context,

@@ -10,14 +10,14 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/result_file.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
 #include "lowlap/core/hash.h"
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/pipeline/output_folder.h"
 #include "lowlap/pipeline/scene_reduction.h"
-#include "lowlap/report/table_text.h"
+#include "lowlap/report/internal/table_text.h"
+#include "lowlap/study/internal/result_log.h"
 #include "lowlap/study/subset_runs.h"
 #include "lowlap/study/subset_table.h"
 
@@ -36,7 +36,7 @@ struct Flags {
   SubsetBounds bounds;
 };
 
-// What results.csv depends on, apart from the choice of the subsets.
+// What the results depend on, apart from the choice of the subsets.
 Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
                                  const GroundTruth& truth) {
   const auto bytes = FormatSceneBinary(scene);
@@ -65,37 +65,6 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
          NumberText(flags.solve.principal_point_stddev, 9) + "\n";
 }
 
-std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
-                  const Scene& scene) {
-  std::string text = SubsetCsvHeader();
-  for (const SubsetOutcome& outcome : outcomes) {
-    text += ToCsvLine(outcome, scene);
-  }
-  return text;
-}
-
-// The outcomes of earlier runs with the same settings.
-Result<std::vector<SubsetOutcome>> Resume(const std::string& folder,
-                                          const std::string& settings,
-                                          const Scene& scene) {
-  const std::string path =
-      (std::filesystem::path(folder) / "results.csv").string();
-  const auto text = TakeUpTable(folder, "results.csv", settings);
-  if (!text) return tl::unexpected<Error>(text.error());
-  std::vector<SubsetOutcome> outcomes;
-  if (!text->empty()) {
-    auto parsed = ParseSubsetCsv(*text, scene);
-    if (!parsed) {
-      parsed.error().file = path;
-      return parsed;
-    }
-    outcomes = std::move(*parsed);
-  }
-  const Status written = WriteText(path, ToCsv(outcomes, scene));
-  if (!written) return tl::unexpected<Error>(written.error());
-  return outcomes;
-}
-
 void PrintSilentFailures(const std::vector<SubsetOutcome>& outcomes,
                          const Scene& scene, const SubsetBounds& bounds) {
   for (const SubsetOutcome& outcome : outcomes) {
@@ -110,17 +79,17 @@ void PrintSilentFailures(const std::vector<SubsetOutcome>& outcomes,
   }
 }
 
-int Finish(std::vector<SubsetOutcome> outcomes, const Scene& scene,
+int Finish(const std::vector<SubsetOutcome>& all,
+           const std::vector<SubsetOutcome>& outcomes, const Scene& scene,
            const Flags& flags) {
-  const auto path = [&](const char* name) {
-    return (std::filesystem::path(flags.output) / name).string();
-  };
   const SubsetSummary summary = SummarizeSubsets(outcomes, flags.bounds);
   const auto plot = DrawSubsets(outcomes);
   if (!plot) return Fail(plot.error());
-  Status written =
-      WriteText(path("summary.json"), ToJson(summary, flags.bounds));
-  if (written) written = WriteText(path("results.svg"), *plot);
+  const Status written =
+      WriteTextFiles({{"results.csv", ToCsv(all, scene)},
+                      {"summary.json", ToJson(summary, flags.bounds)},
+                      {"results.svg", *plot}},
+                     flags.output);
   if (!written) return Fail(written.error());
   PrintSilentFailures(outcomes, scene, flags.bounds);
   std::printf("%s", ToText(summary, flags.bounds).c_str());
@@ -205,13 +174,18 @@ int Subsets(const Flags& flags) {
   if (!chosen) return Fail(chosen.error());
   const auto settings = SettingsText(flags, scene, **truth);
   if (!settings) return Fail(settings.error());
-  auto known = Resume(flags.output, *settings, scene);
-  if (!known) return Fail(known.error());
-
-  std::map<std::vector<ViewId>, SubsetOutcome> outcomes;
-  for (SubsetOutcome& outcome : *known) {
-    outcomes[outcome.dropped] = std::move(outcome);
+  if (const Status made = PrepareOutputFolder(flags.output); !made) {
+    return Fail(made.error());
   }
+  std::map<std::vector<ViewId>, SubsetOutcome> outcomes;
+  const auto log = ResultLog::Open(
+      (std::filesystem::path(flags.output) / "results.jsonl").string(),
+      *settings, [&](const std::string& record) {
+        auto outcome = SubsetFromJsonLine(record);
+        if (outcome) outcomes[outcome->dropped] = std::move(*outcome);
+        return outcome.has_value();
+      });
+  if (!log) return Fail(log.error());
   std::vector<std::vector<ViewId>> missing;
   for (const std::vector<ViewId>& dropped : *chosen) {
     if (outcomes.count(dropped) == 0) missing.push_back(dropped);
@@ -219,32 +193,21 @@ int Subsets(const Flags& flags) {
   if (missing.size() < chosen->size()) {
     context.Log(LogLevel::kInfo,
                 std::to_string(chosen->size() - missing.size()) +
-                    " subsets are in results.csv already");
+                    " subsets are in results.jsonl already");
   }
-  const std::string table =
-      (std::filesystem::path(flags.output) / "results.csv").string();
-  {
-    ResultFile file(table);
-    Status status = file.Open();
-    if (status) {
-      status = RunSubsets(scene, **truth, missing, *options, context,
-                          [&](const SubsetOutcome& outcome) -> Status {
-                            outcomes[outcome.dropped] = outcome;
-                            return file.Append(ToCsvLine(outcome, scene));
-                          });
-    }
-    if (!status) return Fail(status.error());
-  }
+  const Status done = RunSubsets(scene, **truth, missing, *options, context,
+                                 [&](const SubsetOutcome& outcome) {
+                                   outcomes[outcome.dropped] = outcome;
+                                   return log->Append(ToJsonLine(outcome));
+                                 });
+  if (!done) return Fail(done.error());
+  // In the order of the subsets, whatever order they were finished in.
   std::vector<SubsetOutcome> all, asked_for;
   for (const auto& entry : outcomes) all.push_back(entry.second);
   for (const std::vector<ViewId>& dropped : *chosen) {
     asked_for.push_back(outcomes.at(dropped));
   }
-  // In the order of the subsets, whatever order they were finished in.
-  if (const Status written = WriteText(table, ToCsv(all, scene)); !written) {
-    return Fail(written.error());
-  }
-  return Finish(std::move(asked_for), scene, flags);
+  return Finish(all, asked_for, scene, flags);
 }
 
 }  // namespace
@@ -270,7 +233,7 @@ void AddSubsets(CLI::App* program, Action* action) {
   command
       ->add_option("--sample,--limit", flags->sample,
                    "Only so many of the ways, drawn with --seed; 0: all")
-      ->check(NonNegative())
+      ->check(WholeNumber())
       ->capture_default_str();
   command
       ->add_option("--jobs", flags->jobs,

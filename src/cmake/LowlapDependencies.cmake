@@ -10,11 +10,13 @@ find_package(nlohmann_json 3.11 REQUIRED)
 find_package(cereal REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tl-expected REQUIRED)
+find_package(ZLIB 1.2.9 REQUIRED)
+# xxHash is compiled into core from its header.
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 # libexif and Clp have no CMake package; they are linked by their names, as
 # -lexif and -lClp.
 find_library(LIBEXIF_LIBRARY exif REQUIRED)
 find_library(CLP_LIBRARY Clp REQUIRED)
-find_library(COINUTILS_LIBRARY CoinUtils REQUIRED)
 # Neither has SuiteSparse: -lcholmod.
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
@@ -22,4 +24,5 @@ find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 # Debian's packages of what the static libraries are linked with.
 set(LOWLAP_DEVELOPMENT_PACKAGES
     libeigen3-dev libceres-dev libsuitesparse-dev coinor-libclp-dev
-    libopencv-dev libopencv-contrib-dev libexif-dev libexpected-dev)
+    libopencv-dev libopencv-contrib-dev libexif-dev libexpected-dev
+    zlib1g-dev)

@@ -4,7 +4,7 @@
 #include "adapters/openmvg_vectors.h"
 #include "adapters/temporary_folder.h"
 #include "third_party_adapters/openmvg/import.h"
-#include "third_party_adapters/openmvg/sfm_data_bin.h"
+#include "third_party_adapters/openmvg/internal/sfm_data_bin.h"
 
 namespace lowlap::openmvg {
 namespace {
@@ -55,15 +55,6 @@ TEST_F(OpenMvgImport, GivesViewsFeaturesAndMatchesButNoPoses) {
   EXPECT_EQ(project->match_file, folder_.Path("matches/matches.e.txt"));
 }
 
-TEST_F(OpenMvgImport, ReadsPosesAndStructureOnlyWhenAsked) {
-  ImportOptions options;
-  options.read_poses = true;
-  const auto project = Import(options);
-  ASSERT_TRUE(project.has_value()) << project.error().ToString();
-  EXPECT_EQ(project->scene.poses.size(), 2u);
-  EXPECT_EQ(project->scene.structure.size(), 1u);
-}
-
 TEST_F(OpenMvgImport, LooksForTheMatchFileInTheOrderOfTheHost) {
   const auto used = [&] {
     const auto project = Import();
@@ -74,9 +65,16 @@ TEST_F(OpenMvgImport, LooksForTheMatchFileInTheOrderOfTheHost) {
   for (const char* name :
        {"matches.putative.bin", "matches.putative.txt", "matches.e.bin",
         "matches.e.txt", "matches.f.bin", "matches.f.txt"}) {
-    const PairMatches matches = {{{0, 1}, {{1, 1}}}};
-    ASSERT_TRUE(
-        WriteMatches(matches, folder_.Path(std::string("matches/") + name)));
+    const bool is_text = std::string(name).find(".txt") != std::string::npos;
+    folder_.Write(std::string("matches/") + name,
+                  is_text ? "0 1\n1\n1 1\n"
+                          : FromHex("01"
+                                    "0100000000000000"
+                                    "00000000"
+                                    "01000000"
+                                    "0100000000000000"
+                                    "01000000"
+                                    "01000000"));
     EXPECT_EQ(used(), name);
   }
   ImportOptions options;

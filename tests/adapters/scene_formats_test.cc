@@ -9,8 +9,8 @@
 #include "adapters/openmvg_vectors.h"
 #include "adapters/temporary_folder.h"
 #include "lowlap/io/scene_json.h"
-#include "third_party_adapters/openmvg/prepare.h"
-#include "third_party_adapters/openmvg/sfm_data_bin.h"
+#include "third_party_adapters/openmvg/internal/prepare.h"
+#include "third_party_adapters/openmvg/internal/sfm_data_bin.h"
 
 namespace lowlap {
 namespace {

@@ -1,4 +1,4 @@
-#include "third_party_adapters/openmvg/sfm_data_bin.h"
+#include "third_party_adapters/openmvg/internal/sfm_data_bin.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

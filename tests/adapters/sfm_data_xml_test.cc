@@ -1,10 +1,10 @@
-#include "third_party_adapters/openmvg/sfm_data_xml.h"
+#include "third_party_adapters/openmvg/internal/sfm_data_xml.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "adapters/openmvg_vectors.h"
-#include "third_party_adapters/openmvg/sfm_data_bin.h"
+#include "third_party_adapters/openmvg/internal/sfm_data_bin.h"
 
 namespace lowlap::openmvg {
 namespace {
@@ -128,12 +128,71 @@ TEST(SfmDataXml, MalformedContentIsNamed) {
             ErrorCode::kParse);
 }
 
+std::string Repeated(const std::string& part, int count) {
+  std::string text;
+  for (int n = 0; n < count; ++n) text += part;
+  return text;
+}
+
+// The parser recurses: what hides a start tag or shows a false end tag, in
+// comments, attributes and the like, must not deceive the count of the depth.
 TEST(SfmDataXml, DeepNestingIsAnErrorAndNoCrash) {
-  std::string xml;
-  for (int n = 0; n < 1000000; ++n) xml += "<a>";
-  const Result<Scene> scene = ParseSfmDataXml(xml);
-  ASSERT_FALSE(scene.has_value());
-  EXPECT_THAT(scene.error().message, HasSubstr("nested"));
+  for (const char* part :
+       {"<a>", "<a b=\"/>\">", "<a b='/>'>", "<a><!--</a>-->",
+        "<a><![CDATA[</a>]]>", "<a><?x </a>?>", "<a b=\"</a>\">", "<a b='\"'>",
+        "<a b = '>' >", "<a\n>", "<!-- > --><a>"}) {
+    const Result<Scene> scene =
+        ParseSfmDataXml("<cereal>" + Repeated(part, 80000));
+    ASSERT_FALSE(scene.has_value()) << part;
+    EXPECT_THAT(scene.error().message, HasSubstr("nested")) << part;
+  }
+}
+
+// What a parser may take apart in more than one way is refused before it.
+TEST(SfmDataXml, MalformedTagsAreRefusedAtTheFirst) {
+  for (const char* part :
+       {"<", "<a<b>", "<a x'=\"1\">", "<a b>", "<a b=c>", "<a\"b>", "< a>",
+        "<!--", "<![CDATA[", "<?", "<!DOCTYPE [", "</a>"}) {
+    const Result<Scene> scene = ParseSfmDataXml(Repeated(part, 1000000));
+    ASSERT_FALSE(scene.has_value()) << part;
+    EXPECT_EQ(scene.error().code, ErrorCode::kParse) << part;
+    EXPECT_THAT(scene.error().message, HasSubstr("not XML")) << part;
+    // At once, in the first two repetitions, or at the end of the text.
+    const std::size_t byte = std::stoul(scene.error().place.substr(5));
+    EXPECT_LE(byte, 2 * std::string(part).size() + 2) << part;
+  }
+}
+
+TEST(SfmDataXml, CommentsDeclarationsAndAttributesChangeNothing) {
+  const std::string xml = TwoViewsXml();
+  const std::string commented = Replaced(
+      Replaced(xml, "<cereal>", "<!DOCTYPE cereal><cereal note='a > b'>"),
+      "\t<views", "<!-- <deep> </deep> --><?any <deep> ?>\t<views");
+  const Result<Scene> scene = ParseSfmDataXml(commented);
+  ASSERT_TRUE(scene.has_value()) << scene.error().ToString();
+  EXPECT_TRUE(*scene == TwoViews());
+}
+
+TEST(SfmDataXml, WhatXmlCannotHoldIsNotWritten) {
+  const auto with_root = [](const std::string& root_path) {
+    Scene scene = TwoViews();
+    scene.root_path = root_path;
+    return scene;
+  };
+  for (const std::string& text :
+       {std::string("a\0b", 3), std::string("\x01"), std::string("\x1F"),
+        std::string("\xEF\xBF\xBF"), std::string("\xEF\xBF\xBE")}) {
+    const Result<std::string> xml = FormatSfmDataXml(with_root(text));
+    ASSERT_FALSE(xml.has_value());
+    EXPECT_EQ(xml.error().code, ErrorCode::kInvalidScene);
+  }
+  for (const char* text : {"\r\n", "\na\n", "a\rb", "\t", "\x7F", "\xC2\x85"}) {
+    const Result<std::string> xml = FormatSfmDataXml(with_root(text));
+    ASSERT_TRUE(xml.has_value());
+    const Result<Scene> again = ParseSfmDataXml(*xml);
+    ASSERT_TRUE(again.has_value()) << again.error().ToString();
+    EXPECT_EQ(again->root_path, text);
+  }
 }
 
 }  // namespace

@@ -43,6 +43,13 @@ TEST_F(BadInput, CommandsAndNumbers) {
   ExpectRefused(solve + "--threshold -1", "'-1' is not a positive number");
   ExpectRefused(solve + "--threshold nan", "'nan' is not a positive number");
   ExpectRefused(solve + "--seed -1", "'-1' is not a non-negative number");
+  // 2^64 and more would be taken for 2^64 - 1.
+  for (const char* seed : {"18446744073709551616", "1e3", "7x", "-0", "\"\""}) {
+    ExpectRefused(solve + "--seed " + seed, "--seed");
+  }
+  EXPECT_EQ(
+      Lowlap("inspect " + Room() + " --seed 18446744073709551615").exit_code,
+      0);
   ExpectRefused(solve + "--principal-point-stddev inf",
                 "'inf' is not a non-negative number");
 }

@@ -3,12 +3,14 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "cli_fixture.h"
 #include "lowlap/io/scene_binary.h"
@@ -197,24 +199,20 @@ TEST_F(Cli, ExcludedViewsAreLeftOut) {
   EXPECT_THAT(solved.output, HasSubstr("cameras placed: 6/6"));
 }
 
-// Starts a run on photographs and sends a signal as soon as the cache holds
-// `entries` entries; the output ends with "exit CODE".
-Outcome SignalledRun(const std::string& arguments, const std::string& cache,
-                     int entries, const std::string& signal) {
-  Outcome outcome;
+// Starts a run on photographs and sends a signal while it reads the cache entry
+// `entry`: a pipe stands there, which the run opens and waits for. The output
+// ends with "exit CODE".
+Outcome SignalledRun(const std::string& arguments, const std::string& entry,
+                     const std::string& signal) {
+  const std::string pid = entry + ".pid";
   const std::string script =
-      "env --default-signal=INT " + std::string(LOWLAP_COMMAND) + " run " +
-      arguments + " & pid=$!; while [ $(ls " + cache +
-      " 2>/dev/null | grep -c 'entry$') -lt " + std::to_string(entries) +
-      " ]; do sleep 0.02; done; kill -" + signal +
-      " $pid; wait $pid; echo exit $?";
-  const std::string line = "bash -c '" + [&] {
-    std::string quoted;
-    for (const char c : script)
-      quoted += c == '\'' ? "'\\''" : std::string(1, c);
-    return quoted;
-  }() + "' 2>&1";
-  FILE* pipe = ::popen(line.c_str(), "r");
+      "mkfifo " + entry + "; { sh -c \"echo \\$\\$ > " + pid +
+      "; exec env --default-signal=INT " + std::string(LOWLAP_COMMAND) +
+      " run " + arguments + "\"; echo exit $?; [ -p " + entry + " ] && : < " +
+      entry + "; } & exec 3> " + entry + "; rm " + entry + "; kill -" + signal +
+      " $(cat " + pid + "); exec 3>&-; wait; rm " + pid;
+  Outcome outcome;
+  FILE* pipe = ::popen(("bash -c '" + script + "' 2>&1").c_str(), "r");
   std::array<char, 4096> buffer;
   for (std::size_t n;
        (n = std::fread(buffer.data(), 1, buffer.size(), pipe));) {
@@ -224,18 +222,42 @@ Outcome SignalledRun(const std::string& arguments, const std::string& cache,
   return outcome;
 }
 
+// Names of the entries of a cache that begin so.
+std::vector<std::string> EntriesOf(const std::string& cache,
+                                   const std::string& kind) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(cache)) {
+    const std::string name = entry.path().filename().string();
+    if (name.rfind(kind, 0) == 0) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 TEST_F(Cli, AnInterruptedOrKilledRunGoesOnFromItsCache) {
   const std::string run = RoomImages() + " --intrinsics " + RoomImages() +
                           "/K.txt --pairs chain --threads 1 -o ";
-  const Outcome whole = Lowlap("run " + run + Path("whole") + " --no-cache");
+  const Outcome whole =
+      Lowlap("run " + run + Path("whole") + " --cache " + Path("cache"));
   ASSERT_EQ(whole.exit_code, 0) << whole.output;
   EXPECT_EQ(FilesIn("whole"), 5u);
   EXPECT_THAT(whole.output, HasSubstr("peak memory"));
   EXPECT_THAT(whole.output,
               HasSubstr("features, matching and relative poses together"));
 
+  // As if an earlier run had been stopped after two photographs.
+  const std::vector<std::string> features =
+      EntriesOf(Path("cache"), "features");
+  const std::vector<std::string> matches = EntriesOf(Path("cache"), "matches");
+  ASSERT_EQ(features.size(), 11u);
+  ASSERT_FALSE(matches.empty());
+  const std::string cache = Path("out/cache/");
+  fs::create_directories(cache);
+  for (const std::size_t n : {0u, 1u}) {
+    fs::copy_file(Path("cache/") + features[n], cache + features[n]);
+  }
   const Outcome interrupted =
-      SignalledRun(run + Path("out"), Path("out/cache"), 2, "INT");
+      SignalledRun(run + Path("out"), cache + features[2], "INT");
   EXPECT_THAT(interrupted.output, HasSubstr("exit 130")) << interrupted.output;
   EXPECT_THAT(interrupted.output,
               HasSubstr("error: interrupted during features"));
@@ -243,14 +265,14 @@ TEST_F(Cli, AnInterruptedOrKilledRunGoesOnFromItsCache) {
   EXPECT_EQ(FilesIn("out"), 1u);  // the cache
 
   const Outcome killed =
-      SignalledRun(run + Path("out"), Path("out/cache"), 5, "KILL");
+      SignalledRun(run + Path("out"), cache + matches[0], "KILL");
   EXPECT_THAT(killed.output, HasSubstr("exit 137")) << killed.output;
-  EXPECT_THAT(killed.output, HasSubstr("of 11 from the cache"));
+  EXPECT_THAT(killed.output, HasSubstr("features: 2 of 11 from the cache"));
   EXPECT_EQ(FilesIn("out"), 1u);
 
   const Outcome resumed = Lowlap("run " + run + Path("out"));
   ASSERT_EQ(resumed.exit_code, 0) << resumed.output;
-  EXPECT_THAT(resumed.output, HasSubstr("of 11 from the cache"));
+  EXPECT_THAT(resumed.output, HasSubstr("features: 11 of 11 from the cache"));
   EXPECT_EQ(ReadText(Path("out/scene.lowlap")),
             ReadText(Path("whole/scene.lowlap")));
 }

@@ -70,8 +70,8 @@ TEST_F(DiagnoseCommand, SubsetsAreResumed) {
   ASSERT_EQ(some.exit_code, 0) << some.output;
   EXPECT_THAT(some.output, HasSubstr("subsets: 4\n"));
   // A line that a killed run left half written is solved again.
-  const std::string four = ReadText(Path("out/results.csv"));
-  Write("out/results.csv", four.substr(0, four.size() - 9));
+  const std::string four = ReadText(Path("out/results.jsonl"));
+  Write("out/results.jsonl", four.substr(0, four.size() - 9));
   const Outcome all = OnRoom("subsets", common);
   ASSERT_EQ(all.exit_code, 0) << all.output;
   EXPECT_THAT(all.output, HasSubstr("subsets: 15\n"));
@@ -80,7 +80,7 @@ TEST_F(DiagnoseCommand, SubsetsAreResumed) {
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 16);
   // What was known is taken as it was, times included.
   const std::size_t second_line = four.find('\n') + 1;
-  EXPECT_THAT(table,
+  EXPECT_THAT(ReadText(Path("out/results.jsonl")),
               HasSubstr(four.substr(
                   second_line, four.find('\n', second_line) - second_line)));
   EXPECT_TRUE(std::filesystem::exists(Path("out/results.svg")));

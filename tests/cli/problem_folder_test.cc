@@ -138,6 +138,14 @@ TEST_F(ProblemFolder, WhatIsLeftOutIsSaid) {
   ASSERT_EQ(compared.exit_code, 0) << compared.output;
   EXPECT_THAT(compared.output, HasSubstr("warning: "));
   EXPECT_THAT(compared.output, HasSubstr("not used"));
+  // The same words, whichever command reads the folder.
+  const Outcome inspected = Lowlap("inspect " + folder_.string());
+  const Outcome converted =
+      Lowlap("convert " + folder_.string() + " " + Path("a.lowlap"));
+  ASSERT_EQ(converted.exit_code, 0) << converted.output;
+  EXPECT_THAT(converted.output, HasSubstr("not used"));
+  EXPECT_EQ(converted.output,
+            inspected.output.substr(0, converted.output.size()));
 }
 
 }  // namespace

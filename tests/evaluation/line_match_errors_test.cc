@@ -1,4 +1,4 @@
-#include "lowlap/evaluation/line_match_errors.h"
+#include "lowlap/evaluation/internal/line_match_errors.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

@@ -1,4 +1,4 @@
-#include "lowlap/evaluation/pair_errors.h"
+#include "lowlap/evaluation/internal/pair_errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

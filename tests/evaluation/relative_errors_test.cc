@@ -1,4 +1,4 @@
-#include "lowlap/evaluation/relative_errors.h"
+#include "lowlap/evaluation/internal/relative_errors.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

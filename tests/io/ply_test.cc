@@ -3,10 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <filesystem>
 #include <limits>
 
-#include "lowlap/core/atomic_file.h"
 #include "scene/example_scenes.h"
 #include "support/matchers.h"
 
@@ -14,7 +12,6 @@ namespace lowlap {
 namespace {
 
 using testing::IsError;
-using testing::IsOk;
 using testing::VectorNear;
 
 struct Vertex {
@@ -34,8 +31,8 @@ std::size_t CountOf(const std::string& header, const std::string& element) {
 }
 
 // Reads what the header announces; the test machine is little-endian.
-Ply ReadPly(const std::string& path) {
-  const std::string bytes = *ReadWholeFile(path);
+Ply PlyOf(const Scene& scene) {
+  const std::string bytes = FormatPly(scene).value();
   const std::string end = "end_header\n";
   std::size_t offset = bytes.find(end) + end.size();
   Ply ply;
@@ -56,13 +53,7 @@ Ply ReadPly(const std::string& path) {
   return ply;
 }
 
-class PlyTest : public ::testing::Test {
- protected:
-  ~PlyTest() override { std::filesystem::remove(path_); }
-  const std::string path_ = ::testing::TempDir() + "/lowlap_ply_test.ply";
-};
-
-TEST_F(PlyTest, PointsSegmentsAndFrusta) {
+TEST(FormatPly, PointsSegmentsAndFrusta) {
   Scene scene;
   scene.intrinsics[0].width_px = 600;
   scene.intrinsics[0].height_px = 400;
@@ -79,9 +70,7 @@ TEST_F(PlyTest, PointsSegmentsAndFrusta) {
   scene.structure[3].position = Vec3(1, 2, 3);
   scene.line_structure[1].start = Vec3(5, 6, 7);
   scene.line_structure[1].end = Vec3(8, 9, 10);
-  ASSERT_THAT(WritePly(scene, path_), IsOk());
-
-  const Ply ply = ReadPly(path_);
+  const Ply ply = PlyOf(scene);
   EXPECT_THAT(ply.header,
               ::testing::StartsWith("ply\nformat binary_little_endian 1.0\n"));
   EXPECT_THAT(ply.header, ::testing::HasSubstr("property int vertex1\n"
@@ -109,31 +98,27 @@ TEST_F(PlyTest, PointsSegmentsAndFrusta) {
   }
 }
 
-TEST_F(PlyTest, ViewsWithoutFrustumAreTheirCentre) {
+TEST(FormatPly, ViewsWithoutFrustumAreTheirCentre) {
   const Scene scene =
       testing::FullScene();  // a panorama, no intrinsic, no pose
   Scene cameras = scene;
   cameras.structure.clear();
   cameras.line_structure.clear();
-  ASSERT_THAT(WritePly(cameras, path_), IsOk());
-  EXPECT_EQ(ReadPly(path_).vertices.size(), 4u * 5u + 2u);
+  EXPECT_EQ(PlyOf(cameras).vertices.size(), 4u * 5u + 2u);
 }
 
-TEST_F(PlyTest, EmptyAndSingleCameraScenes) {
-  ASSERT_THAT(WritePly(Scene(), path_), IsOk());
-  EXPECT_TRUE(ReadPly(path_).vertices.empty());
+TEST(FormatPly, EmptyAndSingleCameraScenes) {
+  EXPECT_TRUE(PlyOf(Scene()).vertices.empty());
   Scene scene = testing::FullScene();
   scene = WithoutViews(scene, {4, 7, 10, 13, 16, 19});
-  ASSERT_THAT(WritePly(scene, path_), IsOk());
-  EXPECT_EQ(ReadPly(path_).vertices.size(), 5u);
+  EXPECT_EQ(PlyOf(scene).vertices.size(), 5u);
 }
 
-TEST_F(PlyTest, NothingIsWrittenOnFailure) {
+TEST(FormatPly, NumbersThatAreNotFiniteAreRefused) {
   Scene scene = testing::FullScene();
   scene.structure[0].position.x() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THAT(WritePly(scene, path_),
+  EXPECT_THAT(FormatPly(scene),
               IsError(ErrorCode::kInvalidScene, "not finite"));
-  EXPECT_FALSE(std::filesystem::exists(path_));
 }
 
 }  // namespace

@@ -16,13 +16,14 @@ using testing::IsOk;
 std::string FormatName(const std::string& path) {
   static const SceneFormats formats = OwnSceneFormats();
   const auto format = FindSceneFormat(formats, path);
-  return format ? (*format)->Name() : "";
+  return format ? (*format)->name : "";
 }
 
 TEST(SceneFormat, RecognisesByExtension) {
   EXPECT_EQ(FormatName("a/sfm_data.json"), "json");
   EXPECT_EQ(FormatName("SCENE.JSON"), "json");
   EXPECT_EQ(FormatName("scene.lowlap"), "lowlap");
+  EXPECT_EQ(FormatName("scene.ply"), "ply");
   EXPECT_EQ(FormatName("scene.xyz"), "");
   EXPECT_EQ(FormatName("json"), "");
   EXPECT_EQ(FormatName(""), "");
@@ -36,35 +37,43 @@ TEST(SceneFormat, AFolderIsNoFile) {
 }
 
 TEST(SceneFormat, UnknownFormatsListTheKnownOnes) {
-  EXPECT_THAT(FindSceneFormat(OwnSceneFormats(), "scene.xyz"),
+  const SceneFormats formats = OwnSceneFormats();
+  EXPECT_THAT(FindSceneFormat(formats, "scene.xyz"),
               IsError(ErrorCode::kUnsupported, "*.lowlap"));
+  EXPECT_THAT(FindNamedSceneFormat(formats, "colmap"),
+              IsError(ErrorCode::kUnsupported, "*.lowlap"));
+  EXPECT_EQ((*FindNamedSceneFormat(formats, "json"))->extension, ".json");
 }
 
 TEST(SceneFormat, WritesAndReads) {
   const Scene scene = testing::FullScene();
-  for (const auto& format : OwnSceneFormats()) {
+  for (const SceneFormat& format : OwnSceneFormats()) {
     const std::string path =
-        ::testing::TempDir() + "/lowlap_format_test." + format->Name();
-    ASSERT_TRUE(format->Recognizes(path));
-    ASSERT_TRUE(format->CanWrite());
-    ASSERT_THAT(format->Write(scene, path), IsOk());
-    EXPECT_EQ(*format->Read(path), scene);
+        ::testing::TempDir() + "/lowlap_format_test" + format.extension;
+    ASSERT_TRUE(format.Recognizes(path));
+    FileSet files;
+    ASSERT_THAT(format.write(scene, path, &files), IsOk());
+    EXPECT_FALSE(std::filesystem::exists(path));
+    ASSERT_THAT(files.Commit(), IsOk());
+    SceneNotes notes;
+    if (format.read) {
+      EXPECT_EQ(*format.read(path, &notes), scene);
+    }
+    EXPECT_TRUE(notes.empty());
     std::filesystem::remove(path);
   }
 }
 
-class ReadOnlyFormat : public SceneFormat {
- public:
-  std::string Name() const override { return "read-only"; }
-  std::string Description() const override { return "for this test"; }
-  bool Recognizes(const std::string&) const override { return true; }
-  Result<Scene> Read(const std::string&) const override { return Scene(); }
-  bool CanWrite() const override { return false; }
-};
-
-TEST(SceneFormat, WritingIsRefusedWhereItIsNotOffered) {
-  EXPECT_THAT(ReadOnlyFormat().Write(Scene(), "out"),
-              IsError(ErrorCode::kUnsupported, "read-only"));
+TEST(SceneFormat, WhatCannotBeWrittenIsNamed) {
+  Scene scene = testing::FullScene();
+  scene.root_path = "\xFF";
+  FileSet files;
+  for (const char* name : {"json", "lowlap"}) {
+    const SceneFormats formats = OwnSceneFormats();
+    EXPECT_THAT(
+        (*FindNamedSceneFormat(formats, name))->write(scene, "out", &files),
+        IsError(ErrorCode::kInvalidScene, "out: $.root_path"));
+  }
 }
 
 }  // namespace

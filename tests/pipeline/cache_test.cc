@@ -9,9 +9,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "lowlap/pipeline/cache_folder.h"
 #include "lowlap/pipeline/calibrate_images.h"
 #include "lowlap/pipeline/image_collection.h"
+#include "lowlap/pipeline/internal/cache_folder.h"
 #include "lowlap/pipeline/internal/measurement_bytes.h"
 #include "lowlap/pipeline/internal/measurement_key.h"
 #include "support/matchers.h"

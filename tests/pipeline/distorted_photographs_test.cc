@@ -9,7 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "lowlap/evaluation/relative_errors.h"
+#include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/pipeline/calibrate_images.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "support/data_folder.h"
@@ -91,8 +91,7 @@ TEST(DistortedPhotographs, AreMeasuredAsWellAsStraightOnes) {
   IntrinsicSource source;
   source.calibration =
       *strecha::ReadCalibrationMatrix(Room() + "/images/K.txt");
-  const auto straight =
-      SceneFromImages(Room() + "/images", source, {});
+  const auto straight = SceneFromImages(Room() + "/images", source, {});
   ASSERT_THAT(straight, IsOk());
   const Intrinsic pinhole = straight->intrinsics.at(0);
   const Intrinsic lens = Distorted(pinhole, -0.2);

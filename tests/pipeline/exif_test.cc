@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/exif.h"
+#include "lowlap/pipeline/internal/exif.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

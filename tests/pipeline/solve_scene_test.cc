@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/evaluation/pose_errors.h"
-#include "lowlap/evaluation/relative_errors.h"
 #include "lowlap/pipeline/relative_poses.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 

@@ -19,6 +19,8 @@ TEST(StageLog, KeepsTheStagesInTheOrderInWhichTheyEnd) {
   EXPECT_GE(log.stages()[2].wall_s, log.stages()[1].wall_s);
 }
 
+TEST(StageLog, MayBeNull) { const StageLog::Scope scope(nullptr, "stage"); }
+
 TEST(PeakMemory, IsThatOfARunningProgram) {
   EXPECT_GT(PeakMemoryMb(), 1.0);
   EXPECT_LT(PeakMemoryMb(), 1e6);

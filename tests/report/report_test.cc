@@ -2,11 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
-
-#include "lowlap/core/atomic_file.h"
 #include "lowlap/report/internal/scene_drawing.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
@@ -47,24 +43,17 @@ TEST(DrawingData, AnEmptySceneIsAnEmptyDrawing) {
   EXPECT_EQ(DrawingData(Scene(), 10), "{points:[],segments:[],cameras:[]}");
 }
 
-TEST(WriteReport, EscapesTextAndHoldsTheTables) {
-  const std::string path =
-      (std::filesystem::temp_directory_path() /
-       ("lowlap_report_" + std::to_string(::getpid()) + ".html"))
-          .string();
+TEST(FormatReport, EscapesTextAndHoldsTheTables) {
   ReportContent content;
   content.title = "a <b> & c";
   content.figures.emplace_back("cameras", "3 of 4");
   content.warnings.emplace_back("<script>bad</script>");
   content.tables.push_back({"Ratios", "", {"name", "value"}, {{"x<y", "1.5"}}});
-  ASSERT_TRUE(WriteReport(Scene(), content, path));
-  const auto page = ReadWholeFile(path);
-  ASSERT_TRUE(page);
-  EXPECT_THAT(*page, HasSubstr("<h1>a &lt;b&gt; &amp; c</h1>"));
-  EXPECT_THAT(*page, HasSubstr("3 of 4"));
-  EXPECT_THAT(*page, HasSubstr("<td>x&lt;y</td><td>1.5</td>"));
-  EXPECT_THAT(*page, Not(HasSubstr("<script>bad")));
-  std::filesystem::remove(path);
+  const std::string page = FormatReport(Scene(), content);
+  EXPECT_THAT(page, HasSubstr("<h1>a &lt;b&gt; &amp; c</h1>"));
+  EXPECT_THAT(page, HasSubstr("3 of 4"));
+  EXPECT_THAT(page, HasSubstr("<td>x&lt;y</td><td>1.5</td>"));
+  EXPECT_THAT(page, Not(HasSubstr("<script>bad")));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "lowlap/report/svg_plot.h"
+#include "lowlap/report/internal/svg_plot.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "lowlap/report/table_text.h"
+#include "lowlap/report/internal/table_text.h"
 
 #include <gtest/gtest.h>
 

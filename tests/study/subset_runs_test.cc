@@ -12,6 +12,7 @@
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/study/subset_table.h"
 #include "lowlap/synthetic/synthetic_scene.h"
+#include "read_csv.h"
 
 namespace lowlap {
 namespace {
@@ -86,41 +87,36 @@ std::vector<SubsetOutcome> Outcomes() {
   return outcomes;
 }
 
-TEST(SubsetTable, IsReadAsItWasWritten) {
-  const Scene scene = SceneOfViews(6);
-  std::string text = SubsetCsvHeader();
+TEST(SubsetTable, RecordsAreReadAsTheyWereWritten) {
   for (const SubsetOutcome& outcome : Outcomes()) {
-    text += ToCsvLine(outcome, scene);
+    const std::string line = ToJsonLine(outcome);
+    EXPECT_EQ(line.find('\n'), std::string::npos);
+    const auto read = SubsetFromJsonLine(line);
+    ASSERT_TRUE(read) << line;
+    EXPECT_EQ(ToJsonLine(*read), line);
+    EXPECT_EQ(read->dropped, outcome.dropped);
+    EXPECT_EQ(read->mean_error, outcome.mean_error);
+    EXPECT_EQ(read->doubts, outcome.doubts);
+    EXPECT_EQ(read->failure, outcome.failure);
+    EXPECT_EQ(read->worst_view, outcome.worst_view);
+    for (std::size_t cut = 0; cut < line.size(); ++cut) {
+      EXPECT_FALSE(SubsetFromJsonLine(line.substr(0, cut))) << cut;
+    }
   }
-  const auto read = ParseSubsetCsv(text, scene);
-  ASSERT_TRUE(read) << read.error().ToString();
-  std::string again = SubsetCsvHeader();
-  for (const SubsetOutcome& outcome : *read) {
-    again += ToCsvLine(outcome, scene);
+  for (const char* wrong : {"[]", "{}", "7", R"({"dropped": 3})"}) {
+    EXPECT_FALSE(SubsetFromJsonLine(wrong)) << wrong;
   }
-  EXPECT_EQ(again, text);
-  EXPECT_EQ((*read)[3].doubts, Outcomes()[3].doubts);
-  EXPECT_EQ((*read)[6].failure, Outcomes()[6].failure);
-  EXPECT_EQ((*read)[6].worst_view, kInvalidId);
 }
 
-TEST(SubsetTable, ALineCutShortIsIgnoredAndRubbishIsNot) {
-  const Scene scene = SceneOfViews(6);
-  const std::string line = ToCsvLine(Outcomes()[3], scene);
-  const std::string whole = SubsetCsvHeader() + line;
-  for (std::size_t cut = 0; cut < line.size(); ++cut) {
-    const auto read = ParseSubsetCsv(whole + line.substr(0, cut), scene);
-    ASSERT_TRUE(read) << cut;
-    EXPECT_EQ(read->size(), 1u);
-  }
-  EXPECT_TRUE(ParseSubsetCsv("", scene));
-  for (const std::string& wrong :
-       {std::string("views\n"), whole + "\n", whole + "0+1,2\n",
-        SubsetCsvHeader() + "x" + line}) {
-    const auto read = ParseSubsetCsv(wrong, scene);
-    ASSERT_FALSE(read) << wrong;
-    EXPECT_THAT(read.error().place, HasSubstr("line "));
-  }
+TEST(SubsetTable, TheCsvHasARecordForEachSubset) {
+  const auto records = ReadCsv(ToCsv(Outcomes(), SceneOfViews(6)));
+  ASSERT_EQ(records.size(), 7u);
+  EXPECT_EQ(records[3].at("dropped"), "6+8");
+  EXPECT_EQ(records[3].at("max_error"), "0.700000");
+  EXPECT_EQ(records[3].at("worst_view"), "image 2.jpg");
+  EXPECT_EQ(records[3].at("reasons"), "open_loop;weak_ratio");
+  EXPECT_EQ(records[6].at("mean_error"), "");
+  EXPECT_EQ(records[6].at("failure"), "no \"relative\" pose, at all");
 }
 
 TEST(SubsetTable, Summary) {
@@ -212,7 +208,7 @@ TEST_F(RunSubsetsTest, ThreadsDoNotChangeIt) {
   for (auto [views, outcome] : *one) {
     SubsetOutcome other = two->at(views);
     outcome.seconds = other.seconds = 0;
-    EXPECT_EQ(ToCsvLine(outcome, scene_), ToCsvLine(other, scene_));
+    EXPECT_EQ(ToJsonLine(outcome), ToJsonLine(other));
   }
 }
 

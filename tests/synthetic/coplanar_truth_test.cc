@@ -1,4 +1,4 @@
-#include "lowlap/synthetic/coplanar_truth.h"
+#include "lowlap/synthetic/internal/coplanar_truth.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include "lowlap/geometry/triangulation.h"
 #include "lowlap/scene/normalized_features.h"
 #include "lowlap/scene/validation.h"
-#include "lowlap/synthetic/coplanar_truth.h"
+#include "lowlap/synthetic/internal/coplanar_truth.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "support/matchers.h"
 

@@ -16,65 +16,55 @@ namespace lowlap::onedsfm {
 namespace {
 
 namespace fs = std::filesystem;
-using internal::ImageIndex;
 
 std::string PathOf(const std::string& folder, const char* name) {
   return (fs::path(folder) / name).string();
 }
 
-/// What a file of the folder holds; nullopt if it does not exist.
+/// Reads what a file of the folder holds; nothing if it does not exist.
 template <class T>
-Result<std::optional<T>> ReadIfThere(const std::string& path,
-                                     Result<T> (*parse)(std::string_view,
-                                                        const std::string&)) {
-  std::error_code ignored;
-  if (!fs::exists(path, ignored)) return std::optional<T>();
+Status ReadIfThere(const std::string& path,
+                   Result<T> (*parse)(std::string_view, const std::string&),
+                   std::optional<T>* content) {
   const Result<std::string> text = ReadWholeFile(path);
+  if (!text && text.error().code == ErrorCode::kNotFound) return {};
   if (!text) return tl::unexpected<Error>(text.error());
-  Result<T> content = parse(*text, path);
-  if (!content) return tl::unexpected<Error>(content.error());
-  return std::optional<T>(std::move(*content));
+  Result<T> parsed = parse(*text, path);
+  if (!parsed) return tl::unexpected<Error>(parsed.error());
+  *content = std::move(*parsed);
+  return {};
 }
 
 /// The files of a folder.
 struct Files {
-  std::vector<internal::RelativeGeometry> geometries;
+  std::optional<std::vector<RelativeGeometry>> geometries;
   std::optional<std::vector<ImageIndex>> used;
-  std::optional<std::vector<internal::ListedImage>> list;
-  std::optional<std::map<ImageIndex, internal::ImageKeys>> coords;
-  std::optional<std::vector<internal::KeyTrack>> tracks;
+  std::optional<std::vector<ListedImage>> list;
+  std::optional<std::map<ImageIndex, ImageKeys>> coords;
+  std::optional<std::vector<KeyTrack>> tracks;
 };
 
 Result<Files> ReadFiles(const std::string& folder) {
   Files files;
-  auto geometries =
-      ReadIfThere(PathOf(folder, "EGs.txt"), internal::ParseGeometries);
-  if (!geometries) return tl::unexpected<Error>(geometries.error());
-  if (!*geometries) {
+  const auto read = [&](const char* name, auto parse, auto* content) {
+    return ReadIfThere(PathOf(folder, name), parse, content);
+  };
+  Status status = read("EGs.txt", ParseGeometries, &files.geometries);
+  if (status && !files.geometries) {
     return MakeError(ErrorCode::kNotFound, "there is no EGs.txt", folder);
   }
-  files.geometries = std::move(**geometries);
-  auto used = ReadIfThere(PathOf(folder, "cc.txt"), internal::ParseIndices);
-  if (!used) return tl::unexpected<Error>(used.error());
-  files.used = std::move(*used);
-  auto list = ReadIfThere(PathOf(folder, "list.txt"), internal::ParseList);
-  if (!list) return tl::unexpected<Error>(list.error());
-  files.list = std::move(*list);
-  auto coords =
-      ReadIfThere(PathOf(folder, "coords.txt"), internal::ParseCoords);
-  if (!coords) return tl::unexpected<Error>(coords.error());
-  files.coords = std::move(*coords);
-  auto tracks =
-      ReadIfThere(PathOf(folder, "tracks.txt"), internal::ParseTracks);
-  if (!tracks) return tl::unexpected<Error>(tracks.error());
-  files.tracks = std::move(*tracks);
+  if (status) status = read("cc.txt", ParseIndices, &files.used);
+  if (status) status = read("list.txt", ParseList, &files.list);
+  if (status) status = read("coords.txt", ParseCoords, &files.coords);
+  if (status) status = read("tracks.txt", ParseTracks, &files.tracks);
+  if (!status) return tl::unexpected<Error>(status.error());
   return files;
 }
 
 std::set<ImageIndex> UsedImages(const Files& files) {
   if (files.used) return {files.used->begin(), files.used->end()};
   std::set<ImageIndex> used;
-  for (const internal::RelativeGeometry& geometry : files.geometries) {
+  for (const RelativeGeometry& geometry : *files.geometries) {
     used.insert(geometry.i);
     used.insert(geometry.j);
   }
@@ -105,7 +95,7 @@ Status AddView(const Files& files, const std::string& folder, ImageIndex index,
           "has no image " + std::to_string(index) + ", which is used",
           PathOf(folder, "coords.txt"));
     }
-    const internal::ImageKeys& keys = found->second;
+    const ImageKeys& keys = found->second;
     if (!files.list && !keys.name.empty()) path = keys.name;
     if (keys.focal_px > 0) focal_px = keys.focal_px;
     view.width_px = static_cast<int>(std::lround(2 * keys.half_size_px.x()));
@@ -142,7 +132,7 @@ void AddRelativePoses(const Files& files, Problem* problem) {
   Scene& scene = problem->scene;
   const Vec3 axes(1, -1, -1);
   std::size_t num_unused = 0, num_repeated = 0;
-  for (const internal::RelativeGeometry& geometry : files.geometries) {
+  for (const RelativeGeometry& geometry : *files.geometries) {
     if (scene.views.count(geometry.i) == 0 ||
         scene.views.count(geometry.j) == 0) {
       ++num_unused;
@@ -183,8 +173,8 @@ void AddMatches(const Track& track, Scene* scene) {
   }
 }
 
-Status AddTracks(const std::vector<internal::KeyTrack>& tracks,
-                 const std::string& folder, Problem* problem) {
+Status AddTracks(const std::vector<KeyTrack>& tracks, const std::string& folder,
+                 Problem* problem) {
   Scene& scene = problem->scene;
   std::size_t num_ambiguous = 0;
   for (std::size_t t = 0; t < tracks.size(); ++t) {
@@ -255,15 +245,16 @@ Result<Problem> ReadProblem(const std::string& folder) {
 }
 
 Result<std::map<ViewId, Pose>> ReadTruePoses(const std::string& folder) {
-  const std::string path = PathOf(folder, "gt_bundle.out");
-  auto poses = ReadIfThere(path, internal::ParseBundlePoses);
-  if (!poses) return tl::unexpected<Error>(poses.error());
-  if (!*poses) {
+  std::optional<std::map<ViewId, Pose>> poses;
+  const Status status =
+      ReadIfThere(PathOf(folder, "gt_bundle.out"), ParseBundlePoses, &poses);
+  if (!status) return tl::unexpected<Error>(status.error());
+  if (!poses) {
     return MakeError(ErrorCode::kNotFound,
                      "there is no gt_bundle.out, the reference cameras",
                      folder);
   }
-  return std::move(**poses);
+  return std::move(*poses);
 }
 
 }  // namespace lowlap::onedsfm

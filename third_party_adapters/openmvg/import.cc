@@ -6,9 +6,10 @@
 #include <system_error>
 #include <utility>
 
+#include "lowlap/io/scene_format.h"
 #include "lowlap/scene/validation.h"
-#include "third_party_adapters/openmvg/feat.h"
-#include "third_party_adapters/openmvg/sfm_data.h"
+#include "third_party_adapters/openmvg/internal/feat.h"
+#include "third_party_adapters/openmvg/internal/scene_format.h"
 
 namespace lowlap::openmvg {
 namespace {
@@ -59,6 +60,20 @@ Status ReadFeatures(const std::string& dir, Scene& scene) {
   return {};
 }
 
+/// The form is the one that the extension names, as in OpenMVG.
+Result<Scene> ReadListing(const std::string& path) {
+  for (const SceneFormats& formats : {OwnSceneFormats(), OpenMvgFormats()}) {
+    for (const SceneFormat& format : formats) {
+      SceneNotes ignored;
+      if (format.read && format.name != "lowlap" && format.Recognizes(path)) {
+        return format.read(path, &ignored);
+      }
+    }
+  }
+  return MakeError(ErrorCode::kUnsupported,
+                   "an sfm_data file ends in .json, .bin or .xml", path);
+}
+
 /// Drops pairs of unknown views and checks the indices of the others.
 Status CheckMatches(ImportedProject& project) {
   const Scene& scene = project.scene;
@@ -98,17 +113,12 @@ Status CheckMatches(ImportedProject& project) {
 Result<ImportedProject> ImportProject(const std::string& sfm_data_path,
                                       const std::string& matches_dir,
                                       const ImportOptions& options) {
-  Result<Scene> listing = ReadSfmData(sfm_data_path);
+  Result<Scene> listing = ReadListing(sfm_data_path);
   if (!listing) return tl::unexpected<Error>(listing.error());
   ImportedProject project;
   project.scene.root_path = std::move(listing->root_path);
   project.scene.views = std::move(listing->views);
   project.scene.intrinsics = std::move(listing->intrinsics);
-  if (options.read_poses) {
-    project.scene.poses = std::move(listing->poses);
-    project.scene.structure = std::move(listing->structure);
-    project.scene.control_points = std::move(listing->control_points);
-  }
 
   // The match file first: a wrong name is found before the slow part.
   Result<std::string> match_file =

@@ -14,9 +14,6 @@ struct ImportOptions {
   /// matches.e.bin (the order of openMVG_main_SfM), matches.putative.txt,
   /// matches.putative.bin.
   std::string match_file;
-  /// Also take poses, structure and control points from the listing; otherwise
-  /// they are left out, for a scene that is to be solved anew.
-  bool read_poses = false;
 };
 
 /// What OpenMVG's files hold before any pose is known: the input of the

@@ -1,12 +1,10 @@
 #include "third_party_adapters/openmvg/matches.h"
 
-#include <ostream>
 #include <utility>
 
 #include "lowlap/core/atomic_file.h"
+#include "lowlap/core/internal/token_reader.h"
 #include "third_party_adapters/openmvg/internal/archive_reader.h"
-#include "third_party_adapters/openmvg/internal/archive_writer.h"
-#include "third_party_adapters/openmvg/internal/text_reader.h"
 
 namespace lowlap::openmvg {
 namespace {
@@ -34,82 +32,39 @@ void Insert(ViewPair pair, std::vector<FeatureMatch> matches,
   result[pair] = std::move(matches);
 }
 
-/// Unsigned numbers separated by any white space, as OpenMVG reads them.
-class NumberReader {
- public:
-  explicit NumberReader(std::string_view text) : lines_(text) {}
-
-  bool AtEnd() {
-    while (token_.empty()) {
-      token_ = internal::TakeToken(line_);
-      if (token_.empty() && !lines_.Next(line_)) return true;
-    }
-    return false;
-  }
-  template <class T>
-  bool Take(T& value) {
-    if (AtEnd() || !internal::ParseNumber(token_, value)) return false;
-    token_ = {};
-    return true;
-  }
-  /// What was found where Take() failed, and where.
-  tl::unexpected<Error> Failure(const std::string& expected,
-                                const std::string& file) {
-    const std::string found =
-        AtEnd() ? "the end of the file"
-                : "'" + std::string(token_.substr(0, 32)) + "'";
-    return MakeError(ErrorCode::kParse, expected + " expected, not " + found,
-                     file, lines_.Place());
-  }
-  std::string Place() const { return lines_.Place(); }
-
- private:
-  internal::LineReader lines_;
-  std::string_view line_;
-  std::string_view token_;
-};
-
 }  // namespace
 
 Result<PairMatches> ParseMatchesText(std::string_view text,
                                      const std::string& file) {
   PairMatches result;
-  NumberReader numbers(text);
-  while (!numbers.AtEnd()) {
+  TokenReader reader(text, file);
+  while (reader.status() && !reader.AtEnd()) {
     ViewPair pair;
-    if (!numbers.Take(pair.first) || !numbers.Take(pair.second)) {
-      return numbers.Failure("a view id", file);
-    }
-    if (pair.first == pair.second) {
-      return MakeError(ErrorCode::kParse, SelfPairMessage(pair.first), file,
-                       numbers.Place());
-    }
-    std::size_t count = 0;
-    if (!numbers.Take(count)) {
-      return numbers.Failure("a number of matches", file);
-    }
+    pair.first = reader.Next<ViewId>("a view id");
+    pair.second = reader.Next<ViewId>("a view id");
+    if (pair.first == pair.second) reader.Fail(SelfPairMessage(pair.first));
+    const auto count = reader.Next<std::size_t>("a number of matches");
     // Each match takes four characters, which bounds what is reserved.
     if (count > text.size() / 4 + 1) {
-      return MakeError(ErrorCode::kParse,
-                       std::to_string(count) +
-                           " matches do not fit into the rest of the file",
-                       file, numbers.Place());
+      reader.Fail(std::to_string(count) +
+                  " matches do not fit into the rest of the file");
     }
+    if (!reader.status()) break;
     std::vector<FeatureMatch> matches(count);
     for (FeatureMatch& match : matches) {
-      if (!numbers.Take(match.first) || !numbers.Take(match.second)) {
-        return numbers.Failure("a feature index", file);
-      }
+      match.first = reader.Next<FeatureIndex>("a feature index");
+      match.second = reader.Next<FeatureIndex>("a feature index");
     }
     Insert(pair, std::move(matches), result);
   }
+  if (!reader.status()) return reader.error();
   return result;
 }
 
 Result<PairMatches> ParseMatchesBin(std::string_view bytes,
                                     const std::string& file) {
   PairMatches result;
-  internal::ArchiveReader in(bytes, file);
+  ArchiveReader in(bytes, file);
   const std::size_t num_pairs = in.Count(16);
   for (std::size_t n = 0; n < num_pairs && in.ok(); ++n) {
     const std::size_t place = in.offset();
@@ -134,46 +89,6 @@ Result<PairMatches> ReadMatches(const std::string& path) {
   if (!content) return tl::unexpected<Error>(content.error());
   return is_text ? ParseMatchesText(*content, path)
                  : ParseMatchesBin(*content, path);
-}
-
-std::string SerializeMatchesText(const PairMatches& matches) {
-  std::string text;
-  const auto append = [&text](std::size_t a, std::size_t b) {
-    text += std::to_string(a) + " " + std::to_string(b) + "\n";
-  };
-  for (const auto& [pair, pair_matches] : matches) {
-    append(pair.first, pair.second);
-    text += std::to_string(pair_matches.size()) + "\n";
-    for (const FeatureMatch& match : pair_matches) {
-      append(match.first, match.second);
-    }
-  }
-  return text;
-}
-
-std::string SerializeMatchesBin(const PairMatches& matches) {
-  internal::ArchiveWriter out;
-  out.Count(matches.size());
-  for (const auto& [pair, pair_matches] : matches) {
-    out.U32(pair.first);
-    out.U32(pair.second);
-    out.Count(pair_matches.size());
-    for (const FeatureMatch& match : pair_matches) {
-      out.U32(match.first);
-      out.U32(match.second);
-    }
-  }
-  return out.TakeBytes();
-}
-
-Status WriteMatches(const PairMatches& matches, const std::string& path) {
-  const bool is_text = EndsWith(path, ".txt");
-  if (!is_text && !EndsWith(path, ".bin")) return UnknownExtension(path);
-  return WriteFileAtomically(path, [&](std::ostream& stream) -> Status {
-    stream << (is_text ? SerializeMatchesText(matches)
-                       : SerializeMatchesBin(matches));
-    return {};
-  });
 }
 
 }  // namespace lowlap::openmvg

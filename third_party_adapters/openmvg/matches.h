@@ -24,19 +24,4 @@ Result<PairMatches> ParseMatchesText(std::string_view text,
 Result<PairMatches> ParseMatchesBin(std::string_view bytes,
                                     const std::string& file = {});
 
-/// Writes the form that the extension names.
-Status WriteMatches(const PairMatches& matches, const std::string& path);
-std::string SerializeMatchesText(const PairMatches& matches);
-std::string SerializeMatchesBin(const PairMatches& matches);
-
-/// A pair list, always text even when it is named pairs.bin: each line
-/// "I J [K ...]" means the pairs (I, J), (I, K), ... Sorted, without
-/// repetition. Errors: kParse for a line with fewer than two ids or with I
-/// among the others.
-Result<std::vector<ViewPair>> ReadPairList(const std::string& path);
-Result<std::vector<ViewPair>> ParsePairList(std::string_view text,
-                                            const std::string& file = {});
-Status WritePairList(const std::vector<ViewPair>& pairs,
-                     const std::string& path);
-
 }  // namespace lowlap::openmvg

@@ -1,7 +1,5 @@
 #include "third_party_adapters/strecha/strecha.h"
 
-#include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <system_error>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "lowlap/core/atomic_file.h"
+#include "lowlap/core/internal/token_reader.h"
 #include "lowlap/geometry/rotation.h"
 
 namespace lowlap::strecha {
@@ -20,37 +19,15 @@ namespace fs = std::filesystem;
 Result<std::vector<double>> ParseNumbers(std::string_view text,
                                          std::size_t count,
                                          const std::string& file) {
-  constexpr std::string_view kWhiteSpace = " \t\r\n";
+  TokenReader reader(text, file);
   std::vector<double> numbers;
-  std::size_t line = 1, counted_to = 0;
-  const auto place = [&](std::size_t offset) {
-    for (; counted_to < offset; ++counted_to) line += text[counted_to] == '\n';
-    return "line " + std::to_string(line);
-  };
-  for (std::size_t start = text.find_first_not_of(kWhiteSpace);
-       start != std::string_view::npos;) {
-    const std::size_t end =
-        std::min(text.find_first_of(kWhiteSpace, start), text.size());
-    double value = 0;
-    const auto [stop, error] =
-        std::from_chars(text.data() + start, text.data() + end, value);
-    if (error != std::errc() || stop != text.data() + end ||
-        !std::isfinite(value)) {
-      return MakeError(ErrorCode::kParse,
-                       "'" +
-                           std::string(text.substr(
-                               start, std::min<std::size_t>(end - start, 32))) +
-                           "' is not a finite number",
-                       file, place(start));
-    }
+  while (reader.status() && !reader.AtEnd()) {
     if (numbers.size() == count) {
-      return MakeError(ErrorCode::kParse,
-                       "more than " + std::to_string(count) + " numbers", file,
-                       place(start));
+      reader.Fail("more than " + std::to_string(count) + " numbers");
     }
-    numbers.push_back(value);
-    start = text.find_first_not_of(kWhiteSpace, end);
+    numbers.push_back(reader.Next<double>("a finite number"));
   }
+  if (!reader.status()) return reader.error();
   if (numbers.size() < count) {
     return MakeError(ErrorCode::kParse,
                      std::to_string(count) + " numbers are expected, not " +
@@ -163,7 +140,12 @@ Result<std::map<std::string, Camera>> ReadCameras(const std::string& dir) {
   std::map<std::string, Camera> cameras;
   fs::directory_iterator entry(folder, error);
   if (error) {
-    return MakeError(ErrorCode::kNotFound, "no such folder", folder.string());
+    const bool is_missing = error == std::errc::no_such_file_or_directory ||
+                            error == std::errc::not_a_directory;
+    return MakeError(
+        is_missing ? ErrorCode::kNotFound : ErrorCode::kIo,
+        is_missing ? "no such folder" : "cannot be opened: " + error.message(),
+        folder.string());
   }
   for (; entry != fs::directory_iterator(); entry.increment(error)) {
     if (entry->path().extension() != extension) continue;

@@ -1,18 +1,46 @@
 #pragma once
 
-#include <functional>
-#include <iosfwd>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "lowlap/core/result.h"
 
 namespace lowlap {
 
-/// Writes a file so that it appears whole or not at all: `write` fills a
-/// stream on a temporary name in the same folder, which is then renamed. On
-/// any failure the temporary file is removed and `path` is left as it was.
-Status WriteFileAtomically(const std::string& path,
-                           const std::function<Status(std::ostream&)>& write);
+/// Files that are written together: each appears whole or not at all, and none
+/// of them before all are prepared.
+///
+/// A file is prepared under a temporary name in its folder (NAME.tmp0), which
+/// is locked while the writer lives, and then renamed. What a killed writer
+/// left is taken over or removed by the next one. A symbolic link stays, and
+/// the file that it names is written. Devices and pipes are written to, all of
+/// them before the first file appears. Errors are kIo with the path and the
+/// system's reason.
+class FileSet {
+ public:
+  FileSet() = default;
+  /// Removes what was prepared and not committed.
+  ~FileSet();
+  FileSet(const FileSet&) = delete;
+  FileSet& operator=(const FileSet&) = delete;
+
+  Status Add(const std::string& path, std::string_view content);
+  Status Commit();
+
+ private:
+  struct Output {
+    std::string path;
+    std::string target;     // `path` with its links followed
+    std::string temporary;  // empty: written to directly
+    std::string content;    // of what is written to directly
+    int file = -1;
+  };
+  std::vector<Output> outputs_;
+};
+
+/// A set of one.
+Status WriteFileAtomically(const std::string& path, std::string_view content);
 
 /// The whole file as bytes; kNotFound or kIo with the path otherwise.
 Result<std::string> ReadWholeFile(const std::string& path);

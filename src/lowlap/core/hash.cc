@@ -1,21 +1,24 @@
 #include "lowlap/core/hash.h"
 
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include "lowlap/core/format.h"
+
 namespace lowlap {
 
+struct Hash128::State {
+  XXH3_state_t hash;
+};
+
+Hash128::Hash128() : state_(std::make_unique<State>()) {
+  XXH3_128bits_reset(&state_->hash);
+}
+
+Hash128::~Hash128() = default;
+
 void Hash128::AddBytes(std::string_view bytes) {
-  // Times the prime 2^88 + 0x13b, in two halves.
-  constexpr std::uint64_t kPrimeLow = 0x13b;
-  std::uint64_t high = high_, low = low_;
-  for (const char byte : bytes) {
-    low ^= static_cast<unsigned char>(byte);
-    const std::uint64_t carry =
-        ((low >> 32) * kPrimeLow + (((low & 0xffffffffu) * kPrimeLow) >> 32)) >>
-        32;
-    high = high * kPrimeLow + carry + (low << 24);
-    low *= kPrimeLow;
-  }
-  high_ = high;
-  low_ = low;
+  XXH3_128bits_update(&state_->hash, bytes.data(), bytes.size());
 }
 
 void Hash128::Add(std::string_view text) {
@@ -28,15 +31,14 @@ void Hash128::Add(const Value& value) {
   Add(value.low);
 }
 
+Hash128::Value Hash128::value() const {
+  const XXH128_hash_t hash = XXH3_128bits_digest(&state_->hash);
+  return {hash.high64, hash.low64};
+}
+
 std::string ToHex(const Hash128::Value& value) {
-  constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const std::uint64_t half : {value.high, value.low}) {
-    for (int shift = 60; shift >= 0; shift -= 4) {
-      text += kDigits[half >> shift & 0xf];
-    }
-  }
-  return text;
+  return Format("%016llx%016llx", static_cast<unsigned long long>(value.high),
+                static_cast<unsigned long long>(value.low));
 }
 
 }  // namespace lowlap

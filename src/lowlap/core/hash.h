@@ -2,15 +2,16 @@
 
 #include <cstdint>
 #include <cstring>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <type_traits>
 
 namespace lowlap {
 
-/// FNV-1a of 128 bits (Fowler, Noll, Vo; RFC 9923) over everything added, in
-/// order. Tells contents apart and notices damage; no defence against somebody
-/// who looks for a collision.
+/// XXH3 of 128 bits (Collet, xxHash) over everything added, in order. Tells
+/// contents apart and notices damage; no defence against somebody who looks for
+/// a collision.
 class Hash128 {
  public:
   struct Value {
@@ -22,6 +23,9 @@ class Hash128 {
     }
     friend bool operator!=(const Value& a, const Value& b) { return !(a == b); }
   };
+
+  Hash128();
+  ~Hash128();
 
   void AddBytes(std::string_view bytes);
   /// Length and bytes, so that the parts of a list cannot run together.
@@ -37,11 +41,11 @@ class Hash128 {
     AddBytes({bits, sizeof number});
   }
 
-  Value value() const { return {high_, low_}; }
+  Value value() const;
 
  private:
-  std::uint64_t high_ = 0x6c62272e07bb0142ull;
-  std::uint64_t low_ = 0x62b821756295c58dull;
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 /// 32 hexadecimal digits.

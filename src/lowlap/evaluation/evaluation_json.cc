@@ -1,7 +1,6 @@
 #include <nlohmann/json.hpp>
 
 #include "lowlap/evaluation/pose_errors.h"
-#include "lowlap/evaluation/relative_errors.h"
 
 namespace lowlap {
 namespace {
@@ -62,38 +61,6 @@ std::string ToJson(const PoseEvaluation& evaluation) {
   }
   json["views"] = std::move(views);
   return Dump(json);
-}
-
-std::string ToJson(const RelativePoseEvaluation& evaluation) {
-  Json pairs = Json::array();
-  for (const RelativePoseError& error : evaluation.pairs) {
-    Json pair = {{"views", {error.views.first, error.views.second}},
-                 {"rotation_error_deg", error.rotation_error_deg}};
-    if (error.direction_error_deg) {
-      pair["direction_error_deg"] = *error.direction_error_deg;
-    }
-    pairs.push_back(std::move(pair));
-  }
-  return Dump({{"num_without_truth", evaluation.num_without_truth},
-               {"rotation_deg", ToJsonValue(evaluation.rotation_deg)},
-               {"direction_deg", ToJsonValue(evaluation.direction_deg)},
-               {"pairs", std::move(pairs)}});
-}
-
-std::string ToJson(const ScaleRatioEvaluation& evaluation) {
-  Json ratios = Json::array();
-  for (const ScaleRatioError& error : evaluation.ratios) {
-    ratios.push_back(
-        {{"views", {error.views.first, error.views.middle, error.views.last}},
-         {"verdict", RatioVerdictName(error.verdict)},
-         {"true_log_ratio", error.true_log_ratio},
-         {"log_error", error.log_error},
-         {"stddev", error.stddev}});
-  }
-  return Dump({{"num_no_candidates", evaluation.num_no_candidates},
-               {"num_without_truth", evaluation.num_without_truth},
-               {"abs_log_error", ToJsonValue(evaluation.abs_log_error)},
-               {"ratios", std::move(ratios)}});
 }
 
 }  // namespace lowlap

@@ -1,6 +1,6 @@
 #include "lowlap/core/format.h"
+#include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/evaluation/pose_errors.h"
-#include "lowlap/evaluation/relative_errors.h"
 
 namespace lowlap {
 namespace {

@@ -64,11 +64,8 @@ Status WriteOverlay(const GrayImage& image, const ViewFeatures& features,
     return {};
   };
   if (const Status s = internal::CatchOpenCv("overlay", encode); !s) return s;
-  return WriteFileAtomically(path, [&](std::ostream& stream) -> Status {
-    stream.write(reinterpret_cast<const char*>(png.data()),
-                 static_cast<std::streamsize>(png.size()));
-    return {};
-  });
+  return WriteFileAtomically(
+      path, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
 }  // namespace lowlap

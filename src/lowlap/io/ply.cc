@@ -4,11 +4,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <ostream>
 #include <utility>
 #include <vector>
 
-#include "lowlap/core/atomic_file.h"
 #include "lowlap/core/median.h"
 #include "lowlap/io/internal/byte_archive.h"
 
@@ -27,7 +25,7 @@ struct Drawing {
   bool is_finite = true;
 
   std::uint32_t AddVertex(const Vec3& position, const Color& color) {
-    internal::ByteWriter writer(vertices);
+    ByteWriter writer(vertices);
     writer.Reals(position.data(), 3);
     for (const std::uint8_t channel : color) writer.Integer(channel);
     is_finite = is_finite && position.allFinite();
@@ -35,7 +33,7 @@ struct Drawing {
   }
 
   void AddEdge(std::uint32_t a, std::uint32_t b, const Color& color) {
-    internal::ByteWriter writer(edges);
+    ByteWriter writer(edges);
     writer.Integer(a);
     writer.Integer(b);
     for (const std::uint8_t channel : color) writer.Integer(channel);
@@ -115,24 +113,23 @@ Drawing Draw(const Scene& scene) {
 
 }  // namespace
 
-Status WritePly(const Scene& scene, const std::string& path) {
+Result<std::string> FormatPly(const Scene& scene) {
   const Drawing drawing = Draw(scene);
   if (!drawing.is_finite) {
     return MakeError(ErrorCode::kInvalidScene,
-                     "a position to draw is not finite", path);
+                     "a position to draw is not finite");
   }
-  return WriteFileAtomically(path, [&](std::ostream& stream) -> Status {
-    stream << "ply\nformat binary_little_endian 1.0\ncomment lowlap scene\n"
-           << "element vertex " << drawing.vertex_count << "\n"
-           << "property double x\nproperty double y\nproperty double z\n"
-           << "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-           << "element edge " << drawing.edge_count << "\n"
-           << "property int vertex1\nproperty int vertex2\n"
-           << "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-           << "end_header\n"
-           << drawing.vertices << drawing.edges;
-    return {};
-  });
+  return "ply\nformat binary_little_endian 1.0\ncomment lowlap scene\n"
+         "element vertex " +
+         std::to_string(drawing.vertex_count) +
+         "\nproperty double x\nproperty double y\nproperty double z\n"
+         "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+         "element edge " +
+         std::to_string(drawing.edge_count) +
+         "\nproperty int vertex1\nproperty int vertex2\n"
+         "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+         "end_header\n" +
+         drawing.vertices + drawing.edges;
 }
 
 }  // namespace lowlap

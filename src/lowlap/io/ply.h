@@ -7,8 +7,8 @@
 
 namespace lowlap {
 
-/// Writes what a scene looks like as a binary little-endian PLY for viewers
-/// (MeshLab, CloudCompare, Blender), in world coordinates, atomically.
+/// What a scene looks like as a binary little-endian PLY for viewers (MeshLab,
+/// CloudCompare, Blender), in world coordinates.
 ///
 /// Vertices (double x y z, uchar red green blue) come in this order: the points
 /// of `structure` (white), the two ends of every line of `line_structure`
@@ -18,8 +18,7 @@ namespace lowlap {
 /// one, is its centre alone.
 ///
 /// The frusta are a quarter as deep as the median distance from a camera centre
-/// to its nearest neighbour. Errors: kIo, and kInvalidScene for a number that
-/// is not finite.
-Status WritePly(const Scene& scene, const std::string& path);
+/// to its nearest neighbour. kInvalidScene for a number that is not finite.
+Result<std::string> FormatPly(const Scene& scene);
 
 }  // namespace lowlap

@@ -1,12 +1,12 @@
 #include "lowlap/io/scene_binary.h"
 
+#include <zlib.h>
+
 #include <array>
-#include <ostream>
 #include <string_view>
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/io/internal/byte_archive.h"
-#include "lowlap/io/internal/crc32.h"
 #include "lowlap/io/internal/scale_ratio_records.h"
 #include "lowlap/io/internal/scene_records.h"
 #include "lowlap/io/internal/transfer.h"
@@ -14,9 +14,6 @@
 
 namespace lowlap {
 namespace {
-
-using internal::ByteReader;
-using internal::ByteWriter;
 
 // Like PNG's, the first byte is not text and the last ones show a file that was
 // sent as text.
@@ -30,35 +27,40 @@ constexpr std::array<std::string_view, 14> kSections = {
     "ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT",
     "RELP", "PTRK", "LTRK", "RATI", "LINE", "COPL", "RATD"};
 
+std::uint32_t Crc32(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
 template <class Archive, class SceneType>
 void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
   if (tag == "ROOT") {
     archive.Text(scene.root_path);
   } else if (tag == "VIEW") {
-    TransferMap(archive, scene.views, internal::kTransferView);
+    TransferMap(archive, scene.views, kTransferView);
   } else if (tag == "INTR") {
-    TransferMap(archive, scene.intrinsics, internal::kTransferIntrinsic);
+    TransferMap(archive, scene.intrinsics, kTransferIntrinsic);
   } else if (tag == "POSE") {
-    TransferMap(archive, scene.poses, internal::kTransferPose);
+    TransferMap(archive, scene.poses, kTransferPose);
   } else if (tag == "STRU") {
-    TransferMap(archive, scene.structure, internal::kTransferLandmark);
+    TransferMap(archive, scene.structure, kTransferLandmark);
   } else if (tag == "CTRL") {
-    TransferMap(archive, scene.control_points, internal::kTransferLandmark);
+    TransferMap(archive, scene.control_points, kTransferLandmark);
   } else if (tag == "FEAT") {
-    TransferMap(archive, scene.features, internal::kTransferFeatures);
+    TransferMap(archive, scene.features, kTransferFeatures);
   } else if (tag == "RELP") {
     TransferRelativePoses(archive, scene.relative_poses);
   } else if (tag == "PTRK") {
-    TransferMap(archive, scene.point_tracks, internal::kTransferTrack);
+    TransferMap(archive, scene.point_tracks, kTransferTrack);
   } else if (tag == "LTRK") {
-    TransferMap(archive, scene.line_tracks, internal::kTransferTrack);
+    TransferMap(archive, scene.line_tracks, kTransferTrack);
   } else if (tag == "RATI") {
-    TransferVector(archive, scene.scale_ratios, internal::kScaleRatioMinBytes,
-                   internal::kTransferScaleRatio);
+    TransferVector(archive, scene.scale_ratios, kScaleRatioMinBytes,
+                   kTransferScaleRatio);
   } else if (tag == "LINE") {
-    TransferMap(archive, scene.line_structure, internal::kTransferLine);
+    TransferMap(archive, scene.line_structure, kTransferLine);
   } else if (tag == "COPL") {
-    TransferVector(archive, scene.coplanar_pairs, 8, internal::kTransferMatch);
+    TransferVector(archive, scene.coplanar_pairs, 8, kTransferMatch);
   } else if (tag == "RATD") {
     TransferRatioDetails(archive, scene.scale_ratios);
   }
@@ -78,7 +80,7 @@ void ReadSection(std::string_view tag, ByteReader& file, std::size_t size,
   }
   const std::size_t offset = size - file.BytesLeft();
   const std::string_view payload = file.Take(length);
-  if (internal::Crc32(payload) != checksum) {
+  if (Crc32(payload) != checksum) {
     file.Fail("section " + name + " is damaged: its checksum is wrong");
   }
   ByteReader section(payload, "section " + name + ", ", offset);
@@ -94,12 +96,12 @@ Scene ReadSections(const std::string& bytes) {
   std::uint32_t version = 0, section_count = 0;
   file.Integer(version);
   if (version < kOldestVersion || version > kVersion) {
-    throw internal::Failure{Error{
-        ErrorCode::kUnsupported,
-        "version " + std::to_string(version) + " is not " +
-            std::to_string(kOldestVersion) + " or " + std::to_string(kVersion),
-        {},
-        "byte " + std::to_string(kMagic.size())}};
+    throw Failure{Error{ErrorCode::kUnsupported,
+                        "version " + std::to_string(version) + " is not " +
+                            std::to_string(kOldestVersion) + " or " +
+                            std::to_string(kVersion),
+                        {},
+                        "byte " + std::to_string(kMagic.size())}};
   }
   file.Integer(section_count);
   const std::size_t num_sections = kSections.size() - (version < kVersion);
@@ -128,7 +130,7 @@ Result<Scene> ParseSceneBinary(const std::string& bytes,
   Result<Scene> scene;
   try {
     scene = ReadSections(bytes);
-  } catch (internal::Failure& failure) {
+  } catch (Failure& failure) {
     scene = tl::unexpected<Error>(std::move(failure.error));
   }
   if (scene) {
@@ -159,7 +161,7 @@ Result<std::string> FormatSceneBinary(const Scene& scene) {
     ByteWriter writer(payload);
     TransferSection(tag, writer, scene);
     bytes += tag;
-    bytes += Encoded(internal::Crc32(payload));
+    bytes += Encoded(Crc32(payload));
     bytes += Encoded(static_cast<std::uint64_t>(payload.size()));
     bytes += payload;
   }
@@ -172,10 +174,7 @@ Status WriteSceneBinary(const Scene& scene, const std::string& path) {
     bytes.error().file = path;
     return tl::unexpected<Error>(std::move(bytes).error());
   }
-  return WriteFileAtomically(path, [&](std::ostream& stream) -> Status {
-    stream.write(bytes->data(), static_cast<std::streamsize>(bytes->size()));
-    return {};
-  });
+  return WriteFileAtomically(path, *bytes);
 }
 
 }  // namespace lowlap

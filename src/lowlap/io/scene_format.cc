@@ -4,82 +4,83 @@
 #include <cctype>
 #include <filesystem>
 
+#include "lowlap/io/ply.h"
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/io/scene_json.h"
 
 namespace lowlap {
-namespace {
 
-// Whether the path is no folder and ends with an extension, in any case.
-bool IsFileWithExtension(const std::string& path,
-                         const std::string& lower_case_extension) {
+bool SceneFormat::Recognizes(const std::string& path) const {
   std::error_code ignored;
-  std::string extension = std::filesystem::path(path).extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
+  if (std::filesystem::is_directory(path, ignored)) {
+    return recognizes_folder && recognizes_folder(path);
+  }
+  std::string own = std::filesystem::path(path).extension().string();
+  std::transform(own.begin(), own.end(), own.begin(),
                  [](unsigned char c) { return std::tolower(c); });
-  return extension == lower_case_extension &&
-         !std::filesystem::is_directory(path, ignored);
-}
-
-class JsonFormat : public SceneFormat {
- public:
-  std::string Name() const override { return "json"; }
-  std::string Description() const override {
-    return "sfm_data JSON with lowlap's own sections, read by OpenMVG (*.json)";
-  }
-  bool Recognizes(const std::string& path) const override {
-    return IsFileWithExtension(path, ".json");
-  }
-  Result<Scene> Read(const std::string& path) const override {
-    return ReadSceneJson(path);
-  }
-  bool CanWrite() const override { return true; }
-  Status Write(const Scene& scene, const std::string& path) const override {
-    return WriteSceneJson(scene, path);
-  }
-};
-
-class BinaryFormat : public SceneFormat {
- public:
-  std::string Name() const override { return "lowlap"; }
-  std::string Description() const override {
-    return "the same content in binary, fast to load (*.lowlap)";
-  }
-  bool Recognizes(const std::string& path) const override {
-    return IsFileWithExtension(path, ".lowlap");
-  }
-  Result<Scene> Read(const std::string& path) const override {
-    return ReadSceneBinary(path);
-  }
-  bool CanWrite() const override { return true; }
-  Status Write(const Scene& scene, const std::string& path) const override {
-    return WriteSceneBinary(scene, path);
-  }
-};
-
-}  // namespace
-
-Status SceneFormat::Write(const Scene&, const std::string& path) const {
-  return MakeError(ErrorCode::kUnsupported,
-                   "the format " + Name() + " cannot be written", path);
+  return !extension.empty() && own == extension;
 }
 
 SceneFormats OwnSceneFormats() {
-  SceneFormats formats;
-  formats.push_back(std::make_unique<JsonFormat>());
-  formats.push_back(std::make_unique<BinaryFormat>());
-  return formats;
+  SceneFormat json;
+  json.name = "json";
+  json.description =
+      "sfm_data JSON with lowlap's own sections, read by OpenMVG (*.json)";
+  json.extension = ".json";
+  json.recognizes_start = [](std::string_view start) {
+    const std::size_t first = start.find_first_not_of(" \t\r\n");
+    return first != start.npos && start[first] == '{';
+  };
+  json.read = [](const std::string& path, SceneNotes*) {
+    return ReadSceneJson(path);
+  };
+  json.write = WriteOneFile(FormatSceneJson);
+
+  SceneFormat binary;
+  binary.name = "lowlap";
+  binary.description = "the same content in binary, fast to load (*.lowlap)";
+  binary.extension = ".lowlap";
+  binary.read = [](const std::string& path, SceneNotes*) {
+    return ReadSceneBinary(path);
+  };
+  binary.write = WriteOneFile(FormatSceneBinary);
+
+  SceneFormat ply;
+  ply.name = "ply";
+  ply.description =
+      "points, lines and cameras for viewers (*.ply), written only";
+  ply.extension = ".ply";
+  ply.write = WriteOneFile(FormatPly);
+  return {std::move(json), std::move(binary), std::move(ply)};
+}
+
+std::string DescribeSceneFormats(const SceneFormats& formats) {
+  std::string text;
+  for (const SceneFormat& format : formats) {
+    text += "  " + format.name + ": " + format.description + "\n";
+  }
+  return text;
 }
 
 Result<const SceneFormat*> FindSceneFormat(const SceneFormats& formats,
                                            const std::string& path) {
-  std::string known;
-  for (const auto& format : formats) {
-    if (format->Recognizes(path)) return format.get();
-    known += "\n  " + format->Name() + ": " + format->Description();
+  for (const SceneFormat& format : formats) {
+    if (format.Recognizes(path)) return &format;
   }
-  return MakeError(ErrorCode::kUnsupported,
-                   "not a known scene format; known are" + known, path);
+  return MakeError(
+      ErrorCode::kUnsupported,
+      "not a known scene format; known are\n" + DescribeSceneFormats(formats),
+      path);
+}
+
+Result<const SceneFormat*> FindNamedSceneFormat(const SceneFormats& formats,
+                                                const std::string& name) {
+  for (const SceneFormat& format : formats) {
+    if (format.name == name) return &format;
+  }
+  return MakeError(ErrorCode::kUnsupported, "there is no scene format '" +
+                                                name + "'; there are:\n" +
+                                                DescribeSceneFormats(formats));
 }
 
 }  // namespace lowlap

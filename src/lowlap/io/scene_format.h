@@ -1,41 +1,78 @@
 #pragma once
 
-#include <memory>
+#include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "lowlap/core/atomic_file.h"
 #include "lowlap/core/result.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
 
-/// A way to keep a scene on disk. A path is a file or a folder, as the format
-/// likes. Implementations have no state and may be used by several threads.
-class SceneFormat {
- public:
-  virtual ~SceneFormat() = default;
+/// One sentence for each kind of thing that a format cannot hold, or a reader
+/// does not take, and that was changed or left out.
+using SceneNotes = std::vector<std::string>;
 
+/// A way to keep a scene on disk. A path is a file or a folder, as the format
+/// likes. The functions have no state and may be called by several threads.
+struct SceneFormat {
   /// A short word to select the format by ("lowlap", "openmvg-json", ...).
-  virtual std::string Name() const = 0;
+  std::string name;
   /// One line for a person.
-  virtual std::string Description() const = 0;
-  /// Whether the path looks like this format. The path need not exist: it may
-  /// be one to write to.
-  virtual bool Recognizes(const std::string& path) const = 0;
-  virtual Result<Scene> Read(const std::string& path) const = 0;
-  virtual bool CanWrite() const = 0;
-  /// kUnsupported where CanWrite() is false.
-  virtual Status Write(const Scene& scene, const std::string& path) const;
+  std::string description;
+  /// In lower case, with its dot; empty if no extension tells the format.
+  std::string extension;
+  /// Whether the first bytes of a file are those of the format; may be null.
+  std::function<bool(std::string_view)> recognizes_start;
+  /// Whether a folder is of the format; may be null.
+  std::function<bool(const std::string& folder)> recognizes_folder;
+  /// Null if it is written only. `notes` is never null.
+  std::function<Result<Scene>(const std::string& path, SceneNotes* notes)> read;
+  /// Adds what is to be written to `files`; null if it is read only.
+  std::function<Result<SceneNotes>(const Scene&, const std::string& path,
+                                   FileSet* files)>
+      write;
+
+  /// By extension or folder. The path need not exist: it may be one to write.
+  bool Recognizes(const std::string& path) const;
 };
 
-using SceneFormats = std::vector<std::unique_ptr<const SceneFormat>>;
+using SceneFormats = std::vector<SceneFormat>;
 
-/// The formats of this folder: "json" (*.json) and "lowlap" (*.lowlap).
+/// The formats of this folder: "json" (*.json), "lowlap" (*.lowlap), and "ply"
+/// (*.ply), which is written only.
 SceneFormats OwnSceneFormats();
+
+/// A `write` for formats that keep everything in one file.
+template <class FormatScene>
+auto WriteOneFile(FormatScene format) {
+  return [format](const Scene& scene, const std::string& path,
+                  FileSet* files) -> Result<SceneNotes> {
+    const Result<std::string> bytes = format(scene);
+    Status status;
+    if (bytes) {
+      status = files->Add(path, *bytes);
+    } else {
+      status = tl::unexpected<Error>(bytes.error());
+    }
+    if (status) return SceneNotes();
+    if (status.error().file.empty()) status.error().file = path;
+    return tl::unexpected<Error>(std::move(status.error()));
+  };
+}
 
 /// The first format that recognises the path, or kUnsupported with the list of
 /// those that exist. The pointer belongs to `formats`.
 Result<const SceneFormat*> FindSceneFormat(const SceneFormats& formats,
                                            const std::string& path);
+
+/// The format called so, or kUnsupported with the list.
+Result<const SceneFormat*> FindNamedSceneFormat(const SceneFormats& formats,
+                                                const std::string& name);
+
+/// One line per format, for help texts and messages.
+std::string DescribeSceneFormats(const SceneFormats& formats);
 
 }  // namespace lowlap

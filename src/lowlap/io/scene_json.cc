@@ -1,7 +1,5 @@
 #include "lowlap/io/scene_json.h"
 
-#include <ostream>
-
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/io/internal/json_tree.h"
 #include "lowlap/io/internal/json_value.h"
@@ -11,15 +9,15 @@
 namespace lowlap {
 namespace {
 
-Result<Scene> SceneFromTree(const internal::JsonTree& tree) {
+Result<Scene> SceneFromTree(const JsonTree& tree) {
   try {
-    const internal::JsonValue root(tree, 0);
-    Scene scene = internal::ReadOpenMvgSections(root);
+    const JsonValue root(tree, 0);
+    Scene scene = ReadOpenMvgSections(root);
     if (const auto own = root.Find("lowlap")) {
-      internal::ReadOwnSections(*own, scene);
+      ReadOwnSections(*own, scene);
     }
     return scene;
-  } catch (internal::Failure& failure) {
+  } catch (Failure& failure) {
     return tl::unexpected<Error>(std::move(failure.error));
   }
 }
@@ -27,7 +25,7 @@ Result<Scene> SceneFromTree(const internal::JsonTree& tree) {
 }  // namespace
 
 Result<Scene> ParseSceneJson(const std::string& text, const std::string& file) {
-  Result<Scene> scene = internal::ParseJson(text).and_then(SceneFromTree);
+  Result<Scene> scene = ParseJson(text).and_then(SceneFromTree);
   if (scene) {
     if (Status valid = ValidateScene(*scene); !valid) {
       scene = tl::unexpected<Error>(std::move(valid).error());
@@ -48,9 +46,9 @@ Result<std::string> FormatSceneJson(const Scene& scene) {
     return tl::unexpected<Error>(std::move(valid).error());
   }
   std::string text = "{\n";
-  internal::AppendOpenMvgSections(scene, text);
+  AppendOpenMvgSections(scene, text);
   text += ",\n\"lowlap\": {\n";
-  internal::AppendOwnSections(scene, text);
+  AppendOwnSections(scene, text);
   text += "\n}\n}\n";
   return text;
 }
@@ -61,10 +59,7 @@ Status WriteSceneJson(const Scene& scene, const std::string& path) {
     text.error().file = path;
     return tl::unexpected<Error>(std::move(text).error());
   }
-  return WriteFileAtomically(path, [&](std::ostream& stream) -> Status {
-    stream.write(text->data(), static_cast<std::streamsize>(text->size()));
-    return {};
-  });
+  return WriteFileAtomically(path, *text);
 }
 
 }  // namespace lowlap

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "lowlap/matching/pair_selection.h"
-#include "lowlap/pipeline/cached_measurements.h"
+#include "lowlap/pipeline/internal/cached_measurements.h"
 #include "lowlap/pipeline/scene_reduction.h"
 
 namespace lowlap {

@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "lowlap/features/image.h"
-#include "lowlap/pipeline/exif.h"
+#include "lowlap/pipeline/internal/exif.h"
 
 namespace lowlap {
 namespace {

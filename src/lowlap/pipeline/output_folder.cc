@@ -4,14 +4,13 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <ostream>
 #include <system_error>
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/io/ply.h"
 #include "lowlap/io/scene_binary.h"
 #include "lowlap/io/scene_json.h"
-#include "lowlap/pipeline/run_report.h"
+#include "lowlap/pipeline/internal/run_report.h"
 
 namespace lowlap {
 namespace fs = std::filesystem;
@@ -45,7 +44,7 @@ Status PrepareOutputFolder(const std::string& folder) {
   if (Status possible = CheckOutputFolder(folder); !possible) return possible;
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder)) {
+  if (error || !fs::is_directory(folder, error)) {
     return MakeError(ErrorCode::kIo,
                      "cannot be made a folder" +
                          (error ? ": " + error.message() : std::string()),
@@ -61,39 +60,34 @@ Status WriteOutputs(Scene scene, const RunSummary& summary,
     const fs::path absolute = fs::absolute(scene.root_path, error);
     if (!error) scene.root_path = absolute.lexically_normal().string();
   }
-  const auto path = [&](const char* name) {
-    return (fs::path(folder) / name).string();
+  if (Status made = PrepareOutputFolder(folder); !made) return made;
+  FileSet files;
+  // One after the other, so that one content at a time is in memory.
+  const auto add = [&](const char* name, const Result<std::string>& content) {
+    if (!content) return Status(tl::unexpected<Error>(content.error()));
+    return files.Add((fs::path(folder) / name).string(), *content);
   };
-  Status status = WriteSceneJson(scene, path("sfm_data.json"));
-  if (status) status = WriteSceneBinary(scene, path("scene.lowlap"));
-  if (status) status = WritePly(scene, path("cloud.ply"));
+  Status status = add("sfm_data.json", FormatSceneJson(scene));
+  if (status) status = add("scene.lowlap", FormatSceneBinary(scene));
+  if (status) status = add("cloud.ply", FormatPly(scene));
   if (status) {
     status =
-        WriteReport(scene, MakeReport(summary, scene), path("report.html"));
+        add("report.html", FormatReport(scene, MakeReport(summary, scene)));
   }
-  if (!status) return status;
-  return WriteFileAtomically(path("summary.json"),
-                             [&](std::ostream& stream) -> Status {
-                               stream << ToJson(summary, scene) << '\n';
-                               return {};
-                             });
+  if (status) status = add("summary.json", ToJson(summary, scene) + "\n");
+  return status ? files.Commit() : status;
 }
 
 Status WriteTextFiles(
     const std::vector<std::pair<std::string, std::string>>& files,
     const std::string& folder) {
   if (Status made = PrepareOutputFolder(folder); !made) return made;
-  for (const auto& file : files) {
-    const std::string& content = file.second;
-    const Status written =
-        WriteFileAtomically((fs::path(folder) / file.first).string(),
-                            [&](std::ostream& stream) -> Status {
-                              stream << content;
-                              return {};
-                            });
-    if (!written) return written;
+  FileSet set;
+  for (const auto& [name, content] : files) {
+    const Status added = set.Add((fs::path(folder) / name).string(), content);
+    if (!added) return added;
   }
-  return {};
+  return set.Commit();
 }
 
 }  // namespace lowlap

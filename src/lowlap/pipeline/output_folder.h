@@ -19,16 +19,15 @@ Status CheckOutputFolder(const std::string& folder);
 /// in the way or it cannot be written to.
 Status PrepareOutputFolder(const std::string& folder);
 
-/// Writes what every solving command leaves: sfm_data.json (OpenMVG loads it),
-/// scene.lowlap (everything), cloud.ply (points, lines, cameras), report.html
-/// (for a person) and summary.json (for a program). Each file appears whole or
-/// not at all. A relative root_path is made absolute, since the files move away
+/// Makes the folder and writes what every solving command leaves, as a FileSet:
+/// sfm_data.json (OpenMVG loads it), scene.lowlap (everything), cloud.ply
+/// (points, lines, cameras), report.html (for a person) and summary.json (for
+/// a program). A relative root_path is made absolute, since the files move away
 /// from what it was relative to.
 Status WriteOutputs(Scene scene, const RunSummary& summary,
                     const std::string& folder);
 
-/// Makes the folder and writes files (name, content) into it, each whole or not
-/// at all.
+/// Makes the folder and writes files (name, content) into it, as a FileSet.
 Status WriteTextFiles(
     const std::vector<std::pair<std::string, std::string>>& files,
     const std::string& folder);

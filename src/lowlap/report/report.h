@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/core/result.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -26,10 +25,9 @@ struct ReportContent {
   std::vector<ReportTable> tables;
 };
 
-/// Writes a page that needs nothing but a browser: the figures and tables, and
+/// A page that needs nothing but a browser: the figures and tables, and
 /// a drawing of cameras, points and lines that can be turned with the mouse.
 /// At most 30,000 points are drawn, evenly chosen. Text is escaped.
-Status WriteReport(const Scene& scene, const ReportContent& content,
-                   const std::string& path);
+std::string FormatReport(const Scene& scene, const ReportContent& content);
 
 }  // namespace lowlap

@@ -4,8 +4,8 @@
 #include <iterator>
 #include <utility>
 
-#include "lowlap/evaluation/relative_errors.h"
-#include "lowlap/report/table_text.h"
+#include "lowlap/evaluation/internal/relative_errors.h"
+#include "lowlap/report/internal/table_text.h"
 
 namespace lowlap {
 namespace {

@@ -1,19 +1,19 @@
-#include <algorithm>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "lowlap/pipeline/output_folder.h"
-#include "lowlap/report/svg_plot.h"
-#include "lowlap/report/table_text.h"
 #include "lowlap/study/ablation.h"
+#include "lowlap/study/internal/study_output.h"
 
 namespace lowlap {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = StudyJson;
 
-constexpr const char* kStages[] = {"scale ratios", "poses", "structure",
-                                   "adjustment"};
+const std::vector<std::string>& Stages() {
+  static const auto* stages = new std::vector<std::string>{
+      "scale ratios", "poses", "structure", "adjustment"};
+  return *stages;
+}
 
 std::optional<ErrorStatistics> PositionErrors(const AblationCase& entry) {
   if (entry.errors.scope != EvaluationScope::kFull) return std::nullopt;
@@ -32,13 +32,6 @@ std::string FeatureList(const ScaleOptions& scale) {
 
 bool IsFixed(const AblationCase& entry) {
   return entry.scale.criterion == ScaleCriterion::kFixedThreshold;
-}
-
-const StageCost* FindCost(const AblationCase& entry, const char* stage) {
-  const auto found =
-      std::find_if(entry.costs.begin(), entry.costs.end(),
-                   [&](const StageCost& cost) { return cost.name == stage; });
-  return found == entry.costs.end() ? nullptr : &*found;
 }
 
 // A column per case, as in the paper.
@@ -105,11 +98,7 @@ void AddRecords(const char* name, const std::vector<AblationCase>& cases,
             : "",
         entry.abs_log_ratio.count > 0 ? NumberText(entry.abs_log_ratio.max, 9)
                                       : ""};
-    for (const char* stage : kStages) {
-      const StageCost* cost = FindCost(entry, stage);
-      row.push_back(cost == nullptr ? "" : NumberText(cost->wall_s, 4));
-      row.push_back(cost == nullptr ? "" : NumberText(cost->cpu_s, 4));
-    }
+    AddCostCells(entry.costs, Stages(), &row);
     table->rows.push_back(std::move(row));
   }
 }
@@ -133,10 +122,7 @@ Json CasesJson(const std::vector<AblationCase>& cases) {
                       {"meaningful", entry.ratios.num_meaningful},
                       {"abs_log_error_median", entry.abs_log_ratio.median},
                       {"abs_log_error_max", entry.abs_log_ratio.max}};
-    Json& costs = json["cost"] = Json::object();
-    for (const StageCost& cost : entry.costs) {
-      costs[cost.name] = {{"wall_s", cost.wall_s}, {"cpu_s", cost.cpu_s}};
-    }
+    json["cost"] = ToStudyJson(entry.costs);
     list.push_back(std::move(json));
   }
   return list;
@@ -191,11 +177,7 @@ std::string ToCsv(const Ablation& ablation) {
                    "meaningful_ratios",
                    "abs_log_ratio_error_median",
                    "abs_log_ratio_error_max"};
-  for (std::string stage : kStages) {
-    std::replace(stage.begin(), stage.end(), ' ', '_');
-    table.columns.push_back(stage + "_wall_s");
-    table.columns.push_back(stage + "_cpu_s");
-  }
+  AddCostColumns(Stages(), &table);
   AddRecords("criteria", ablation.criteria, ablation.num_views, &table);
   AddRecords("features", ablation.features, ablation.num_views, &table);
   return ToCsv(table);
@@ -206,27 +188,19 @@ std::string ToJson(const Ablation& ablation) {
   json["views"] = ablation.num_views;
   json["criteria"] = CasesJson(ablation.criteria);
   json["features"] = CasesJson(ablation.features);
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  return DumpText(json);
 }
 
 Result<std::vector<std::pair<std::string, std::string>>> DrawAblation(
     const Ablation& ablation) {
-  std::vector<std::pair<std::string, std::string>> drawn;
-  for (const auto& [name, plot] :
-       {std::pair("criteria.svg",
-                  CaseBars("Fixed thresholds and the a-contrario criterion",
-                           "All features, before bundle adjustment",
-                           ablation.criteria)),
-        std::pair("features.svg",
-                  CaseBars("Kinds of features",
-                           "A contrario, before bundle adjustment but for the "
-                           "last",
-                           ablation.features))}) {
-    auto svg = DrawBarPlot(plot);
-    if (!svg) return tl::unexpected<Error>(svg.error());
-    drawn.emplace_back(name, std::move(*svg));
-  }
-  return drawn;
+  return DrawBarPlots(
+      {{"criteria.svg",
+        CaseBars("Fixed thresholds and the a-contrario criterion",
+                 "All features, before bundle adjustment", ablation.criteria)},
+       {"features.svg",
+        CaseBars("Kinds of features",
+                 "A contrario, before bundle adjustment but for the last",
+                 ablation.features)}});
 }
 
 Status WriteAblation(const Ablation& ablation, const std::string& folder) {

@@ -1,17 +1,15 @@
-#include "lowlap/study/comparison_output.h"
-
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "lowlap/pipeline/output_folder.h"
-#include "lowlap/report/table_text.h"
+#include "lowlap/study/compare_strategies.h"
 #include "lowlap/study/internal/comparison_figures.h"
+#include "lowlap/study/internal/study_output.h"
 
 namespace lowlap {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using Json = StudyJson;
 
 std::string Cell(const std::optional<double>& value, int digits,
                  const char* absent) {
@@ -34,34 +32,18 @@ std::string ReasonOf(const StrategyResult& result) {
   return reason;
 }
 
-Json StatisticsJson(const ErrorStatistics& errors) {
-  return {{"count", errors.count},
-          {"mean", errors.mean},
-          {"median", errors.median},
-          {"max", errors.max},
-          {"rmse", errors.rmse}};
-}
-
 Json QualityJson(const SolutionQuality& quality) {
   const Consistency& consistency = quality.consistency;
   Json json;
   if (quality.errors) json["evaluation"] = Json::parse(ToJson(*quality.errors));
   if (quality.difference) {
     json["difference_to_reference_in_mean_baselines"] =
-        StatisticsJson(*quality.difference);
+        ToStudyJson(*quality.difference);
   }
-  json["direction_error_deg"] = StatisticsJson(consistency.direction_deg);
-  json["abs_log_ratio_error"] = StatisticsJson(consistency.abs_log_ratio);
+  json["direction_error_deg"] = ToStudyJson(consistency.direction_deg);
+  json["abs_log_ratio_error"] = ToStudyJson(consistency.abs_log_ratio);
   json["points"] = consistency.num_points;
   json["reprojection_rmse_px"] = consistency.reprojection_rmse_px;
-  return json;
-}
-
-Json CostsJson(const std::vector<StageCost>& costs) {
-  Json json = Json::object();
-  for (const StageCost& cost : costs) {
-    json[cost.name] = {{"wall_s", cost.wall_s}, {"cpu_s", cost.cpu_s}};
-  }
   return json;
 }
 
@@ -157,11 +139,9 @@ std::string ToCsv(const Comparison& comparison) {
       table.columns.push_back(stage + column);
     }
   }
-  constexpr const char* kStages[] = {"averaging", "structure", "adjustment"};
-  for (const char* stage : kStages) {
-    table.columns.push_back(std::string(stage) + "_wall_s");
-    table.columns.push_back(std::string(stage) + "_cpu_s");
-  }
+  const std::vector<std::string> stages = {"averaging", "structure",
+                                           "adjustment"};
+  AddCostColumns(stages, &table);
   for (const StrategyResult& result : comparison.results) {
     std::vector<std::string> row = {
         result.strategy,
@@ -189,11 +169,7 @@ std::string ToCsv(const Comparison& comparison) {
                                        : "");
       add(figures.rmse_px);
     }
-    for (const char* stage : kStages) {
-      const StageCost* cost = FindCost(result, stage);
-      row.push_back(cost == nullptr ? "" : NumberText(cost->wall_s, 4));
-      row.push_back(cost == nullptr ? "" : NumberText(cost->cpu_s, 4));
-    }
+    AddCostCells(result.costs, stages, &row);
     table.rows.push_back(std::move(row));
   }
   return ToCsv(table);
@@ -230,12 +206,11 @@ std::string ToJson(const Comparison& comparison, const Scene& scene) {
       entry["adjustment_iterations"] = result.num_adjustment_iterations;
       entry["after_adjustment"] = QualityJson(*result.after);
     }
-    entry["cost"] = CostsJson(result.costs);
+    entry["cost"] = ToStudyJson(result.costs);
     json["strategies"].push_back(std::move(entry));
   }
-  json["cost"] = CostsJson(comparison.shared_costs);
-  // File names may hold any bytes; what is not UTF-8 is replaced.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace);
+  json["cost"] = ToStudyJson(comparison.shared_costs);
+  return DumpText(json);
 }
 
 Status WriteComparison(const Comparison& comparison, const Scene& scene,

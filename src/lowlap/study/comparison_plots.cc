@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <utility>
 
-#include "lowlap/report/svg_plot.h"
-#include "lowlap/study/comparison_output.h"
+#include "lowlap/study/compare_strategies.h"
 #include "lowlap/study/internal/comparison_figures.h"
+#include "lowlap/study/internal/study_output.h"
 
 namespace lowlap {
 namespace {
@@ -30,6 +30,19 @@ void AddBars(const Comparison& comparison, std::string name, const Value& value,
     series.values.push_back(value(result));
   }
   plot->series.push_back(std::move(series));
+}
+
+/// `value(figures)` before adjustment, and after it where there is any.
+template <typename Value>
+void AddBothBars(const Comparison& comparison, const Value& value,
+                 BarPlot* plot) {
+  AddBars(
+      comparison, "before adjustment",
+      [&](const StrategyResult& r) { return value(FiguresBefore(r)); }, plot);
+  if (!IsAdjusted(comparison)) return;
+  AddBars(
+      comparison, "after adjustment",
+      [&](const StrategyResult& r) { return value(FiguresAfter(r)); }, plot);
 }
 
 // Values of different magnitude are told apart by a logarithmic axis only.
@@ -69,16 +82,7 @@ Result<std::vector<std::pair<std::string, std::string>>> DrawComparison(
                    "Of the cameras that both place, after a similarity "
                    "alignment; it is not an error",
                    "mean difference (mean baselines)");
-    AddBars(
-        comparison, "before adjustment",
-        [&](const StrategyResult& r) { return figure(FiguresBefore(r)); },
-        &plot);
-    if (adjusted) {
-      AddBars(
-          comparison, "after adjustment",
-          [&](const StrategyResult& r) { return figure(FiguresAfter(r)); },
-          &plot);
-    }
+    AddBothBars(comparison, figure, &plot);
     ChooseScale(&plot);
     plots.emplace_back(
         comparison.has_truth ? "position_error.svg" : "difference.svg",
@@ -104,20 +108,10 @@ Result<std::vector<std::pair<std::string, std::string>>> DrawComparison(
                         "Median over the relative poses between cameras "
                         "placed; needs no true cameras",
                         "direction of the baseline (degrees)");
-    AddBars(
-        comparison, "before adjustment",
-        [](const StrategyResult& r) {
-          return MedianOf(FiguresBefore(r).direction_deg);
-        },
+    AddBothBars(
+        comparison,
+        [](const Figures& figures) { return MedianOf(figures.direction_deg); },
         &plot);
-    if (adjusted) {
-      AddBars(
-          comparison, "after adjustment",
-          [](const StrategyResult& r) {
-            return MedianOf(FiguresAfter(r).direction_deg);
-          },
-          &plot);
-    }
     ChooseScale(&plot);
     plots.emplace_back("direction_error.svg", std::move(plot));
   }
@@ -135,13 +129,7 @@ Result<std::vector<std::pair<std::string, std::string>>> DrawComparison(
     ChooseScale(&plot);
     plots.emplace_back("time.svg", std::move(plot));
   }
-  std::vector<std::pair<std::string, std::string>> drawn;
-  for (const auto& [name, plot] : plots) {
-    auto svg = DrawBarPlot(plot);
-    if (!svg) return tl::unexpected<Error>(svg.error());
-    drawn.emplace_back(name, std::move(*svg));
-  }
-  return drawn;
+  return DrawBarPlots(plots);
 }
 
 }  // namespace lowlap

@@ -1,22 +1,18 @@
 #include "lowlap/study/subset_table.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "lowlap/core/format.h"
 #include "lowlap/core/median.h"
-#include "lowlap/report/svg_plot.h"
-#include "lowlap/study/internal/csv_line.h"
+#include "lowlap/report/internal/svg_plot.h"
+#include "lowlap/report/internal/table_text.h"
 
 namespace lowlap {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::size_t kNumFields = 11;
 
 bool IsComplete(const SubsetOutcome& outcome) {
   return outcome.failure.empty() && outcome.num_placed == outcome.num_views;
@@ -26,12 +22,6 @@ bool HasErrors(const SubsetOutcome& outcome) {
   return outcome.worst_view != kInvalidId;
 }
 
-std::string Number(double value, const char* format) {
-  char text[40];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
 std::string Joined(const std::vector<std::string>& words, char separator) {
   std::string text;
   for (const std::string& word : words) {
@@ -39,66 +29,6 @@ std::string Joined(const std::vector<std::string>& words, char separator) {
     text += word;
   }
   return text;
-}
-
-std::vector<std::string> Split(const std::string& text, char separator) {
-  std::vector<std::string> words;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = std::min(text.find(separator, at), text.size());
-    words.push_back(text.substr(at, end - at));
-    at = end + 1;
-  }
-  return words;
-}
-
-template <class T, class Convert>
-bool Parse(const std::string& text, const Convert& convert, T* value) {
-  char* end = nullptr;
-  *value = static_cast<T>(convert(text.c_str(), &end));
-  return !text.empty() && *end == '\0';
-}
-
-bool ParseCount(const std::string& text, int* value) {
-  return Parse(
-      text, [](const char* c, char** e) { return std::strtol(c, e, 10); },
-      value);
-}
-
-bool ParseError(const std::string& text, double* value) {
-  if (text.empty()) return true;  // not known
-  return Parse(
-      text, [](const char* c, char** e) { return std::strtod(c, e); }, value);
-}
-
-bool ParseLine(const std::string& line,
-               const std::map<std::string, ViewId>& view_of_name,
-               SubsetOutcome* outcome) {
-  const std::vector<std::string> fields = SplitCsvLine(line);
-  if (fields.size() != kNumFields) return false;
-  for (const std::string& id : Split(fields[0], '+')) {
-    ViewId view = kInvalidId;
-    if (!Parse(
-            id, [](const char* c, char** e) { return std::strtoul(c, e, 10); },
-            &view)) {
-      return false;
-    }
-    outcome->dropped.push_back(view);
-  }
-  if (!fields[5].empty()) {
-    const auto found = view_of_name.find(fields[5]);
-    if (found == view_of_name.end()) return false;
-    outcome->worst_view = found->second;
-  }
-  outcome->doubts = Split(fields[8], ';');
-  outcome->failure = fields[9];
-  return !outcome->dropped.empty() && (fields[7] == "0" || fields[7] == "1") &&
-         (fields[7] == "1") == !outcome->doubts.empty() &&
-         ParseCount(fields[1], &outcome->num_views) &&
-         ParseCount(fields[2], &outcome->num_placed) &&
-         ParseError(fields[3], &outcome->mean_error) &&
-         ParseError(fields[4], &outcome->max_error) &&
-         ParseError(fields[6], &outcome->mean_error_before_adjustment) &&
-         ParseError(fields[10], &outcome->seconds);
 }
 
 // (error, share of all outcomes up to it), a step for each value.
@@ -119,7 +49,7 @@ std::string Share(std::size_t part, std::size_t whole) {
       whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole)
                 : 0.0;
   return std::to_string(part) + " of " + std::to_string(whole) + " (" +
-         Number(percent, "%.1f") + " %)";
+         Format("%.1f", percent) + " %)";
 }
 
 }  // namespace
@@ -164,70 +94,83 @@ SubsetSummary SummarizeSubsets(const std::vector<SubsetOutcome>& outcomes,
   return summary;
 }
 
-std::string SubsetCsvHeader() {
-  return "dropped,views,placed,mean_error,max_error,worst_view,"
-         "mean_error_before_adjustment,doubtful,reasons,failure,seconds\n";
-}
-
-std::string ToCsvLine(const SubsetOutcome& outcome, const Scene& scene) {
-  std::vector<std::string> dropped;
-  for (const ViewId view : outcome.dropped) {
-    dropped.push_back(std::to_string(view));
-  }
-  const bool known = HasErrors(outcome);
-  const auto error = [&](double value) {
-    return known ? Number(value, "%.6f") : std::string();
-  };
-  std::string line = Joined(dropped, '+');
-  for (const std::string& field :
-       {std::to_string(outcome.num_views), std::to_string(outcome.num_placed),
-        error(outcome.mean_error), error(outcome.max_error),
-        known ? QuotedCsvField(scene.views.at(outcome.worst_view).filename)
-              : std::string(),
-        error(outcome.mean_error_before_adjustment),
-        std::string(outcome.doubts.empty() ? "0" : "1"),
-        Joined(outcome.doubts, ';'),
-        outcome.failure.empty() ? std::string()
-                                : QuotedCsvField(outcome.failure),
-        Number(outcome.seconds, "%.2f")}) {
-    line += "," + field;
-  }
-  return line + "\n";
-}
-
-Result<std::vector<SubsetOutcome>> ParseSubsetCsv(const std::string& text,
-                                                  const Scene& scene) {
-  std::map<std::string, ViewId> view_of_name;
-  for (const auto& [id, view] : scene.views) view_of_name[view.filename] = id;
-  std::vector<SubsetOutcome> outcomes;
-  std::size_t number = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = text.find('\n', at);
-    if (end == std::string::npos) break;  // its writer was stopped
-    const std::string line = text.substr(at, end + 1 - at);
-    at = end + 1;
-    ++number;
-    if (number == 1) {
-      if (line == SubsetCsvHeader()) continue;
-      return MakeError(ErrorCode::kParse, "not a table of subsets", {},
-                       "line 1");
+std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
+                  const Scene& scene) {
+  TextTable table;
+  table.columns = {"dropped",
+                   "views",
+                   "placed",
+                   "mean_error",
+                   "max_error",
+                   "worst_view",
+                   "mean_error_before_adjustment",
+                   "doubtful",
+                   "reasons",
+                   "failure",
+                   "seconds"};
+  for (const SubsetOutcome& outcome : outcomes) {
+    std::vector<std::string> dropped;
+    for (const ViewId view : outcome.dropped) {
+      dropped.push_back(std::to_string(view));
     }
+    const bool known = HasErrors(outcome);
+    const auto error = [&](double value) {
+      return known ? Format("%.6f", value) : std::string();
+    };
+    table.rows.push_back(
+        {Joined(dropped, '+'), std::to_string(outcome.num_views),
+         std::to_string(outcome.num_placed), error(outcome.mean_error),
+         error(outcome.max_error),
+         known ? scene.views.at(outcome.worst_view).filename : "",
+         error(outcome.mean_error_before_adjustment),
+         outcome.doubts.empty() ? "0" : "1", Joined(outcome.doubts, ';'),
+         outcome.failure, Format("%.2f", outcome.seconds)});
+  }
+  return ToCsv(table);
+}
+
+std::string ToJsonLine(const SubsetOutcome& outcome) {
+  const Json json = {
+      {"dropped", outcome.dropped},
+      {"views", outcome.num_views},
+      {"placed", outcome.num_placed},
+      {"mean_error", outcome.mean_error},
+      {"max_error", outcome.max_error},
+      {"worst_view", outcome.worst_view},
+      {"mean_error_before_adjustment", outcome.mean_error_before_adjustment},
+      {"doubts", outcome.doubts},
+      {"failure", outcome.failure},
+      {"seconds", outcome.seconds}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+std::optional<SubsetOutcome> SubsetFromJsonLine(const std::string& line) {
+  try {
+    const Json json = Json::parse(line);
     SubsetOutcome outcome;
-    if (!ParseLine(line.substr(0, line.size() - 1), view_of_name, &outcome)) {
-      return MakeError(ErrorCode::kParse, "not a line of a table of subsets",
-                       {}, "line " + std::to_string(number));
-    }
-    outcomes.push_back(std::move(outcome));
+    json.at("dropped").get_to(outcome.dropped);
+    json.at("views").get_to(outcome.num_views);
+    json.at("placed").get_to(outcome.num_placed);
+    json.at("mean_error").get_to(outcome.mean_error);
+    json.at("max_error").get_to(outcome.max_error);
+    json.at("worst_view").get_to(outcome.worst_view);
+    json.at("mean_error_before_adjustment")
+        .get_to(outcome.mean_error_before_adjustment);
+    json.at("doubts").get_to(outcome.doubts);
+    json.at("failure").get_to(outcome.failure);
+    json.at("seconds").get_to(outcome.seconds);
+    return outcome;
+  } catch (const Json::exception&) {
+    return std::nullopt;
   }
-  return outcomes;
 }
 
 std::string ToText(const SubsetSummary& summary, const SubsetBounds& bounds) {
   const std::size_t total = summary.num_subsets;
-  const std::string good = Number(bounds.accurate, "%g");
-  const std::string bad = Number(bounds.failed, "%g");
+  const std::string good = Format("%g", bounds.accurate);
+  const std::string bad = Format("%g", bounds.failed);
   const auto median = [&](double error) {
-    return summary.num_complete > 0 ? Number(error, "%.4f") : std::string("-");
+    return summary.num_complete > 0 ? Format("%.4f", error) : std::string("-");
   };
   return "subsets: " + std::to_string(total) +
          "\nall views placed: " + Share(summary.num_complete, total) +
@@ -242,8 +185,9 @@ std::string ToText(const SubsetSummary& summary, const SubsetBounds& bounds) {
          " flagged, silent failures: " +
          std::to_string(summary.num_silent_failures) +
          "\nseconds per subset: " +
-         Number(total > 0 ? summary.seconds / static_cast<double>(total) : 0.0,
-                "%.2f") +
+         Format("%.2f",
+                summary.seconds /
+                    static_cast<double>(std::max<std::size_t>(total, 1))) +
          "\n";
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,16 +42,14 @@ SubsetSummary SummarizeSubsets(const std::vector<SubsetOutcome>& outcomes,
 bool IsSilentFailure(const SubsetOutcome& outcome, const SubsetBounds& bounds);
 
 /// The table as CSV: a header, and one line for each subset. `dropped` holds
-/// view ids joined by '+'; texts are quoted as RFC 4180 says. Errors are empty
-/// where fewer than three cameras are placed.
-std::string SubsetCsvHeader();
-std::string ToCsvLine(const SubsetOutcome& outcome, const Scene& scene);
+/// view ids joined by '+'. Errors are empty where fewer than three cameras are
+/// placed.
+std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
+                  const Scene& scene);
 
-/// The inverse of the two. A last line without an end, as a run that was killed
-/// may leave it, is ignored. kParse, with the line, for anything else that is
-/// malformed.
-Result<std::vector<SubsetOutcome>> ParseSubsetCsv(const std::string& text,
-                                                  const Scene& scene);
+/// A record of a ResultLog, and the inverse; nullopt for anything else.
+std::string ToJsonLine(const SubsetOutcome& outcome);
+std::optional<SubsetOutcome> SubsetFromJsonLine(const std::string& line);
 
 std::string ToText(const SubsetSummary& summary, const SubsetBounds& bounds);
 std::string ToJson(const SubsetSummary& summary, const SubsetBounds& bounds);

@@ -6,7 +6,7 @@
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/synthetic/internal/world.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr std::uint64_t kPointStream = 1'000'000;
@@ -76,4 +76,4 @@ void FillWalls(const SyntheticOptions& options, double off_wall, World* world) {
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

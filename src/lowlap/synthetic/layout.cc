@@ -7,7 +7,7 @@
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/synthetic/internal/world.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 // World: x and z horizontal, y down, as in a camera. Several random draws in
@@ -294,4 +294,4 @@ World BuildLayout(const SyntheticOptions& options) {
   return world;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

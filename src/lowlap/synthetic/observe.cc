@@ -8,7 +8,7 @@
 #include "lowlap/core/random.h"
 #include "lowlap/synthetic/internal/wrong_match.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr std::uint64_t kPointStream = 4'000'000'000;
@@ -167,4 +167,4 @@ void ObserveLines(const SyntheticOptions& options, const World& world,
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -4,7 +4,7 @@
 #include <charconv>
 #include <cstddef>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr int kMinSeenTogether = 16;
@@ -107,4 +107,4 @@ std::vector<std::vector<ViewId>> PairGraph::Components(
   return components;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

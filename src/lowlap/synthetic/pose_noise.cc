@@ -10,7 +10,7 @@
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 using Mat5 = Eigen::Matrix<double, 5, 5>;
@@ -123,4 +123,4 @@ void DrawWrongPoses(const SyntheticOptions& options, Scene* scene) {
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -6,7 +6,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/synthetic/coplanar_truth.h"
+#include "lowlap/synthetic/internal/coplanar_truth.h"
 #include "lowlap/synthetic/internal/observe.h"
 #include "lowlap/synthetic/internal/pair_graph.h"
 #include "lowlap/synthetic/internal/pose_noise.h"
@@ -16,10 +16,6 @@
 
 namespace lowlap {
 namespace {
-
-using internal::Camera;
-using internal::PairGraph;
-using internal::World;
 
 constexpr std::uint64_t kPoseStream = 6'000'000'000;
 
@@ -126,13 +122,13 @@ std::map<ViewPair, int> CountSeenTogether(
 }
 
 SyntheticScene Build(const SyntheticOptions& options, double off_wall) {
-  World world = internal::BuildLayout(options);
-  internal::FillWalls(options, off_wall, &world);
-  const std::vector<Camera> cameras = internal::BuildCameras(options, world);
-  const auto views_of_points = internal::ViewsOfPoints(world, cameras);
-  const auto views_of_lines = internal::ViewsOfLines(world, cameras);
+  World world = BuildLayout(options);
+  FillWalls(options, off_wall, &world);
+  const std::vector<Camera> cameras = BuildCameras(options, world);
+  const auto views_of_points = ViewsOfPoints(world, cameras);
+  const auto views_of_lines = ViewsOfLines(world, cameras);
 
-  const internal::PairRule rule = *internal::PairRule::Parse(options.pairs);
+  const PairRule rule = *PairRule::Parse(options.pairs);
   const PairGraph graph(rule, options.num_views,
                         rule.all
                             ? CountSeenTogether(views_of_points, views_of_lines)
@@ -142,21 +138,19 @@ SyntheticScene Build(const SyntheticOptions& options, double off_wall) {
   synthetic.planes = world.planes;
   AddViews(options, world, cameras.front().intrinsic, &synthetic);
   AddRelativePoses(options, cameras, graph, &synthetic);
-  internal::ObservePoints(options, world, cameras, graph, views_of_points,
-                          &synthetic);
-  internal::ObserveLines(options, world, cameras, graph, views_of_lines,
-                         &synthetic);
+  ObservePoints(options, world, cameras, graph, views_of_points, &synthetic);
+  ObserveLines(options, world, cameras, graph, views_of_lines, &synthetic);
   const bool only_poses =
       options.points_per_wall == 0 && options.lines_per_wall == 0;
   if (!only_poses) DropUnmatchedPairs(&synthetic);
   if (options.pose_noise_factor > 0) {
-    internal::AddPoseNoiseOfPoints(options, &synthetic);
+    AddPoseNoiseOfPoints(options, &synthetic);
   }
   if (options.wrong_direction_share > 0) {
-    internal::DrawWrongDirections(options, &synthetic.scene);
+    DrawWrongDirections(options, &synthetic.scene);
   }
   if (options.wrong_pose_share > 0) {
-    internal::DrawWrongPoses(options, &synthetic.scene);
+    DrawWrongPoses(options, &synthetic.scene);
   }
   return synthetic;
 }

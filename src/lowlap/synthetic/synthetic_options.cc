@@ -48,7 +48,7 @@ Status SyntheticOptions::Validate() const {
     return Invalid("num_views must be in [2, " + std::to_string(kMaxViews) +
                    "]");
   }
-  const Result<internal::PairRule> rule = internal::PairRule::Parse(pairs);
+  const Result<PairRule> rule = PairRule::Parse(pairs);
   if (!rule) return tl::make_unexpected(rule.error());
   if (rule->all && num_views > kMaxViewsForAllPairs) {
     return Invalid("pairs 'all' needs num_views <= " +

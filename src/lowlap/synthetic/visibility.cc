@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr double kNear = 0.3;             // metres
@@ -144,4 +144,4 @@ std::vector<std::vector<ViewId>> ViewsOfLines(
   return views;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <optional>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr int kMaxAttempts = 20;
@@ -126,4 +126,4 @@ Sightings<Segment2> WrongSightings(const SyntheticOptions& options,
                          random);
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

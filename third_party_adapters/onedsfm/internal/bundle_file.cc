@@ -1,9 +1,9 @@
 #include "third_party_adapters/onedsfm/internal/bundle_file.h"
 
+#include "lowlap/core/internal/token_reader.h"
 #include "lowlap/geometry/rotation.h"
-#include "third_party_adapters/onedsfm/internal/token_reader.h"
 
-namespace lowlap::onedsfm::internal {
+namespace lowlap::onedsfm {
 
 Result<std::map<ViewId, Pose>> ParseBundlePoses(std::string_view text,
                                                 const std::string& file) {
@@ -42,4 +42,4 @@ Result<std::map<ViewId, Pose>> ParseBundlePoses(std::string_view text,
   return poses;
 }
 
-}  // namespace lowlap::onedsfm::internal
+}  // namespace lowlap::onedsfm

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "lowlap/core/internal/token_reader.h"
 #include "lowlap/geometry/rotation.h"
-#include "third_party_adapters/onedsfm/internal/token_reader.h"
 
-namespace lowlap::onedsfm::internal {
+namespace lowlap::onedsfm {
 namespace {
 
 // The value of `name = value` in a header of coords.txt, up to `end`; empty if
@@ -171,4 +171,4 @@ Result<std::vector<KeyTrack>> ParseTracks(std::string_view text,
   return tracks;
 }
 
-}  // namespace lowlap::onedsfm::internal
+}  // namespace lowlap::onedsfm

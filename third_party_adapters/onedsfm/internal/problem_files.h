@@ -10,7 +10,7 @@
 #include "lowlap/core/result.h"
 #include "lowlap/geometry/types.h"
 
-namespace lowlap::onedsfm::internal {
+namespace lowlap::onedsfm {
 
 using ImageIndex = std::uint32_t;
 
@@ -51,4 +51,4 @@ using KeyTrack = std::vector<std::pair<ImageIndex, std::uint32_t>>;
 Result<std::vector<KeyTrack>> ParseTracks(std::string_view text,
                                           const std::string& file);
 
-}  // namespace lowlap::onedsfm::internal
+}  // namespace lowlap::onedsfm

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace lowlap::openmvg::internal {
+namespace lowlap::openmvg {
 
 void ArchiveReader::Doubles(double* values, std::size_t length) {
   const std::size_t place = offset_;
@@ -20,4 +20,4 @@ void ArchiveReader::Doubles(double* values, std::size_t length) {
   }
 }
 
-}  // namespace lowlap::openmvg::internal
+}  // namespace lowlap::openmvg

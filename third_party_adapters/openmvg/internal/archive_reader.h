@@ -9,7 +9,7 @@
 
 #include "lowlap/core/result.h"
 
-namespace lowlap::openmvg::internal {
+namespace lowlap::openmvg {
 
 /// Reads a cereal PortableBinary archive from memory. The first failure sticks:
 /// every later read returns zeros, so that a grammar can be written down
@@ -105,4 +105,4 @@ class ArchiveReader {
   Error error_;
 };
 
-}  // namespace lowlap::openmvg::internal
+}  // namespace lowlap::openmvg

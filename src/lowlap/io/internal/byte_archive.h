@@ -9,7 +9,7 @@
 
 #include "lowlap/io/internal/failure.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 // Two archives with the same operations, so that one function describes the
 // bytes of a record for writing (from const data) and for reading. Everything
@@ -127,4 +127,4 @@ class ByteReader {
   std::size_t end_;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

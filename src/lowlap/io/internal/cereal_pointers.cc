@@ -1,6 +1,6 @@
 #include "lowlap/io/internal/cereal_pointers.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 std::string CerealPointers::TypeName(const JsonValue& pointer) {
   // Before version 0.3 views were not polymorphic.
@@ -38,4 +38,4 @@ CerealPointers::Object CerealPointers::Resolve(const JsonValue& pointer) {
   return {std::move(type_name), object->second};
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -6,7 +6,7 @@
 
 #include "lowlap/io/internal/json_value.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Resolves the polymorphic shared pointers of a cereal JSON archive:
 ///   {"polymorphic_id": p, "polymorphic_name": name,
@@ -33,4 +33,4 @@ class CerealPointers {
   std::map<std::uint32_t, JsonValue> objects_;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

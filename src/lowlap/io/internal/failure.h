@@ -2,11 +2,11 @@
 
 #include "lowlap/core/result.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Thrown while a file is taken apart, and caught at the boundary of io.
 struct Failure {
   Error error;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

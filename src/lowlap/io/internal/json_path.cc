@@ -4,7 +4,7 @@
 
 #include "lowlap/io/internal/json_tree.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 std::optional<std::string> IntegerText(const JsonNode& node) {
@@ -81,4 +81,4 @@ std::string JsonTree::PathOf(std::uint32_t index) const {
   return path;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -3,7 +3,7 @@
 #include <array>
 #include <charconv>
 
-namespace lowlap::internal {
+namespace lowlap {
 
 void AppendReal(double value, std::string& text) {
   std::array<char, 32> digits;
@@ -51,4 +51,4 @@ void AppendKey(std::string_view name, std::string& text) {
   text += ": ";
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -6,7 +6,7 @@
 
 #include "lowlap/geometry/types.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 // Appending JSON values to a text. Reals get the fewest digits that restore
 // them exactly, and always look like reals ("500.0").
@@ -57,4 +57,4 @@ void AppendSection(std::string_view name, const Items& items,
   text += items.empty() ? "]" : "\n]";
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <unordered_map>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr std::uint32_t kOpen = std::numeric_limits<std::uint32_t>::max();
@@ -179,4 +179,4 @@ Result<JsonTree> ParseJson(const std::string& text) {
       builder.error().value_or(Error{ErrorCode::kParse, "malformed", {}, {}}));
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

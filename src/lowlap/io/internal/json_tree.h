@@ -6,7 +6,7 @@
 
 #include "lowlap/core/result.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 enum class JsonKind : std::uint32_t {
   kNull,
@@ -59,4 +59,4 @@ struct JsonTree {
 /// path.
 Result<JsonTree> ParseJson(const std::string& text);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

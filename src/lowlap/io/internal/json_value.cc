@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 std::string Quoted(std::string_view text) {
@@ -117,4 +117,4 @@ std::size_t JsonValue::FlatSize(std::size_t stride) const {
   return size;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -11,7 +11,7 @@
 #include "lowlap/io/internal/failure.h"
 #include "lowlap/io/internal/json_tree.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// A value of a JsonTree with typed access. Every failure throws a Failure
 /// whose place is the path of the value.
@@ -100,4 +100,4 @@ class JsonValue {
   std::uint32_t index_;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

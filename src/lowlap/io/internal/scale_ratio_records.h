@@ -3,7 +3,7 @@
 #include "lowlap/io/internal/transfer.h"
 #include "lowlap/scene/scene.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 // The bytes of scale ratios in the binary form, as in scene_records.h.
 
@@ -59,4 +59,4 @@ void TransferRatioDetails(Archive& archive, Ratios& ratios) {
   for (auto& ratio : ratios) kTransferRatioDetails(archive, ratio);
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -4,7 +4,7 @@
 #include "lowlap/io/internal/cereal_pointers.h"
 #include "lowlap/io/internal/scene_json_sections.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 // Adds an entry to a map of the scene; `key` is where its id stands.
@@ -175,4 +175,4 @@ Scene ReadOpenMvgSections(const JsonValue& root) {
   return scene;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -2,7 +2,7 @@
 
 #include "lowlap/io/internal/scene_json_sections.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 // Version 2 had no second modes and shares of information.
@@ -254,4 +254,4 @@ void ReadOwnSections(const JsonValue& own, Scene& scene) {
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -5,7 +5,7 @@
 #include "lowlap/io/internal/json_value.h"
 #include "lowlap/scene/scene.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// The seven top-level keys of OpenMVG, in `root`, and the value of the key
 /// "lowlap". They throw Failure.
@@ -20,4 +20,4 @@ void AppendOwnSections(const Scene& scene, std::string& text);
 /// empty for a model without.
 std::string DistortionKey(CameraModel model);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

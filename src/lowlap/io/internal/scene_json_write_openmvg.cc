@@ -4,7 +4,7 @@
 #include "lowlap/io/internal/json_text.h"
 #include "lowlap/io/internal/scene_json_sections.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 void AppendMember(std::string_view name, std::uint32_t value,
@@ -176,4 +176,4 @@ void AppendOpenMvgSections(const Scene& scene, std::string& text) {
   AppendSection("control_points", scene.control_points, append_landmark, text);
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

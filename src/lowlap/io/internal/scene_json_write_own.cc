@@ -1,7 +1,7 @@
 #include "lowlap/io/internal/json_text.h"
 #include "lowlap/io/internal/scene_json_sections.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 template <class... Ids>
@@ -212,4 +212,4 @@ void AppendOwnSections(const Scene& scene, std::string& text) {
   text += "]";
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

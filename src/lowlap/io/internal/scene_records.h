@@ -3,7 +3,7 @@
 #include "lowlap/io/internal/transfer.h"
 #include "lowlap/scene/scene.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 // The bytes of every record of the binary form (sfm_data/FORMAT.md). They are
 // function objects, to be handed to the templates of transfer.h for writing and
@@ -128,4 +128,4 @@ inline constexpr auto kTransferLine = [](auto& archive, auto& landmark) {
   kTransferTrack(archive, landmark.observations);
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

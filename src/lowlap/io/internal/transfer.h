@@ -3,7 +3,7 @@
 #include "lowlap/geometry/types.h"
 #include "lowlap/io/internal/byte_archive.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 // The bytes of matrices, optional values and containers. Each function serves
 // ByteWriter (with const data) and ByteReader.
@@ -79,4 +79,4 @@ void TransferMap(Archive& archive, Map& map, const Transfer& transfer) {
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
-#include "lowlap/report/svg_plot.h"
+#include "lowlap/report/internal/svg_plot.h"
 
 namespace lowlap {
 

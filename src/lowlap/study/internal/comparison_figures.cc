@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "lowlap/study/internal/study_output.h"
+
 namespace lowlap {
 namespace {
 
@@ -51,15 +53,8 @@ std::optional<double> MaxOf(const std::optional<ErrorStatistics>& errors) {
   return errors ? std::optional(errors->max) : std::nullopt;
 }
 
-const StageCost* FindCost(const StrategyResult& result, const char* stage) {
-  for (const StageCost& cost : result.costs) {
-    if (cost.name == stage) return &cost;
-  }
-  return nullptr;
-}
-
 std::optional<double> WallOf(const StrategyResult& result, const char* stage) {
-  const StageCost* cost = FindCost(result, stage);
+  const StageCost* cost = FindCost(result.costs, stage);
   return cost == nullptr ? std::nullopt : std::optional(cost->wall_s);
 }
 

@@ -23,8 +23,6 @@ std::optional<double> MeanOf(const std::optional<ErrorStatistics>& errors);
 std::optional<double> MedianOf(const std::optional<ErrorStatistics>& errors);
 std::optional<double> MaxOf(const std::optional<ErrorStatistics>& errors);
 
-/// nullptr if the stage was not reached.
-const StageCost* FindCost(const StrategyResult& result, const char* stage);
 std::optional<double> WallOf(const StrategyResult& result, const char* stage);
 
 }  // namespace lowlap

@@ -7,7 +7,7 @@
 #include "lowlap/synthetic/internal/world.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Adds the features, the tracks, the matches of the relative poses (which
 /// exist already) and the truth about the tracks.
@@ -20,4 +20,4 @@ void ObserveLines(const SyntheticOptions& options, const World& world,
                   const std::vector<std::vector<ViewId>>& views_of_lines,
                   SyntheticScene* synthetic);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

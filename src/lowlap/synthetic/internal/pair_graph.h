@@ -7,7 +7,7 @@
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// SyntheticOptions::pairs, parsed.
 struct PairRule {
@@ -43,4 +43,4 @@ class PairGraph {
   std::vector<std::vector<ViewId>> neighbors_;  // by view, sorted
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -2,7 +2,7 @@
 
 #include "lowlap/synthetic/synthetic_scene.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Adds the errors of SyntheticOptions::pose_noise_factor, and their
 /// covariances. To first order, with x = (u, v, 1) in a camera's plane, E =
@@ -22,4 +22,4 @@ void DrawWrongDirections(const SyntheticOptions& options, Scene* scene);
 /// The same for SyntheticOptions::wrong_pose_share.
 void DrawWrongPoses(const SyntheticOptions& options, Scene* scene);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

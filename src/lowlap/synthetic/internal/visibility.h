@@ -7,7 +7,7 @@
 #include "lowlap/scene/intrinsic.h"
 #include "lowlap/synthetic/internal/world.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// A segment of a view, in pixels, or of the world.
 struct Segment2 {
@@ -42,4 +42,4 @@ std::vector<std::vector<ViewId>> ViewsOfPoints(
 std::vector<std::vector<ViewId>> ViewsOfLines(
     const World& world, const std::vector<Camera>& cameras);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

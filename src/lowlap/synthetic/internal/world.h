@@ -5,7 +5,7 @@
 #include "lowlap/scene/view.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// A parallelogram that carries features: origin + a u + b v with a, b in
 /// [0, 1] and u, v its sides. Cameras see its inner side.
@@ -55,4 +55,4 @@ World BuildLayout(const SyntheticOptions& options);
 /// more.
 void FillWalls(const SyntheticOptions& options, double off_wall, World* world);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -7,7 +7,7 @@
 #include "lowlap/synthetic/internal/pair_graph.h"
 #include "lowlap/synthetic/internal/visibility.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// The images of one track, without noise, and the pairs that are matched.
 template <class Image>
@@ -33,4 +33,4 @@ Sightings<Segment2> WrongSightings(const SyntheticOptions& options,
                                    const Segment3& segment_in_world,
                                    Random* random);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -1,0 +1,84 @@
+#include "lowlap/study/internal/result_log.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+
+#include "lowlap/core/atomic_file.h"
+
+namespace lowlap {
+namespace {
+
+Status SystemError(const std::string& what, const std::string& path) {
+  return MakeError(ErrorCode::kIo,
+                   what + ": " + std::generic_category().message(errno), path);
+}
+
+}  // namespace
+
+ResultLog::ResultLog(std::string path, int file)
+    : path_(std::move(path)), file_(file) {}
+
+ResultLog::ResultLog(ResultLog&& other) noexcept
+    : path_(std::move(other.path_)), file_(std::exchange(other.file_, -1)) {}
+
+ResultLog::~ResultLog() {
+  if (file_ >= 0) ::close(file_);
+}
+
+Result<ResultLog> ResultLog::Open(
+    const std::string& path, const std::string& settings,
+    const std::function<bool(const std::string&)>& take) {
+  const std::string head =
+      nlohmann::json({{"settings", settings}})
+          .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
+      "\n";
+  Result<std::string> text = ReadWholeFile(path);
+  if (!text && text.error().code != ErrorCode::kNotFound) {
+    return tl::unexpected<Error>(text.error());
+  }
+  std::string known = text.value_or("");
+  known.resize(known.find_last_of('\n') + 1);  // to 0 without any
+  if (known.empty()) known = head;
+  if (known.compare(0, head.size(), head) != 0) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "holds results of another scene or of other options; "
+                     "take another folder, or remove it",
+                     path);
+  }
+  std::size_t line = 1;
+  for (std::size_t at = head.size(); at < known.size();) {
+    const std::size_t end = known.find('\n', at);
+    ++line;
+    if (!take(known.substr(at, end - at))) {
+      return MakeError(ErrorCode::kParse, "is no result of this study", path,
+                       "line " + std::to_string(line));
+    }
+    at = end + 1;
+  }
+  if (const Status written = WriteFileAtomically(path, known); !written) {
+    return tl::unexpected<Error>(written.error());
+  }
+  const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
+  if (file < 0) {
+    return tl::unexpected<Error>(
+        SystemError("cannot be opened for writing", path).error());
+  }
+  return ResultLog(path, file);
+}
+
+Status ResultLog::Append(const std::string& record) const {
+  const std::string line = record + "\n";
+  const ssize_t written = ::write(file_, line.data(), line.size());
+  if (written == static_cast<ssize_t>(line.size()) && ::fdatasync(file_) == 0) {
+    return {};
+  }
+  return SystemError("cannot be written", path_);
+}
+
+}  // namespace lowlap

@@ -1,0 +1,25 @@
+#include "third_party_adapters/onedsfm/internal/scene_format.h"
+
+#include <utility>
+
+#include "third_party_adapters/onedsfm/problem.h"
+
+namespace lowlap::onedsfm {
+
+SceneFormats OneDSfmFormats() {
+  SceneFormat format;
+  format.name = "1dsfm";
+  format.description =
+      "a problem folder of 1DSfM (EGs.txt, cc.txt, ...), read only";
+  format.recognizes_folder = IsProblemFolder;
+  format.read = [](const std::string& path,
+                   SceneNotes* notes) -> Result<Scene> {
+    auto problem = ReadProblem(path);
+    if (!problem) return tl::unexpected<Error>(problem.error());
+    for (std::string& note : problem->notes) notes->push_back(std::move(note));
+    return std::move(problem->scene);
+  };
+  return {std::move(format)};
+}
+
+}  // namespace lowlap::onedsfm

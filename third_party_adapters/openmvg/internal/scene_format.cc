@@ -1,0 +1,81 @@
+#include "third_party_adapters/openmvg/internal/scene_format.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "lowlap/io/scene_json.h"
+#include "lowlap/scene/validation.h"
+#include "third_party_adapters/openmvg/internal/prepare.h"
+#include "third_party_adapters/openmvg/internal/sfm_data_bin.h"
+#include "third_party_adapters/openmvg/internal/sfm_data_xml.h"
+
+namespace lowlap::openmvg {
+namespace {
+
+// The endianness byte, then the length 3 of "0.1" to "0.3" in eight bytes.
+bool IsBinStart(std::string_view start) {
+  return start.size() >= 12 && start.substr(9, 2) == "0." &&
+         ((start[0] == 1 && start[1] == 3 && start[8] == 0) ||
+          (start[0] == 0 && start[1] == 0 && start[8] == 3));
+}
+
+bool IsXmlStart(std::string_view start) {
+  start.remove_prefix(
+      std::min(start.find_first_not_of(" \t\r\n"), start.size()));
+  return start.substr(0, 5) == "<?xml" || start.substr(0, 7) == "<cereal";
+}
+
+Result<std::string> FormatBin(const Scene& scene) {
+  if (const Status valid = ValidateScene(scene); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  return SerializeSfmDataBin(scene);
+}
+
+template <class FormatScene>
+auto WritePrepared(FormatScene format) {
+  return [write = WriteOneFile(format)](const Scene& scene,
+                                        const std::string& path,
+                                        FileSet* files) -> Result<SceneNotes> {
+    PreparedScene prepared = PrepareForOpenMvg(scene);
+    const Result<SceneNotes> written = write(prepared.scene, path, files);
+    if (!written) return written;
+    return std::move(prepared.notes);
+  };
+}
+
+}  // namespace
+
+SceneFormats OpenMvgFormats() {
+  SceneFormat json;
+  json.name = "openmvg-json";
+  json.description =
+      "OpenMVG's sfm_data as JSON, without what OpenMVG does not know";
+  json.read = [](const std::string& path, SceneNotes*) {
+    return ReadSceneJson(path);
+  };
+  json.write = WritePrepared(FormatSceneJson);
+
+  SceneFormat bin;
+  bin.name = "openmvg-bin";
+  bin.description = "OpenMVG's sfm_data.bin (*.bin)";
+  bin.extension = ".bin";
+  bin.recognizes_start = IsBinStart;
+  bin.read = [](const std::string& path, SceneNotes*) {
+    return ReadSfmDataBin(path);
+  };
+  bin.write = WritePrepared(FormatBin);
+
+  SceneFormat xml;
+  xml.name = "openmvg-xml";
+  xml.description = "OpenMVG's sfm_data.xml (*.xml)";
+  xml.extension = ".xml";
+  xml.recognizes_start = IsXmlStart;
+  xml.read = [](const std::string& path, SceneNotes*) {
+    return ReadSfmDataXml(path);
+  };
+  xml.write = WritePrepared(FormatSfmDataXml);
+  return {std::move(json), std::move(bin), std::move(xml)};
+}
+
+}  // namespace lowlap::openmvg
