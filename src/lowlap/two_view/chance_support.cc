@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "lowlap/geometry/rotation.h"
 #include "lowlap/two_view/refine_relative_pose.h"
 
 namespace lowlap {
@@ -42,36 +40,6 @@ class StepOfMatch {
   SampsonResidual residual_;
 };
 
-/// Angle between the motion of a point relative to pure rotation and its
-/// epipolar direction, in [0, pi].
-double MotionAngle(const RigidTransform& pose, const Vec3& x1, const Vec3& x2) {
-  const Vec3 p = pose.rotation * x1;
-  if (p.z() <= 1e-6 * p.norm()) return kPi;
-  const Vec3& t = pose.translation;
-  const Vec2 epipolar = t.head<2>() * p.z() - p.head<2>() * t.z();
-  const Vec2 motion = x2.head<2>() / x2.z() - p.head<2>() / p.z();
-  const double cross = epipolar.x() * motion.y() - epipolar.y() * motion.x();
-  return std::atan2(std::abs(cross), epipolar.dot(motion));
-}
-
-/// The rotation that takes the bearings x1 closest to x2, with Cauchy weights
-/// (iterated orthogonal Procrustes).
-Mat3 FitRotation(const PointPairs& pairs, const std::vector<int>& indices,
-                 const Mat3& start, double scale_rad) {
-  Mat3 rotation = start;
-  for (int iteration = 0; iteration < 10; ++iteration) {
-    Mat3 correlation = Mat3::Zero();
-    for (const int i : indices) {
-      const Vec3 a = pairs.x1[i].normalized();
-      const Vec3 b = pairs.x2[i].normalized();
-      const double ratio = (rotation * a - b).norm() / scale_rad;
-      correlation += b * a.transpose() / (1 + ratio * ratio);
-    }
-    rotation = NearestRotation(correlation);
-  }
-  return rotation;
-}
-
 }  // namespace
 
 std::vector<int> VisibleSteps(const EssentialKernel& kernel,
@@ -101,41 +69,23 @@ AContrarioScore ScoreAgainstChance(const EssentialKernel& kernel,
   return ladder.WithBackground(background).Best(counts);
 }
 
-TranslationEvidence TestTranslation(const PointPairs& pairs,
-                                    const RigidTransform& cam2_from_cam1,
-                                    const std::vector<int>& inliers,
-                                    double threshold_px) {
-  TranslationEvidence evidence;
-  const double scale = 3 * threshold_px / pairs.focal2_px;
-  const Mat3 rotation =
-      FitRotation(pairs, inliers, cam2_from_cam1.rotation, scale);
-  for (const int i : inliers) {
-    if (AngleBetween(rotation * pairs.x1[i], pairs.x2[i]) <= scale) {
-      ++evidence.num_rotation_inliers;
-    }
-  }
-  if (2 * evidence.num_rotation_inliers < static_cast<int>(inliers.size())) {
-    evidence.log10_nfa = -std::numeric_limits<double>::infinity();
-    return evidence;
-  }
+double ChanceShare(const PointPairs& pairs,
+                   const RigidTransform& cam2_from_cam1, double threshold_px) {
+  const SampsonResidual residual(cam2_from_cam1, pairs);
+  const double noise_rad = NoiseAngle(pairs, threshold_px);
   const int n = pairs.size();
-  // Five: the pose was fitted to the matches.
-  const AContrarioLadder ladder(n, 5, 1, {1 / kPi, 1}, 1e-3, kPi / 2);
-  const auto count = [&](int shift, std::vector<int>& counts) {
+  const int num_shifts = NumShifts(n);
+  int count = 0;
+  for (int shift = 1; shift <= num_shifts; ++shift) {
     for (int i = 0; i < n; ++i) {
-      const double angle =
-          MotionAngle(cam2_from_cam1, pairs.x1[i], pairs.x2[(i + shift) % n]);
-      ++counts[ladder.Step(static_cast<float>(angle * angle))];
+      const int other = (i + shift) % n;
+      count += std::abs(residual.Between(i, other)) <= threshold_px &&
+               CheckVisibility(cam2_from_cam1, pairs.x1[i], pairs.x2[other],
+                               noise_rad) != Visibility::kBehind;
     }
-  };
-  std::vector<int> background(ladder.NumSteps() + 1, 0);
-  for (int shift = 1; shift <= NumShifts(n); ++shift) {
-    count(shift, background);
   }
-  std::vector<int> counts(ladder.NumSteps() + 1, 0);
-  count(0, counts);
-  evidence.log10_nfa = ladder.WithBackground(background).Best(counts).log10_nfa;
-  return evidence;
+  // Plus one, so that none is impossible.
+  return (count + 1.0) / (static_cast<double>(num_shifts) * n + 1);
 }
 
 }  // namespace lowlap

@@ -24,25 +24,9 @@ AContrarioScore ScoreAgainstChance(const EssentialKernel& kernel,
                                    const AContrarioLadder& ladder,
                                    const RigidTransform& cam2_from_cam1);
 
-/// Whether the matches show a translation at all, or the noise hides it.
-struct TranslationEvidence {
-  /// Matches of `inliers` that a rotation alone explains.
-  int num_rotation_inliers = 0;
-  /// log10 NFA of the translation, >= 0 if there is no evidence for one.
-  /// -infinity where rotation alone explains less than half of the inliers.
-  double log10_nfa = 0;
-};
-
-/// A rotation is fitted to the inliers of the pose and explains those it
-/// transfers to within 3 `threshold_px`. If that is most of them, the
-/// translation must prove itself: seen from where the rotation puts it (R x1),
-/// every point of camera 2 should lie along its epipolar line, on the side of
-/// positive depth. Without translation the angle between the two directions is
-/// uniform in [0, pi], whatever the sizes of noise and depths; permuted matches
-/// correct for images whose points crowd.
-TranslationEvidence TestTranslation(const PointPairs& pairs,
-                                    const RigidTransform& cam2_from_cam1,
-                                    const std::vector<int>& inliers,
-                                    double threshold_px);
+/// The share of wrong matches that are visible and within `threshold_px` by
+/// chance, found in the same way.
+double ChanceShare(const PointPairs& pairs,
+                   const RigidTransform& cam2_from_cam1, double threshold_px);
 
 }  // namespace lowlap

@@ -192,6 +192,7 @@ std::optional<Mat5> RelativePoseCovariance(
     return std::nullopt;
   }
   const Mat5 covariance = factor.solve(Mat5::Identity());
+  if (!covariance.allFinite()) return std::nullopt;
   return Mat5(0.5 * (covariance + covariance.transpose()));
 }
 

@@ -9,11 +9,11 @@
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/robust/a_contrario.h"
-#include "lowlap/two_view/chance_support.h"
 #include "lowlap/two_view/line_crossings.h"
 #include "lowlap/two_view/planar_motion.h"
 #include "lowlap/two_view/pose_search.h"
 #include "lowlap/two_view/refine_relative_pose.h"
+#include "lowlap/two_view/translation_evidence.h"
 
 namespace lowlap {
 namespace {
@@ -267,13 +267,15 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
         search.CoreScore(best->pose, scale_px) -
         search.CoreScore(other->pose, scale_px) +
         std::log(10.0) * (other->direction_penalty - best->direction_penalty);
-    if (advantage < 0) {
+    // Few matches may leave the other motion none in front of the cameras.
+    const bool meaningful = other->score.log10_nfa < 0;
+    if (meaningful && advantage < 0) {
       std::swap(*best, *other);
       plane = DominantPlaneOf(*best, pairs, random);
     }
     // Where both are one motion, the better optimum of it is kept.
     if (!SameMotion(best->pose, other->pose)) {
-      result.geometry = std::abs(advantage) < kDecisiveScore
+      result.geometry = meaningful && std::abs(advantage) < kDecisiveScore
                             ? TwoViewGeometry::kAmbiguousPlane
                             : TwoViewGeometry::kPlanar;
     }
@@ -282,9 +284,10 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
     result.num_plane_inliers = static_cast<int>(plane->inliers.size());
   }
   const TranslationEvidence translation =
-      TestTranslation(pairs, best->pose, best->inliers, best->score.threshold);
+      TestTranslation(pairs, best->pose, best->inliers, best->score.threshold,
+                      PoseSearch::kMinThresholdPx);
   result.num_rotation_inliers = translation.num_rotation_inliers;
-  if (!(translation.log10_nfa < 0)) {
+  if (!translation.IsSeen()) {
     result.geometry = TwoViewGeometry::kRotationOnly;
   }
   result.pose = ToRelativePose(input, matches, search, *best);
@@ -308,8 +311,9 @@ RelativePose ImproveRelativePose(const TwoViewInput& input,
       std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
   const PoseSearch search(matches.pairs, CommonDirections(input),
                           SampsonLaw(input), bounded);
-  RelativePose improved = ToRelativePose(input, matches, search,
-                                         search.Finish(pose.Cam2FromCam1()));
+  const PoseCandidate candidate = search.Finish(pose.Cam2FromCam1());
+  if (!std::isfinite(candidate.score.log10_nfa)) return pose;
+  RelativePose improved = ToRelativePose(input, matches, search, candidate);
   improved.log10_nfa = pose.log10_nfa;
   return improved;
 }
