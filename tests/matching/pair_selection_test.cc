@@ -112,6 +112,14 @@ TEST(ParsePairsTest, ANameThatIsANumberIsReadAsTheName) {
   EXPECT_THAT(*pairs, ElementsAre(ViewPair{0, 7}));
 }
 
+TEST(ParsePairsTest, StemsAreNamesWhateverTheIds) {
+  const Scene scene =
+      SceneWith({{0, "0001.jpg"}, {1, "0002.jpg"}, {2, "0003.jpg"}});
+  const auto pairs = ParsePairs(scene, "0001 0002\n", "pairs.txt");
+  ASSERT_THAT(pairs, IsOk());
+  EXPECT_THAT(*pairs, ElementsAre(ViewPair{0, 1}));
+}
+
 TEST(ParsePairsTest, ErrorsNameTheLine) {
   const auto parse = [](const std::string& line) {
     return ParsePairs(FourViews(), "0 3\n\n" + line + "\n", "pairs.txt");

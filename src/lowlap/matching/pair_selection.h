@@ -21,11 +21,9 @@ namespace lowlap {
 Result<std::vector<ViewPair>> SelectPairs(const Scene& scene,
                                           const std::string& specification);
 
-/// Pairs from text, one per line: two views, each by its id or by its file
-/// name, separated by blanks; a name with blanks stands in double quotes.
-/// A name equal to a number is read as the name if a view has it, otherwise as
-/// the id. Empty lines and those that start with '#' are skipped. `file` is
-/// for messages only.
+/// Pairs from text, one per line: two views as ViewNames finds them, separated
+/// by blanks; a name with blanks stands in double quotes. Empty lines and those
+/// that start with '#' are skipped. `file` is for messages only.
 Result<std::vector<ViewPair>> ParsePairs(const Scene& scene,
                                          const std::string& text,
                                          const std::string& file);
