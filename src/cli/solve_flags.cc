@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "cli/command.h"
@@ -279,7 +280,8 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
 Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
                                                    const Scene& scene) {
   if (path.empty()) return std::optional<GroundTruth>();
-  if (std::filesystem::is_regular_file(path)) {
+  std::error_code unreadable;
+  if (std::filesystem::is_regular_file(path, unreadable)) {
     const auto solved = ReadScene(path);
     if (!solved) return tl::unexpected<Error>(solved.error());
     auto truth = GroundTruthFromScene(*solved, scene);

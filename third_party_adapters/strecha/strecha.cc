@@ -10,6 +10,7 @@
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/geometry/rotation.h"
+#include "lowlap/scene/view_names.h"
 
 namespace lowlap::strecha {
 namespace {
@@ -36,12 +37,13 @@ Result<std::vector<double>> ParseNumbers(std::string_view text,
         std::from_chars(text.data() + start, text.data() + end, value);
     if (error != std::errc() || stop != text.data() + end ||
         !std::isfinite(value)) {
-      return MakeError(ErrorCode::kParse,
-                       "'" +
-                           std::string(text.substr(
-                               start, std::min<std::size_t>(end - start, 32))) +
-                           "' is not a finite number",
-                       file, place(start));
+      return MakeError(
+          ErrorCode::kParse,
+          "'" +
+              Escaped(std::string(
+                  text.substr(start, std::min<std::size_t>(end - start, 32)))) +
+              "' is not a finite number",
+          file, place(start));
     }
     if (numbers.size() == count) {
       return MakeError(ErrorCode::kParse,
