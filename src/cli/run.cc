@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -60,9 +61,11 @@ Result<std::vector<PairReport>> Measure(const RunFlags& flags,
                                         const FrontEndOptions& front_end,
                                         SolveOptions options,
                                         const RunContext& context,
-                                        StageLog* stages, Scene* scene) {
+                                        StageLog* stages, Scene* scene,
+                                        std::map<ViewId, Error>* failed) {
   const auto measurements = MatchImages(*scene, front_end, context, stages);
   if (!measurements) return tl::unexpected<Error>(measurements.error());
+  *failed = measurements->failed;
   auto pairs = RelatePairs(*measurements, front_end, context, stages, scene);
   if (!pairs || !options.adjust || flags.solve.refine_intrinsics.empty()) {
     return pairs;
@@ -98,8 +101,11 @@ int Run(const RunFlags& flags) {
   }
   const auto intrinsics = ReadIntrinsics(flags);
   if (!intrinsics) return Fail(intrinsics.error());
-  auto scene = SceneFromImages(flags.images, *intrinsics, flags.exclude);
+  std::vector<std::string> notes;
+  auto scene =
+      SceneFromImages(flags.images, *intrinsics, flags.exclude, &notes);
   if (!scene) return Fail(scene.error());
+  for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
   const auto truth = LoadGroundTruth(flags.solve.ground_truth, *scene);
   if (!truth) return Fail(truth.error());
 
@@ -128,7 +134,9 @@ int Run(const RunFlags& flags) {
   StageLog stages;
   RunSummary summary;
   summary.command = "run";
-  auto pairs = Measure(flags, front_end, *options, context, &stages, &*scene);
+  std::map<ViewId, Error> failed;
+  auto pairs =
+      Measure(flags, front_end, *options, context, &stages, &*scene, &failed);
   if (!pairs) {
     if (IsInterrupted() && !flags.no_cache) {
       context.Log(LogLevel::kInfo, "what was measured is kept in " +
@@ -136,6 +144,12 @@ int Run(const RunFlags& flags) {
                                        "; the same command goes on from there");
     }
     return Fail(pairs.error());
+  }
+  summary.unrelated = FindUnrelatedViews(*pairs, failed);
+  for (const UnrelatedView& view : summary.unrelated) {
+    context.Log(LogLevel::kWarning,
+                scene->views.at(view.view).filename +
+                    " has no relative pose: " + view.reason);
   }
   if (scene->relative_poses.empty()) {
     return Fail({ErrorCode::kInsufficientData, ExplainNoPose(*pairs),

@@ -1,5 +1,6 @@
 #include "lowlap/pipeline/cached_measurements.h"
 
+#include <algorithm>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -109,10 +110,12 @@ Result<KeyedFeatures> DetectFeatures(const Scene& scene,
 
   std::vector<ViewSlot*> missing;
   for (ViewSlot& slot : slots) {
-    if (slot.error) return tl::unexpected<Error>(*slot.error);
-    if (!slot.features) missing.push_back(&slot);
+    if (!slot.features && !slot.error) missing.push_back(&slot);
   }
-  cache.LogUse(slots.size() - missing.size(), slots.size());
+  cache.LogUse(
+      std::count_if(slots.begin(), slots.end(),
+                    [](const ViewSlot& s) { return s.features.has_value(); }),
+      slots.size());
   RunContext limited = context;
   limited.num_threads = DetectionThreads(scene, options, context);
   const ReusedImageMemory reused_memory;
@@ -134,7 +137,10 @@ Result<KeyedFeatures> DetectFeatures(const Scene& scene,
 
   KeyedFeatures result;
   for (ViewSlot& slot : slots) {
-    if (slot.error) return tl::unexpected<Error>(*slot.error);
+    if (!slot.features) {
+      result.failed.emplace(slot.id, *slot.error);
+      continue;
+    }
     result.keys.emplace(slot.id, slot.key);
     result.features.emplace(slot.id, std::move(*slot.features));
   }

@@ -6,8 +6,11 @@
 #include <utility>
 
 #include "lowlap/averaging/motion_choice.h"
+#include "lowlap/core/format.h"
 #include "lowlap/core/parallel.h"
+#include "lowlap/geometry/rotation.h"
 #include "lowlap/scene/normalized_features.h"
+#include "lowlap/scene/validation.h"
 #include "lowlap/two_view/pose_search.h"
 
 namespace lowlap {
@@ -186,7 +189,10 @@ PairOutcome SolvePair(const ViewPair& views, const ViewMeasurements& first,
   report.log10_nfa = pose.log10_nfa;
   if (!result->HasDirection()) {
     report.num_point_inliers = static_cast<int>(pose.point_inliers.size());
-    report.reason = "the views differ by a rotation only";
+    report.no_parallax = true;
+    report.reason = Format(
+        "no parallax: the views differ by a rotation of %.2f degrees only",
+        DegFromRad(RotationAngleBetween(pose.rotation, Mat3::Identity())));
     return outcome;
   }
   std::vector<FeatureMatch> line_matches = matches.lines;
@@ -198,9 +204,35 @@ PairOutcome SolvePair(const ViewPair& views, const ViewMeasurements& first,
                         pose.Cam2FromCam1(), options.line_filter);
   report.num_point_inliers = static_cast<int>(pose.point_inliers.size());
   report.num_line_inliers = static_cast<int>(pose.line_inliers.size());
+  // One pair that cannot be used must not make the scene invalid.
+  if (const Status valid = ValidateRelativePose(pose); !valid) {
+    report.reason = "the estimate is not usable: " + valid.error().message;
+    return outcome;
+  }
   report.accepted = true;
   outcome.pose = std::move(pose);
   return outcome;
+}
+
+void LogPairsWithoutParallax(const Scene& scene,
+                             const std::vector<PairOutcome>& outcomes,
+                             const RunContext& context) {
+  constexpr int kMaxNamed = 5;
+  int count = 0;
+  std::string names;
+  for (const PairOutcome& outcome : outcomes) {
+    if (!outcome.report.no_parallax || ++count > kMaxNamed) continue;
+    const ViewPair& views = outcome.report.views;
+    names += (count > 1 ? ", " : "") + scene.views.at(views.first).filename +
+             " - " + scene.views.at(views.second).filename;
+  }
+  if (count == 0) return;
+  context.Log(LogLevel::kWarning,
+              "no parallax in " + std::to_string(count) +
+                  (count == 1 ? " pair, which is" : " pairs, which are") +
+                  " left out, since views that differ by a rotation only show "
+                  "no direction: " +
+                  names + (count > kMaxNamed ? ", ..." : ""));
 }
 
 }  // namespace
@@ -247,6 +279,7 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
 
   scene->relative_poses.clear();
   std::vector<PairReport> reports;
+  LogPairsWithoutParallax(*scene, outcomes, context);
   for (PairOutcome& outcome : outcomes) {
     if (outcome.pose) {
       scene->relative_poses[outcome.report.views] = std::move(*outcome.pose);
@@ -281,10 +314,12 @@ Status RefineRelativePoses(Scene* scene,
         if (options.use_points) input.point_matches = pose.point_inliers;
         if (options.use_lines) input.line_matches = pose.line_inliers;
         const std::vector<FeatureMatch> lines = pose.line_inliers;
+        const RelativePose before = pose;
         pose = Improve(input, pose, options.two_view);
         pose.line_inliers =
             FilterLineMatches(lines, *input.features1, *input.features2,
                               pose.Cam2FromCam1(), options.line_filter);
+        if (!ValidateRelativePose(pose)) pose = before;
       });
   if (!done) return done;
   scene->point_tracks = BuildPointTracks(*scene);
