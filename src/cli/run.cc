@@ -123,9 +123,9 @@ int Run(const RunFlags& flags) {
   }
   front_end.pairs = flags.pairs;
   front_end.refine_points = flags.refine_points;
-  front_end.relative_poses.use_points = IsNamed("points", flags.two_view);
-  front_end.relative_poses.use_lines = IsNamed("lines", flags.two_view);
-  const bool needs_lines = front_end.relative_poses.use_lines ||
+  front_end.relative_poses.pair.use_points = IsNamed("points", flags.two_view);
+  front_end.relative_poses.pair.use_lines = IsNamed("lines", flags.two_view);
+  const bool needs_lines = front_end.relative_poses.pair.use_lines ||
                            options->scale.use_lines ||
                            options->scale.use_coplanar;
   front_end.features.detect_lines = needs_lines;

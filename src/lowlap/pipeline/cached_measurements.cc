@@ -160,7 +160,10 @@ Result<std::map<ViewPair, PairMatches>> MatchFeatures(
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     const auto first = features.keys.find(pairs[n].first);
     const auto second = features.keys.find(pairs[n].second);
-    if (first == features.keys.end() || second == features.keys.end()) continue;
+    if (first == features.keys.end() || second == features.keys.end()) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "a pair names a view without features");
+    }
     keys[n] = internal::MatchKey(first->second, second->second, options);
     found[n] = cache.Find(keys[n], internal::MatchesFromBytes);
   }
@@ -170,29 +173,16 @@ Result<std::map<ViewPair, PairMatches>> MatchFeatures(
   }
   cache.LogUse(pairs.size() - missing.size(), pairs.size());
 
-  // Each pair on its own, so that it is stored as soon as it is done.
-  RunContext of_pair = context;
-  of_pair.num_threads = 1;
-  of_pair.progress = nullptr;
-  std::vector<std::optional<Error>> errors(missing.size());
   const Status done =
       ParallelFor(context, "matching", missing.size(), [&](std::size_t m) {
         const std::size_t n = missing[m];
-        auto matches =
-            MatchFeatures(features.features, {pairs[n]}, options, of_pair);
-        if (!matches) {
-          errors[m] = matches.error();
-          return;
-        }
-        found[n] = std::move(matches->at(pairs[n]));
+        found[n] = MatchPair(features.features.at(pairs[n].first),
+                             features.features.at(pairs[n].second), options);
         cache.Write(keys[n], internal::ToBytes(*found[n]));
       });
   if (!done) return tl::unexpected<Error>(done.error());
 
   std::map<ViewPair, PairMatches> result;
-  for (const std::optional<Error>& error : errors) {
-    if (error) return tl::unexpected<Error>(*error);
-  }
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     result.emplace(pairs[n], std::move(*found[n]));
   }
