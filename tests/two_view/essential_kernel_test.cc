@@ -1,11 +1,11 @@
-#include "lowlap/two_view/essential_kernel.h"
+#include "lowlap/two_view/internal/essential_kernel.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/two_view/refine_relative_pose.h"
+#include "lowlap/two_view/internal/refine_relative_pose.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {

@@ -1,4 +1,4 @@
-#include "lowlap/two_view/pose_search.h"
+#include "lowlap/two_view/internal/pose_search.h"
 
 #include <gtest/gtest.h>
 
@@ -37,9 +37,9 @@ TEST(PoseSearch, TheBestCandidateIsTheTruth) {
     EXPECT_LT(RotationErrorDeg(candidates[0].pose.rotation,
                                scene.cam2_from_cam1.rotation),
               0.2);
-    EXPECT_LT(candidates[0].score.log10_nfa, -100);
+    EXPECT_LT(candidates[0].support.log10_nfa, -100);
     for (std::size_t n = 1; n < candidates.size(); ++n) {
-      EXPECT_LE(candidates[n].merit, candidates[n - 1].merit);
+      EXPECT_LE(candidates[n].score, candidates[n - 1].score);
     }
   }
 }
@@ -71,7 +71,7 @@ TEST(PoseSearch, FinishingFindsTheSigns) {
   RigidTransform mirrored = scene.cam2_from_cam1;
   mirrored.translation = -mirrored.translation;
   const PoseCandidate candidate = search.Finish(mirrored);
-  EXPECT_TRUE(SameMotion(candidate.pose, scene.cam2_from_cam1));
+  EXPECT_TRUE(SamePose(candidate.pose, scene.cam2_from_cam1));
   EXPECT_GT(candidate.inliers.size(), 150u);
   for (const int i : candidate.inliers) EXPECT_LT(i, pairs.size());
 }
@@ -86,15 +86,15 @@ TEST(PoseSearch, CoreScoreCountsEveryPerfectMatchOnce) {
               1e-6);
 }
 
-TEST(SameMotion, LooksAtRotationAndDirection) {
+TEST(SamePose, LooksAtRotationAndDirection) {
   const RigidTransform pose{Mat3::Identity(), Vec3::UnitX()};
   RigidTransform other = pose;
-  EXPECT_TRUE(SameMotion(pose, other));
+  EXPECT_TRUE(SamePose(pose, other));
   other.rotation = RotationFromAngleAxis(Vec3(0, 0, RadFromDeg(0.6)));
-  EXPECT_FALSE(SameMotion(pose, other));
+  EXPECT_FALSE(SamePose(pose, other));
   other = pose;
   other.translation = Vec3(1, std::tan(RadFromDeg(2.5)), 0).normalized();
-  EXPECT_FALSE(SameMotion(pose, other));
+  EXPECT_FALSE(SamePose(pose, other));
 }
 
 }  // namespace

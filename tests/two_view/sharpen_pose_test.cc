@@ -1,4 +1,4 @@
-#include "lowlap/two_view/sharpen_pose.h"
+#include "lowlap/two_view/internal/sharpen_pose.h"
 
 #include <gtest/gtest.h>
 

@@ -11,8 +11,8 @@
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/core/format.h"
 #include "lowlap/core/parallel.h"
-#include "lowlap/features/image_memory.h"
-#include "lowlap/features/undistorted_image.h"
+#include "lowlap/features/internal/image_memory.h"
+#include "lowlap/features/internal/undistorted_image.h"
 
 namespace lowlap {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/core/parallel.h"
-#include "lowlap/features/image_memory.h"
+#include "lowlap/features/internal/image_memory.h"
 #include "lowlap/pipeline/internal/measurement_bytes.h"
 #include "lowlap/pipeline/internal/measurement_key.h"
 

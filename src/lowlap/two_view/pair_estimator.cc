@@ -8,7 +8,7 @@
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/scene/normalized_features.h"
 #include "lowlap/scene/validation.h"
-#include "lowlap/two_view/pose_search.h"
+#include "lowlap/two_view/internal/pose_search.h"
 
 namespace lowlap {
 namespace {
@@ -68,7 +68,7 @@ RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
                      const TwoViewOptions& options) {
   RelativePose improved = ImproveRelativePose(input, pose, options);
   const auto differs = [&](const RelativePose& other) {
-    return !SameMotion(other.Cam2FromCam1(), improved.Cam2FromCam1());
+    return !SamePose(other.Cam2FromCam1(), improved.Cam2FromCam1());
   };
   std::vector<AlternativeMotion> alternatives;
   for (const AlternativeMotion& other : pose.alternatives) {

@@ -83,7 +83,7 @@ struct TwoViewResult {
 /// directions, no orthogonality assumed: Salaün, Marlet, Monasse, ECCV 2016)
 /// with the translation from two points. Crossings of neighbouring matched
 /// lines take part as points. Every motion is refined on points, crossings and
-/// common directions together; the one with the greatest merit (core of small
+/// common directions together; the one with the greatest score (core of small
 /// residuals, less what the directions have against it) wins.
 ///
 /// Residual: the Sampson distance of x2^T [t]x R x1 = 0 in pixels. The

@@ -4,7 +4,7 @@
 
 #include "lowlap/geometry/rigid_transform.h"
 #include "lowlap/robust/a_contrario.h"
-#include "lowlap/two_view/essential_kernel.h"
+#include "lowlap/two_view/internal/essential_kernel.h"
 
 namespace lowlap {
 

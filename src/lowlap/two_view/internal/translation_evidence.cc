@@ -1,4 +1,4 @@
-#include "lowlap/two_view/translation_evidence.h"
+#include "lowlap/two_view/internal/translation_evidence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/robust/log_combinatorics.h"
-#include "lowlap/two_view/chance_support.h"
-#include "lowlap/two_view/refine_relative_pose.h"
+#include "lowlap/two_view/internal/chance_support.h"
+#include "lowlap/two_view/internal/refine_relative_pose.h"
 
 namespace lowlap {
 namespace {
