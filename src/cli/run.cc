@@ -23,6 +23,7 @@ struct RunFlags {
   std::string intrinsics;
   std::optional<double> focal_px;
   std::string pairs = "all";
+  std::string matcher = "exact";
   std::vector<std::string> two_view = {"points", "lines"};
   std::vector<std::string> exclude;
   std::string cache;
@@ -122,6 +123,10 @@ int Run(const RunFlags& flags) {
         flags.cache.empty() ? flags.output + "/cache" : flags.cache;
   }
   front_end.pairs = flags.pairs;
+  const PointMatcher matcher =
+      flags.matcher == "flann" ? PointMatcher::kFlann : PointMatcher::kExact;
+  front_end.matching.points.matcher = matcher;
+  front_end.matching.relaxed_points.matcher = matcher;
   front_end.refine_points = flags.refine_points;
   front_end.relative_poses.pair.use_points = IsNamed("points", flags.two_view);
   front_end.relative_poses.pair.use_lines = IsNamed("lines", flags.two_view);
@@ -188,6 +193,12 @@ void AddRun(CLI::App* program, Action* action) {
                    "Pairs to match: all, chain, cycle, window:N, auto (those "
                    "that look alike), or a file with two view names or ids a "
                    "line")
+      ->capture_default_str();
+  command
+      ->add_option("--matcher", flags->matcher,
+                   "How points are matched: exact, or flann (approximately, "
+                   "faster where photographs have some 50,000 points or more)")
+      ->check(CLI::IsMember({"exact", "flann"}))
       ->capture_default_str();
   command
       ->add_option("--exclude", flags->exclude,

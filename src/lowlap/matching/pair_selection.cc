@@ -95,8 +95,8 @@ Result<std::vector<ViewPair>> ParsePairs(const Scene& scene,
   return pairs;
 }
 
-Result<std::vector<ViewPair>> SelectPairs(const Scene& scene,
-                                          const std::string& specification) {
+Result<std::vector<ViewPair>> SelectViewPairs(
+    const Scene& scene, const std::string& specification) {
   std::vector<ViewId> ids;
   for (const auto& [id, view] : scene.views) ids.push_back(id);
 

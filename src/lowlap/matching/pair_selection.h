@@ -18,8 +18,8 @@ namespace lowlap {
 ///   anything else: the path of a file of pairs (ParsePairs).
 /// "auto" is refused: it takes features to find those pairs (RetrievePairs).
 /// Errors: kInvalidArgument, kNotFound, kParse (with file and line).
-Result<std::vector<ViewPair>> SelectPairs(const Scene& scene,
-                                          const std::string& specification);
+Result<std::vector<ViewPair>> SelectViewPairs(const Scene& scene,
+                                              const std::string& specification);
 
 /// Pairs from text, one per line: two views as ViewNames finds them, separated
 /// by blanks; a name with blanks stands in double quotes. Empty lines and those

@@ -61,7 +61,7 @@ Result<ImageMeasurements> MatchImages(const Scene& scene,
   const bool retrieve = options.pairs == "auto";
   std::vector<ViewPair> pairs;
   if (!retrieve) {  // what can be refused is refused before the long work
-    auto selected = SelectPairs(scene, options.pairs);
+    auto selected = SelectViewPairs(scene, options.pairs);
     if (!selected) return tl::unexpected<Error>(selected.error());
     pairs = std::move(*selected);
   }

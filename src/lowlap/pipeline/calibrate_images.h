@@ -17,7 +17,7 @@
 namespace lowlap {
 
 struct FrontEndOptions {
-  /// See SelectPairs; or "auto", what RetrievePairs finds in the features.
+  /// See SelectViewPairs; or "auto", what RetrievePairs finds in the features.
   std::string pairs = "all";
   RetrievalOptions retrieval;
   FeatureOptions features;
