@@ -58,7 +58,7 @@ int EvaluateLines(const Flags& flags, const Scene& scene,
                   const GroundTruth& truth) {
   const auto edges = ReadTrueEdges(flags.true_edges);
   if (!edges) return Fail(edges.error());
-  const auto pairs = SelectPairs(scene, flags.line_pairs);
+  const auto pairs = SelectViewPairs(scene, flags.line_pairs);
   if (!pairs) return Fail(pairs.error());
   const auto evaluation = EvaluateLineMatches(scene, truth, *edges, *pairs, {});
   if (!evaluation) return Fail(evaluation.error());

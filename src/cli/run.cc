@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -22,6 +23,7 @@ struct RunFlags {
   std::string intrinsics;
   std::optional<double> focal_px;
   std::string pairs = "all";
+  std::string matcher = "exact";
   std::vector<std::string> two_view = {"points", "lines"};
   std::vector<std::string> exclude;
   std::string cache;
@@ -60,9 +62,11 @@ Result<std::vector<PairReport>> Measure(const RunFlags& flags,
                                         const FrontEndOptions& front_end,
                                         SolveOptions options,
                                         const RunContext& context,
-                                        StageLog* stages, Scene* scene) {
+                                        StageLog* stages, Scene* scene,
+                                        std::map<ViewId, Error>* failed) {
   const auto measurements = MatchImages(*scene, front_end, context, stages);
   if (!measurements) return tl::unexpected<Error>(measurements.error());
+  *failed = measurements->failed;
   auto pairs = RelatePairs(*measurements, front_end, context, stages, scene);
   if (!pairs || !options.adjust || flags.solve.refine_intrinsics.empty()) {
     return pairs;
@@ -98,8 +102,11 @@ int Run(const RunFlags& flags) {
   }
   const auto intrinsics = ReadIntrinsics(flags);
   if (!intrinsics) return Fail(intrinsics.error());
-  auto scene = SceneFromImages(flags.images, *intrinsics, flags.exclude);
+  std::vector<std::string> notes;
+  auto scene =
+      SceneFromImages(flags.images, *intrinsics, flags.exclude, &notes);
   if (!scene) return Fail(scene.error());
+  for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
   const auto truth = LoadGroundTruth(flags.solve.ground_truth, *scene);
   if (!truth) return Fail(truth.error());
 
@@ -116,10 +123,14 @@ int Run(const RunFlags& flags) {
         flags.cache.empty() ? flags.output + "/cache" : flags.cache;
   }
   front_end.pairs = flags.pairs;
+  const PointMatcher matcher =
+      flags.matcher == "flann" ? PointMatcher::kFlann : PointMatcher::kExact;
+  front_end.matching.points.matcher = matcher;
+  front_end.matching.relaxed_points.matcher = matcher;
   front_end.refine_points = flags.refine_points;
-  front_end.relative_poses.use_points = IsNamed("points", flags.two_view);
-  front_end.relative_poses.use_lines = IsNamed("lines", flags.two_view);
-  const bool needs_lines = front_end.relative_poses.use_lines ||
+  front_end.relative_poses.pair.use_points = IsNamed("points", flags.two_view);
+  front_end.relative_poses.pair.use_lines = IsNamed("lines", flags.two_view);
+  const bool needs_lines = front_end.relative_poses.pair.use_lines ||
                            options->scale.use_lines ||
                            options->scale.use_coplanar;
   front_end.features.detect_lines = needs_lines;
@@ -128,7 +139,9 @@ int Run(const RunFlags& flags) {
   StageLog stages;
   RunSummary summary;
   summary.command = "run";
-  auto pairs = Measure(flags, front_end, *options, context, &stages, &*scene);
+  std::map<ViewId, Error> failed;
+  auto pairs =
+      Measure(flags, front_end, *options, context, &stages, &*scene, &failed);
   if (!pairs) {
     if (IsInterrupted() && !flags.no_cache) {
       context.Log(LogLevel::kInfo, "what was measured is kept in " +
@@ -136,6 +149,12 @@ int Run(const RunFlags& flags) {
                                        "; the same command goes on from there");
     }
     return Fail(pairs.error());
+  }
+  summary.unrelated = FindUnrelatedViews(*pairs, failed);
+  for (const UnrelatedView& view : summary.unrelated) {
+    context.Log(LogLevel::kWarning,
+                scene->views.at(view.view).filename +
+                    " has no relative pose: " + view.reason);
   }
   if (scene->relative_poses.empty()) {
     return Fail({ErrorCode::kInsufficientData, ExplainNoPose(*pairs),
@@ -174,6 +193,12 @@ void AddRun(CLI::App* program, Action* action) {
                    "Pairs to match: all, chain, cycle, window:N, auto (those "
                    "that look alike), or a file with two view names or ids a "
                    "line")
+      ->capture_default_str();
+  command
+      ->add_option("--matcher", flags->matcher,
+                   "How points are matched: exact, or flann (approximately, "
+                   "faster where photographs have some 50,000 points or more)")
+      ->check(CLI::IsMember({"exact", "flann"}))
       ->capture_default_str();
   command
       ->add_option("--exclude", flags->exclude,

@@ -6,6 +6,9 @@ find_package(Ceres 2.1 REQUIRED)
 find_package(OpenMP REQUIRED)
 find_package(OpenCV 4.6 REQUIRED
              COMPONENTS core imgproc imgcodecs features2d line_descriptor)
+# FLANN's headers want lz4, which has no CMake package.
+find_package(flann 1.9 REQUIRED)
+find_library(LZ4_LIBRARY lz4 REQUIRED)
 find_package(nlohmann_json 3.11 REQUIRED)
 find_package(cereal REQUIRED)
 find_package(CLI11 REQUIRED)

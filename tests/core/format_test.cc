@@ -15,5 +15,9 @@ TEST(Format, DoesNotCutLongTexts) {
   EXPECT_EQ(Format("%s\n", name.c_str()), name + "\n");
 }
 
+TEST(Escaped, ShowsWhatCannotBeShown) {
+  EXPECT_EQ(Escaped("K\xff\n.txt"), "K\\xFF\\x0A.txt");
+}
+
 }  // namespace
 }  // namespace lowlap

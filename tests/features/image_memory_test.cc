@@ -1,4 +1,4 @@
-#include "lowlap/features/image_memory.h"
+#include "lowlap/features/internal/image_memory.h"
 
 #include <gtest/gtest.h>
 

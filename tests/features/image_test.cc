@@ -97,11 +97,46 @@ TEST_F(ImageTest, AJpegCutAnywhereIsNeverACrash) {
   for (std::size_t length = 0; length < bytes.size(); length += 7) {
     const std::string path = WriteBytes("cut.jpg", bytes.substr(0, length));
     const Result<ImageSize> size = ReadImageSize(path);
-    if (size) {
-      EXPECT_EQ(size->width_px, 8);
-    } else {
-      EXPECT_EQ(size.error().code, ErrorCode::kParse);
-    }
+    EXPECT_THAT(size, IsError(ErrorCode::kParse, "cut.jpg"));
+    EXPECT_THAT(ReadGrayImage(path), IsError(ErrorCode::kParse, "cut.jpg"));
+  }
+}
+
+TEST_F(ImageTest, AJpegIsWholeOnlyWithItsOwnEnd) {
+  // Noise: coded data with every byte value in them. The end of a thumbnail
+  // inside a segment is not that of the image.
+  cv::Mat noise(64, 64, CV_8UC1);
+  cv::randu(noise, 0, 256);
+  const std::string thumbnail = "\xff\xe1\x00\x06\xff\xd9\xff\xd9";
+  for (const int progressive : {0, 1}) {
+    cv::imwrite(Path("a.jpg"), noise,
+                {cv::IMWRITE_JPEG_PROGRESSIVE, progressive,
+                 cv::IMWRITE_JPEG_RST_INTERVAL, 2});
+    std::ifstream stream(Path("a.jpg"), std::ios::binary);
+    std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+    bytes.insert(2, thumbnail);
+    EXPECT_THAT(ReadGrayImage(WriteBytes("whole.jpg", bytes + "more")), IsOk());
+    EXPECT_THAT(ReadGrayImage(
+                    WriteBytes("half.jpg", bytes.substr(0, bytes.size() / 2))),
+                IsError(ErrorCode::kParse, "cut off"));
+  }
+}
+
+TEST_F(ImageTest, AnImageTooLargeIsRefusedBeforeItIsDecoded) {
+  // Only the heads: were they decoded, it would fail for want of an image.
+  const std::string side("\x00\x00\x7d\x00", 4);  // 32000
+  const std::string png = std::string("\x89PNG\r\n\x1a\n") +
+                          std::string("\x00\x00\x00\x0dIHDR", 8) + side + side +
+                          std::string("\x08\x00\x00\x00\x00", 5);
+  std::string bmp("BM");
+  bmp += std::string(16, '\0') + std::string("\x00\x7d\x00\x00", 4) +
+         std::string("\x00\x7d\x00\x00", 4) + std::string(28, '\0');
+  for (const std::string& bytes : {png, bmp}) {
+    const std::string path = WriteBytes("huge.png", bytes);
+    EXPECT_THAT(ReadGrayImage(path),
+                IsError(ErrorCode::kUnsupported, "32000 x 32000"));
+    EXPECT_THAT(ReadImageSize(path),
+                IsError(ErrorCode::kUnsupported, "32000 x 32000"));
   }
 }
 

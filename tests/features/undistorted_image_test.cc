@@ -1,4 +1,4 @@
-#include "lowlap/features/undistorted_image.h"
+#include "lowlap/features/internal/undistorted_image.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -26,69 +26,69 @@ Scene FourViews() {
   return SceneWith({{0, "a.jpg"}, {2, "b.jpg"}, {3, "my photo.jpg"}, {7, "2"}});
 }
 
-TEST(SelectPairsTest, All) {
-  const auto pairs = SelectPairs(FourViews(), "all");
+TEST(SelectViewPairsTest, All) {
+  const auto pairs = SelectViewPairs(FourViews(), "all");
   ASSERT_THAT(pairs, IsOk());
   EXPECT_THAT(*pairs,
               ElementsAre(ViewPair{0, 2}, ViewPair{0, 3}, ViewPair{0, 7},
                           ViewPair{2, 3}, ViewPair{2, 7}, ViewPair{3, 7}));
 }
 
-TEST(SelectPairsTest, ChainAndCycle) {
-  const auto chain = SelectPairs(FourViews(), "chain");
+TEST(SelectViewPairsTest, ChainAndCycle) {
+  const auto chain = SelectViewPairs(FourViews(), "chain");
   ASSERT_THAT(chain, IsOk());
   EXPECT_THAT(*chain,
               ElementsAre(ViewPair{0, 2}, ViewPair{2, 3}, ViewPair{3, 7}));
-  const auto cycle = SelectPairs(FourViews(), "cycle");
+  const auto cycle = SelectViewPairs(FourViews(), "cycle");
   ASSERT_THAT(cycle, IsOk());
   EXPECT_THAT(*cycle, ElementsAre(ViewPair{0, 2}, ViewPair{0, 7},
                                   ViewPair{2, 3}, ViewPair{3, 7}));
 }
 
-TEST(SelectPairsTest, ACycleOfTwoViewsIsOnePair) {
-  const auto pairs = SelectPairs(SceneWith({{1, "a"}, {5, "b"}}), "cycle");
+TEST(SelectViewPairsTest, ACycleOfTwoViewsIsOnePair) {
+  const auto pairs = SelectViewPairs(SceneWith({{1, "a"}, {5, "b"}}), "cycle");
   ASSERT_THAT(pairs, IsOk());
   EXPECT_THAT(*pairs, ElementsAre(ViewPair{1, 5}));
 }
 
-TEST(SelectPairsTest, FewerThanTwoViewsHaveNoPairs) {
+TEST(SelectViewPairsTest, FewerThanTwoViewsHaveNoPairs) {
   for (const char* specification : {"all", "chain", "cycle", "window:3"}) {
     for (const Scene& scene : {Scene{}, SceneWith({{4, "a"}})}) {
-      const auto pairs = SelectPairs(scene, specification);
+      const auto pairs = SelectViewPairs(scene, specification);
       ASSERT_THAT(pairs, IsOk());
       EXPECT_THAT(*pairs, IsEmpty());
     }
   }
 }
 
-TEST(SelectPairsTest, Window) {
-  const auto two = SelectPairs(FourViews(), "window:2");
+TEST(SelectViewPairsTest, Window) {
+  const auto two = SelectViewPairs(FourViews(), "window:2");
   ASSERT_THAT(two, IsOk());
   EXPECT_THAT(*two, ElementsAre(ViewPair{0, 2}, ViewPair{0, 3}, ViewPair{2, 3},
                                 ViewPair{2, 7}, ViewPair{3, 7}));
-  EXPECT_EQ(*SelectPairs(FourViews(), "window:99"),
-            *SelectPairs(FourViews(), "all"));
+  EXPECT_EQ(*SelectViewPairs(FourViews(), "window:99"),
+            *SelectViewPairs(FourViews(), "all"));
 }
 
-TEST(SelectPairsTest, RejectsBadWindows) {
+TEST(SelectViewPairsTest, RejectsBadWindows) {
   for (const char* specification :
        {"window:", "window:0", "window:-1", "window:2x", "window:1.5",
         "window:99999999999"}) {
-    EXPECT_THAT(SelectPairs(FourViews(), specification),
+    EXPECT_THAT(SelectViewPairs(FourViews(), specification),
                 IsError(ErrorCode::kInvalidArgument, specification));
   }
 }
 
-TEST(SelectPairsTest, ReadsAFile) {
+TEST(SelectViewPairsTest, ReadsAFile) {
   const std::string path = ::testing::TempDir() + "/lowlap_pairs.txt";
   std::ofstream(path) << "0 3\na.jpg b.jpg\n";
-  const auto pairs = SelectPairs(FourViews(), path);
+  const auto pairs = SelectViewPairs(FourViews(), path);
   ASSERT_THAT(pairs, IsOk());
   EXPECT_THAT(*pairs, ElementsAre(ViewPair{0, 2}, ViewPair{0, 3}));
   std::remove(path.c_str());
-  EXPECT_THAT(SelectPairs(FourViews(), path),
+  EXPECT_THAT(SelectViewPairs(FourViews(), path),
               IsError(ErrorCode::kNotFound, "all, chain, cycle, window:N"));
-  EXPECT_THAT(SelectPairs(FourViews(), "auto"),
+  EXPECT_THAT(SelectViewPairs(FourViews(), "auto"),
               IsError(ErrorCode::kInvalidArgument, "features"));
 }
 
@@ -110,6 +110,14 @@ TEST(ParsePairsTest, ANameThatIsANumberIsReadAsTheName) {
   const auto pairs = ParsePairs(FourViews(), "0 2\n", "pairs.txt");
   ASSERT_THAT(pairs, IsOk());
   EXPECT_THAT(*pairs, ElementsAre(ViewPair{0, 7}));
+}
+
+TEST(ParsePairsTest, StemsAreNamesWhateverTheIds) {
+  const Scene scene =
+      SceneWith({{0, "0001.jpg"}, {1, "0002.jpg"}, {2, "0003.jpg"}});
+  const auto pairs = ParsePairs(scene, "0001 0002\n", "pairs.txt");
+  ASSERT_THAT(pairs, IsOk());
+  EXPECT_THAT(*pairs, ElementsAre(ViewPair{0, 1}));
 }
 
 TEST(ParsePairsTest, ErrorsNameTheLine) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "lowlap/core/random.h"
+#include "lowlap/matching/internal/approximate_nearest_two.h"
 #include "lowlap/matching/internal/nearest_two.h"
 #include "support/matchers.h"
 #include "support/synthetic_image.h"
@@ -93,6 +94,38 @@ TEST(FindNearestTwoTest, TheLargestDistanceIsExact) {
   EXPECT_EQ(nearest[0].distance2, 128 * 255 * 255);
   EXPECT_EQ(nearest[0].second_distance2, 128 * 255 * 255);
   EXPECT_EQ(nearest[1].distance2, 0);
+}
+
+TEST(FindNearestTwoApproximatelyTest,
+     FindsNearlyAllAndNeverADistanceThatIsNone) {
+  // Descriptors as of the same blobs seen again, among strangers.
+  const auto database = RandomDescriptors(5, 4000, 256);
+  std::vector<PointDescriptor> queries(database.begin(),
+                                       database.begin() + 500);
+  Random random(6);
+  for (PointDescriptor& query : queries) {
+    for (std::uint8_t& value : query) {
+      value = static_cast<std::uint8_t>(value / 2 + random.Index(128));
+    }
+  }
+  const auto exact = FindNearestTwo(queries, database);
+  const auto found = internal::FindNearestTwoApproximately(queries, database);
+  const auto again = internal::FindNearestTwoApproximately(queries, database);
+  ASSERT_EQ(found.size(), queries.size());
+  int num_same = 0;
+  for (std::size_t i = 0; i < queries.size(); ++i) {
+    EXPECT_EQ(found[i].distance2,
+              SquaredDistance(queries[i], database[found[i].index]));
+    EXPECT_GE(found[i].distance2, exact[i].distance2);
+    EXPECT_GE(found[i].second_distance2, exact[i].second_distance2);
+    EXPECT_EQ(found[i].index, again[i].index);
+    EXPECT_EQ(found[i].second_distance2, again[i].second_distance2);
+    num_same += found[i].index == exact[i].index;
+  }
+  // Descriptors without any structure are the hardest there are for trees.
+  EXPECT_GT(num_same, 250);
+  EXPECT_EQ(internal::FindNearestTwoApproximately(queries, {}).front().index,
+            -1);
 }
 
 // At distance `offset` from `base`, along element `k`.

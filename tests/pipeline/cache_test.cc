@@ -128,6 +128,37 @@ TEST_F(CacheTest, EveryDamageIsNoticed) {
   EXPECT_THAT(cache->Read("kind", kKey), IsError(ErrorCode::kParse, "damaged"));
 }
 
+TEST_F(CacheTest, ADamagedImageIsLeftOutAndNamed) {
+  AddImages();
+  IntrinsicSource source;
+  source.focal_px = 150;
+  const auto scene = SceneFromImages((folder_ / "images").string(), source, {});
+  ASSERT_THAT(scene, IsOk());
+  Write(folder_ / "images" / "1.png", "gone bad since");
+  for (const std::string& cache : {std::string(), CachePath(), CachePath()}) {
+    FrontEndOptions options;
+    options.cache_folder = cache;
+    std::vector<std::string> warnings;
+    RunContext context;
+    context.log = [&](LogLevel level, const std::string& message) {
+      if (level == LogLevel::kWarning) warnings.push_back(message);
+    };
+    StageLog stages;
+    const auto found = MatchImages(*scene, options, context, &stages);
+    ASSERT_THAT(found, IsOk());
+    EXPECT_EQ(found->features.size(), 2u);
+    EXPECT_EQ(found->matches.size(), 1u);
+    EXPECT_EQ(found->matches.count({0, 2}), 1u);
+    ASSERT_EQ(found->failed.size(), 1u);
+    EXPECT_EQ(found->failed.begin()->first, 1u);
+    EXPECT_THAT(warnings, ::testing::ElementsAre(HasSubstr("1.png")));
+  }
+  Write(folder_ / "images" / "0.png", "this one too");
+  StageLog stages;
+  EXPECT_THAT(MatchImages(*scene, {}, {}, &stages),
+              IsError(ErrorCode::kParse, "0.png"));
+}
+
 TEST_F(CacheTest, AnEntryUnderAForeignNameIsNotTaken) {
   const auto cache = CacheFolder::Open(CachePath());
   ASSERT_THAT(cache->Write("kind", kKey, "of this key"), IsOk());

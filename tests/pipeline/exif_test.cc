@@ -25,7 +25,7 @@ class ExifTest : public ::testing::Test {
   std::optional<double> FocalPx(const std::map<ExifTag, double>& tags) {
     cv::imwrite(path_, cv::Mat(200, 300, CV_8UC1, cv::Scalar(90)));
     if (!tags.empty()) AddExif(tags, path_);
-    return ReadExifFocalPx(path_, {300, 200}).value();
+    return ReadExif(path_, {300, 200}).value().focal_px;
   }
 
   std::string path_ = (fs::temp_directory_path() /
@@ -62,8 +62,21 @@ TEST_F(ExifTest, WithoutUsefulDataThereIsNone) {
   EXPECT_EQ(FocalPx({}), std::nullopt);
   EXPECT_EQ(FocalPx({{EXIF_TAG_FOCAL_LENGTH, 20}}), std::nullopt);
   EXPECT_EQ(FocalPx({{EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM, 0}}), std::nullopt);
-  EXPECT_THAT(ReadExifFocalPx("no/such/file.jpg", {300, 200}),
+  EXPECT_THAT(ReadExif("no/such/file.jpg", {300, 200}),
               IsError(ErrorCode::kNotFound, "no/such/file.jpg"));
+}
+
+TEST_F(ExifTest, OrientationAndTheSizeAsTakenAreRead) {
+  EXPECT_FALSE(FocalPx({{EXIF_TAG_ORIENTATION, 6},
+                        {EXIF_TAG_PIXEL_X_DIMENSION, 3000},
+                        {EXIF_TAG_PIXEL_Y_DIMENSION, 2000}}));
+  const auto geometry = ReadExif(path_, {300, 200});
+  ASSERT_TRUE(geometry);
+  EXPECT_EQ(geometry->orientation, 6);
+  EXPECT_EQ(geometry->taken.width_px, 3000);
+  EXPECT_EQ(geometry->taken.height_px, 2000);
+  EXPECT_FALSE(FocalPx({}));
+  EXPECT_EQ(ReadExif(path_, {300, 200})->orientation, 1);
 }
 
 }  // namespace

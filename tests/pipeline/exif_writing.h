@@ -20,7 +20,9 @@ inline void AddExif(const std::map<ExifTag, double>& tags,
   for (const auto& [tag, value] : tags) {
     ExifEntry* entry = exif_entry_new();
     entry->tag = tag;
-    exif_content_add_entry(data->ifd[EXIF_IFD_EXIF], entry);
+    exif_content_add_entry(
+        data->ifd[tag == EXIF_TAG_ORIENTATION ? EXIF_IFD_0 : EXIF_IFD_EXIF],
+        entry);
     const bool rational = tag == EXIF_TAG_FOCAL_LENGTH ||
                           tag == EXIF_TAG_FOCAL_PLANE_X_RESOLUTION;
     entry->format = rational ? EXIF_FORMAT_RATIONAL : EXIF_FORMAT_SHORT;

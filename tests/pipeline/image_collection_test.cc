@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
@@ -43,7 +44,7 @@ class ImageCollection : public ::testing::Test {
 TEST_F(ImageCollection, ViewsFollowTheFileNamesAndShareIntrinsicsBySize) {
   AddImage("b.png", 40, 30);
   AddImage("a.JPG", 40, 30);
-  AddImage("c.png", 20, 30);
+  AddImage("c.png", 30, 40);
   std::ofstream(folder_ / "notes.txt") << "no image";
   const auto scene = SceneFromImages(folder_.string(), Focal(50), {});
   ASSERT_TRUE(scene) << scene.error().ToString();
@@ -159,10 +160,127 @@ TEST_F(ImageCollection, IntrinsicsOfAnotherSceneGoByFileName) {
   const auto one = SceneFromImages(folder_.string(), source, {});
   ASSERT_TRUE(one);
   EXPECT_TRUE(*one->FindIntrinsic(0) == wide);
-  source.scene->intrinsics.at(8).width_px = 41;
+  source.scene->intrinsics.at(8).width_px = 60;
   const auto misfit = SceneFromImages(folder_.string(), source, {});
   ASSERT_FALSE(misfit);
-  EXPECT_THAT(misfit.error().message, ::testing::HasSubstr("41 x 30"));
+  EXPECT_THAT(misfit.error().message, ::testing::HasSubstr("60 x 30"));
+}
+
+TEST_F(ImageCollection, ACalibrationOfAnotherSizeIsRefusedAndNamed) {
+  AddImage("a.png", 400, 300);
+  AddImage("b.png", 400, 300);
+  for (const double factor : {0.25, 0.5, 2.0, 4.0}) {
+    IntrinsicSource source;
+    source.calibration = Mat3(Vec3(500, 500, 1).asDiagonal());
+    (*source.calibration)(0, 2) = 204;
+    (*source.calibration)(1, 2) = 148;
+    source.calibration->topRows<2>() *= factor;
+    const auto refused = SceneFromImages(folder_.string(), source, {});
+    ASSERT_FALSE(refused) << factor;
+    EXPECT_EQ(refused.error().code, ErrorCode::kInvalidArgument);
+    EXPECT_THAT(refused.error().file, ::testing::HasSubstr("a.png"));
+    EXPECT_THAT(refused.error().message, ::testing::HasSubstr("400 x 300"));
+  }
+  IntrinsicSource source;
+  source.calibration = Mat3(Vec3(500, 500, 1).asDiagonal());
+  (*source.calibration)(0, 2) = 5000;
+  EXPECT_FALSE(SceneFromImages(folder_.string(), source, {}));
+  // A crop is possible, but worth a word.
+  (*source.calibration)(0, 2) = 280;
+  (*source.calibration)(1, 2) = 150;
+  std::vector<std::string> notes;
+  EXPECT_TRUE(SceneFromImages(folder_.string(), source, {}, &notes));
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_THAT(notes[0], ::testing::HasSubstr("(280.0, 150.0) lies 20 %"));
+}
+
+TEST_F(ImageCollection, PhotographsOfAnotherSizeGetTheirCalibrationScaled) {
+  AddImage("a.png", 400, 300);
+  AddImage("b.png", 400, 300);
+  AddImage("c.png", 200, 150);
+  IntrinsicSource matrix;
+  matrix.calibration = Mat3::Identity();
+  (*matrix.calibration) << 500, 0, 204, 0, 510, 148, 0, 0, 1;
+  for (const IntrinsicSource& source : {matrix, Focal(500)}) {
+    std::vector<std::string> notes;
+    const auto scene = SceneFromImages(folder_.string(), source, {}, &notes);
+    ASSERT_TRUE(scene) << scene.error().ToString();
+    const Intrinsic* large = scene->FindIntrinsic(0);
+    const Intrinsic* half = scene->FindIntrinsic(2);
+    EXPECT_EQ(large->fx_px, 500);
+    EXPECT_EQ(half->fx_px, 250);
+    EXPECT_EQ(half->fy_px, 0.5 * large->fy_px);
+    EXPECT_EQ(half->principal_point_px,
+              0.5 * large->principal_point_px - Vec2(0.25, 0.25));
+    EXPECT_EQ(notes, std::vector<std::string>{
+                         "c.png: the calibration was scaled by 0.5"});
+  }
+  AddImage("c.png", 200, 190);
+  const auto cropped = SceneFromImages(folder_.string(), matrix, {});
+  ASSERT_FALSE(cropped);
+  EXPECT_THAT(cropped.error().file, ::testing::HasSubstr("c.png"));
+}
+
+TEST_F(ImageCollection, TurnedPhotographsGoByTheirExifOrientation) {
+  AddImage("a.jpg", 400, 300);
+  AddImage("b.jpg", 400, 300);
+  AddImage("c.jpg", 300, 400);
+  IntrinsicSource source;
+  source.calibration = Mat3::Identity();
+  (*source.calibration) << 500, 0, 204, 0, 510, 148, 0, 0, 1;
+  const auto unknown = SceneFromImages(folder_.string(), source, {});
+  ASSERT_FALSE(unknown);
+  EXPECT_THAT(unknown.error().file, ::testing::HasSubstr("c.jpg"));
+  EXPECT_THAT(unknown.error().message, ::testing::HasSubstr("turned"));
+  for (const int orientation : {6, 8}) {
+    AddImage("c.jpg", 300, 400);
+    testing::AddExif({{EXIF_TAG_ORIENTATION, orientation}},
+                     (folder_ / "c.jpg").string());
+    std::vector<std::string> notes;
+    const auto scene = SceneFromImages(folder_.string(), source, {}, &notes);
+    ASSERT_TRUE(scene) << scene.error().ToString();
+    // The upright picture's pixel (x, y) is stored at (y, 399 - x) if reading
+    // it takes a turn clockwise, otherwise at (299 - y, x).
+    const Intrinsic* turned = scene->FindIntrinsic(2);
+    EXPECT_EQ(turned->fx_px, 510);
+    EXPECT_EQ(turned->fy_px, 500);
+    EXPECT_EQ(turned->principal_point_px,
+              orientation == 6 ? Vec2(148, 195) : Vec2(151, 204));
+    ASSERT_EQ(notes.size(), 1u);
+    EXPECT_THAT(notes[0], ::testing::HasSubstr("c.jpg"));
+  }
+}
+
+TEST_F(ImageCollection, ShrunkCopiesAreKnownByTheSizeAsTaken) {
+  const std::map<ExifTag, double> taken = {{EXIF_TAG_PIXEL_X_DIMENSION, 400},
+                                           {EXIF_TAG_PIXEL_Y_DIMENSION, 300}};
+  for (const char* name : {"a.jpg", "b.jpg"}) {
+    AddImage(name, 200, 150);
+    testing::AddExif(taken, (folder_ / name).string());
+  }
+  IntrinsicSource source;
+  source.calibration = Mat3::Identity();
+  (*source.calibration) << 500, 0, 204, 0, 510, 148, 0, 0, 1;
+  std::vector<std::string> notes;
+  const auto scene = SceneFromImages(folder_.string(), source, {}, &notes);
+  ASSERT_TRUE(scene) << scene.error().ToString();
+  EXPECT_EQ(scene->FindIntrinsic(0)->fx_px, 250);
+  EXPECT_EQ(notes.size(), 2u);
+}
+
+TEST_F(ImageCollection, FilesThatCannotBeReadAreNamedAtTheDoor) {
+  for (const char* name : {"a.png", "b.png"}) AddImage(name, 8, 8);
+  fs::create_symlink("loop.png", folder_ / "loop.png");
+  const auto loop = SceneFromImages(folder_.string(), Focal(9), {});
+  ASSERT_FALSE(loop);
+  EXPECT_EQ(loop.error().code, ErrorCode::kIo);
+  EXPECT_THAT(loop.error().file, ::testing::HasSubstr("loop.png"));
+  fs::remove(folder_ / "loop.png");
+  std::ofstream(folder_ / "caf\xe9.png") << "Latin-1";
+  const auto named = SceneFromImages(folder_.string(), Focal(9), {});
+  ASSERT_FALSE(named);
+  EXPECT_EQ(named.error().code, ErrorCode::kInvalidArgument);
+  EXPECT_THAT(named.error().file, ::testing::HasSubstr("caf\\xE9.png"));
 }
 
 TEST_F(ImageCollection, ViewsAreFoundByNameStemOrId) {

@@ -25,5 +25,33 @@ TEST(ExplainNoPose, SaysThatNothingMatches) {
   EXPECT_THAT(ExplainNoPose({}), HasSubstr("none has matches"));
 }
 
+TEST(FindUnrelatedViews, NamesWhatKeepsEachViewOut) {
+  const auto pair = [](ViewId a, ViewId b, int matches, const char* reason) {
+    PairReport report;
+    report.views = {a, b};
+    report.num_point_matches = matches;
+    report.reason = reason;
+    return report;
+  };
+  std::vector<PairReport> pairs = {
+      pair(0, 1, 50, ""), pair(1, 2, 9, "few"), pair(2, 3, 4, "fewer"),
+      pair(3, 4, 70, "no parallax: turned"), pair(2, 4, 99, "chance")};
+  pairs[0].accepted = true;
+  pairs[3].no_parallax = true;
+  const auto views = FindUnrelatedViews(
+      pairs, {{7, Error{ErrorCode::kParse, "no image", "7.jpg", ""}}});
+  ASSERT_EQ(views.size(), 4u);
+  EXPECT_EQ(views[0].view, 2u);
+  EXPECT_EQ(views[0].reason, "chance");
+  EXPECT_FALSE(views[0].no_parallax);
+  for (const std::size_t n : {1, 2}) {
+    EXPECT_EQ(views[n].view, 2 + n);
+    EXPECT_TRUE(views[n].no_parallax);
+    EXPECT_EQ(views[n].reason, "no parallax: turned");
+  }
+  EXPECT_EQ(views[3].view, 7u);
+  EXPECT_EQ(views[3].reason, "no image");
+}
+
 }  // namespace
 }  // namespace lowlap

@@ -35,7 +35,7 @@ TEST(PairsAuto, FindTheNeighboursOfARoom) {
   ASSERT_EQ(stages.stages().size(), 3u);
   EXPECT_EQ(stages.stages()[1].name, "pair retrieval");
   EXPECT_LT(measured->matches.size(), 40u);  // of 55
-  const auto neighbours = SelectPairs(*scene, "cycle");
+  const auto neighbours = SelectViewPairs(*scene, "cycle");
   ASSERT_THAT(neighbours, IsOk());
   for (const ViewPair& views : *neighbours) {
     EXPECT_EQ(measured->matches.count(views), 1u)

@@ -1,4 +1,4 @@
-#include "lowlap/two_view/five_point.h"
+#include "lowlap/two_view/internal/five_point.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/two_view/line_crossings.h"
+#include "lowlap/two_view/internal/line_crossings.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/two_view/polynomial.h"
+#include "lowlap/two_view/internal/polynomial.h"
 
 #include <gtest/gtest.h>
 

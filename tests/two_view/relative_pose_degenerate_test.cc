@@ -66,6 +66,47 @@ TEST(EstimateRelativePose, AmbiguousPlanarSceneKeepsBothMotions) {
   }
 }
 
+TEST(EstimateRelativePose, EveryAlternativeIsMeaningful) {
+  // So few matches that the second motion of a plane may have no more inliers
+  // than a sample: its NFA is infinite, and no scene can hold it.
+  int num_planar = 0;
+  for (int seed = 0; seed < 300; ++seed) {
+    TwoViewSceneOptions options = AmbiguousOptions();
+    options.num_right = 7 + seed % 4;
+    options.num_wrong = 4;
+    options.noise_px = 1;
+    const TwoViewScene scene = MakeTwoViewScene(options, 400 + seed);
+    TwoViewOptions quick;
+    quick.max_samples = 100;
+    const auto result = EstimateRelativePose(scene.Input(), quick, seed);
+    if (!result) continue;
+    EXPECT_LT(result->pose.log10_nfa, 0) << seed;
+    for (const RelativePose& other : result->alternatives) {
+      EXPECT_LT(other.log10_nfa, 0) << seed;
+    }
+    num_planar += result->geometry == TwoViewGeometry::kPlanar ||
+                  result->geometry == TwoViewGeometry::kAmbiguousPlane;
+  }
+  EXPECT_GT(num_planar, 0);
+}
+
+TEST(ImproveRelativePose, APoseThatNoMatchFitsComesBackAsItWas) {
+  TwoViewSceneOptions options;
+  options.num_right = 40;
+  const TwoViewScene scene = MakeTwoViewScene(options, 360);
+  const auto result = EstimateRelativePose(scene.Input(), {}, 1);
+  ASSERT_THAT(result, IsOk());
+  TwoViewSceneOptions wrong;
+  wrong.num_right = 0;
+  wrong.num_wrong = 6;
+  for (int seed = 0; seed < 50; ++seed) {
+    const TwoViewScene other = MakeTwoViewScene(wrong, 361 + seed);
+    const RelativePose improved =
+        ImproveRelativePose(other.Input(), result->pose, {});
+    EXPECT_TRUE(improved == result->pose || improved.point_inliers.size() > 5u);
+  }
+}
+
 TEST(EstimateRelativePose, AFewPointsOffThePlaneDecide) {
   for (int seed = 0; seed < 8; ++seed) {
     TwoViewSceneOptions options = AmbiguousOptions();
@@ -94,6 +135,63 @@ TEST(EstimateRelativePose, PureRotationIsRecognised) {
         RotationErrorDeg(result->pose.rotation, scene.cam2_from_cam1.rotation),
         0.2);
   }
+}
+
+TEST(EstimateRelativePose, ACopyOfAnImageHasNoDirection) {
+  // Nothing moves, or by what coordinates in single precision round off.
+  for (const bool rounded : {false, true}) {
+    for (int seed = 0; seed < 5; ++seed) {
+      TwoViewSceneOptions options;
+      options.num_wrong = 20;
+      TwoViewScene scene = MakeTwoViewScene(options, 230 + seed);
+      for (int n = 0; n < scene.num_right; ++n) {
+        const Vec3& x = scene.features1.points[n];
+        scene.features2.points[n] =
+            rounded ? Vec3(x.cast<float>().cast<double>()) : x;
+      }
+      const auto result = EstimateRelativePose(scene.Input(), {}, seed);
+      ASSERT_THAT(result, IsOk());
+      EXPECT_EQ(result->geometry, TwoViewGeometry::kRotationOnly) << seed;
+      EXPECT_LT(RotationErrorDeg(result->pose.rotation, Mat3::Identity()),
+                0.01);
+    }
+  }
+}
+
+TEST(EstimateRelativePose, PureRotationsAreRarelyTakenForTranslations) {
+  // One in a thousand is promised.
+  int num_false = 0;
+  for (int seed = 0; seed < 100; ++seed) {
+    TwoViewSceneOptions options;
+    options.baseline = 0;
+    options.num_right = 20 + 10 * (seed % 10);
+    options.num_wrong = seed % 3 * 15;
+    options.noise_px = 0.1 * (1 + seed % 7);
+    const TwoViewScene scene = MakeTwoViewScene(options, 500 + seed);
+    TwoViewOptions quick;
+    quick.max_samples = 300;
+    const auto result = EstimateRelativePose(scene.Input(), quick, seed);
+    ASSERT_THAT(result, IsOk());
+    num_false += result->HasDirection();
+  }
+  // Two would have a probability of 0.005.
+  EXPECT_LE(num_false, 1);
+}
+
+TEST(EstimateRelativePose, SmallParallaxIsSeenBesideGreatNoise) {
+  // Beside the rotation that fits best, depths from 4 to 9 leave about a pixel.
+  int num_seen = 0;
+  constexpr int kTrials = 20;
+  for (int seed = 0; seed < kTrials; ++seed) {
+    TwoViewSceneOptions options;
+    options.baseline = 0.02;
+    options.noise_px = 0.3 + 0.01 * seed;
+    const TwoViewScene scene = MakeTwoViewScene(options, 700 + seed);
+    const auto result = EstimateRelativePose(scene.Input(), {}, seed);
+    ASSERT_THAT(result, IsOk());
+    num_seen += result->HasDirection();
+  }
+  EXPECT_EQ(num_seen, kTrials);
 }
 
 TEST(EstimateRelativePose, BaselineBelowTheNoiseIsPureRotation) {

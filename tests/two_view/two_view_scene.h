@@ -5,7 +5,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/two_view/point_pairs.h"
+#include "lowlap/two_view/internal/point_pairs.h"
 #include "lowlap/two_view/relative_pose_estimator.h"
 
 namespace lowlap::testing {

@@ -7,4 +7,11 @@ namespace lowlap {
 /// The text that printf would write, of any length.
 [[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...);
 
+/// Well-formed UTF-8 (RFC 3629).
+bool IsUtf8(const std::string& text);
+
+/// The text with bytes that are not ASCII, and control characters, as \xNN:
+/// for messages about text that cannot be shown.
+std::string Escaped(const std::string& text);
+
 }  // namespace lowlap

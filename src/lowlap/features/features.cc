@@ -1,5 +1,7 @@
 #include "lowlap/features/features.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,15 +9,21 @@
 #include <utility>
 
 #include "lowlap/core/atomic_file.h"
+#include "lowlap/core/format.h"
 #include "lowlap/core/parallel.h"
-#include "lowlap/features/image_memory.h"
-#include "lowlap/features/undistorted_image.h"
+#include "lowlap/features/internal/image_memory.h"
+#include "lowlap/features/internal/undistorted_image.h"
 
 namespace lowlap {
 namespace {
 
 // SIFT's pyramid: 4 times the pixels, 11 images of 4 bytes, octaves 4/3.
 constexpr double kBytesPerPixel = 240;
+
+double MachineMemoryGb() {
+  return 1e-9 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<double>(sysconf(_SC_PAGESIZE));
+}
 
 Status AddPoints(const GrayImage& image, const FeatureOptions& options,
                  DetectedFeatures* detected) {
@@ -106,6 +114,16 @@ Result<DetectedFeatures> DetectFeaturesOfView(const Scene& scene, ViewId id,
   const std::string path = scene.ImagePath(id);
   const Result<GrayImage> image = DecodeGrayImage(image_bytes, path);
   if (!image) return tl::unexpected<Error>(image.error());
+  const double needed_gb =
+      1e-9 * kBytesPerPixel * static_cast<double>(image->pixels.size());
+  if (options.detect_points && needed_gb > MachineMemoryGb()) {
+    return MakeError(
+        ErrorCode::kUnsupported,
+        Format("the points of an image of %d x %d pixels take "
+               "about %.0f GB of memory, this machine has %.0f",
+               image->width, image->height, needed_gb, MachineMemoryGb()),
+        path);
+  }
   const View& view = scene.views.at(id);
   if (image->width != view.width_px || image->height != view.height_px) {
     return MakeError(ErrorCode::kInvalidScene,
@@ -139,7 +157,7 @@ int DetectionThreads(const Scene& scene, const FeatureOptions& options,
 
 Result<std::map<ViewId, DetectedFeatures>> DetectFeatures(
     const Scene& scene, const FeatureOptions& options,
-    const RunContext& context) {
+    const RunContext& context, std::map<ViewId, Error>* failed) {
   if (const Status s = options.Validate(); !s) {
     return tl::unexpected<Error>(s.error());
   }
@@ -164,8 +182,13 @@ Result<std::map<ViewId, DetectedFeatures>> DetectFeatures(
   std::map<ViewId, DetectedFeatures> features;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     Result<DetectedFeatures>& result = *results[i];
-    if (!result) return tl::unexpected<Error>(result.error());
-    features.emplace(ids[i], std::move(*result));
+    if (result) {
+      features.emplace(ids[i], std::move(*result));
+    } else if (failed != nullptr) {
+      failed->emplace(ids[i], result.error());
+    } else {
+      return tl::unexpected<Error>(result.error());
+    }
   }
   return features;
 }

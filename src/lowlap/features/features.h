@@ -45,7 +45,8 @@ Result<DetectedFeatures> DetectFeatures(const GrayImage& image,
                                         const Intrinsic& intrinsic,
                                         const FeatureOptions& options);
 
-/// The features of one view from its image file's bytes.
+/// The features of one view from its image file's bytes. kUnsupported: an image
+/// whose points take more memory than the machine has.
 Result<DetectedFeatures> DetectFeaturesOfView(const Scene& scene, ViewId id,
                                               const std::string& image_bytes,
                                               const FeatureOptions& options);
@@ -56,9 +57,10 @@ int DetectionThreads(const Scene& scene, const FeatureOptions& options,
 
 /// Reads the images of all views of the scene (Scene::ImagePath) and detects
 /// their features, one image per thread. An image whose size is not that of
-/// its view is kInvalidScene; the error of the lowest view id is returned.
+/// its view is kInvalidScene. Views whose images fail are left out and go to
+/// `failed`; without it (null), the error of the lowest view id is returned.
 Result<std::map<ViewId, DetectedFeatures>> DetectFeatures(
     const Scene& scene, const FeatureOptions& options,
-    const RunContext& context);
+    const RunContext& context, std::map<ViewId, Error>* failed = nullptr);
 
 }  // namespace lowlap

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "lowlap/features/internal/opencv.h"
-#include "lowlap/features/point_localization.h"
+#include "lowlap/features/internal/point_localization.h"
 
 namespace lowlap {
 namespace {

@@ -12,6 +12,27 @@ Status MatchOptions::Validate() const {
   return lines.Validate();
 }
 
+PairMatches MatchPair(const DetectedFeatures& first,
+                      const DetectedFeatures& second,
+                      const MatchOptions& options) {
+  PairMatches matches;
+  if (options.match_points) {
+    matches.points = MatchPoints(first.point_descriptors,
+                                 second.point_descriptors, options.points);
+    if (matches.points.size() <
+        static_cast<std::size_t>(options.relaxed_points.starved_below)) {
+      matches.points = MatchPointsRelaxed(first, second, matches.points,
+                                          options.relaxed_points);
+    }
+  }
+  if (options.match_lines) {
+    matches.lines = MatchLines(
+        {first.features.segments, first.line_descriptors},
+        {second.features.segments, second.line_descriptors}, options.lines);
+  }
+  return matches;
+}
+
 Result<std::map<ViewPair, PairMatches>> MatchFeatures(
     const std::map<ViewId, DetectedFeatures>& features,
     const std::vector<ViewPair>& pairs, const MatchOptions& options,
@@ -31,24 +52,8 @@ Result<std::map<ViewPair, PairMatches>> MatchFeatures(
   std::vector<PairMatches> results(pairs.size());
   const Status done =
       ParallelFor(context, "matching", pairs.size(), [&](std::size_t i) {
-        const DetectedFeatures& first = features.at(pairs[i].first);
-        const DetectedFeatures& second = features.at(pairs[i].second);
-        if (options.match_points) {
-          results[i].points =
-              MatchPoints(first.point_descriptors, second.point_descriptors,
-                          options.points);
-          if (results[i].points.size() <
-              static_cast<std::size_t>(options.relaxed_points.starved_below)) {
-            results[i].points = MatchPointsRelaxed(
-                first, second, results[i].points, options.relaxed_points);
-          }
-        }
-        if (options.match_lines) {
-          results[i].lines =
-              MatchLines({first.features.segments, first.line_descriptors},
-                         {second.features.segments, second.line_descriptors},
-                         options.lines);
-        }
+        results[i] = MatchPair(features.at(pairs[i].first),
+                               features.at(pairs[i].second), options);
       });
   if (!done) return tl::unexpected<Error>(done.error());
   std::map<ViewPair, PairMatches> matches;

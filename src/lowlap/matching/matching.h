@@ -29,9 +29,14 @@ struct PairMatches {
   std::vector<FeatureMatch> lines;
 };
 
-/// Matches every pair, one pair per thread; points of a starved pair once more
-/// with a wider ratio test (MatchPointsRelaxed). A pair that names a view
-/// without features is kInvalidArgument.
+/// Matches of two views; points of a starved pair once more with a wider ratio
+/// test (MatchPointsRelaxed).
+PairMatches MatchPair(const DetectedFeatures& first,
+                      const DetectedFeatures& second,
+                      const MatchOptions& options);
+
+/// Matches every pair, one pair per thread. A pair that names a view without
+/// features is kInvalidArgument.
 Result<std::map<ViewPair, PairMatches>> MatchFeatures(
     const std::map<ViewId, DetectedFeatures>& features,
     const std::vector<ViewPair>& pairs, const MatchOptions& options,

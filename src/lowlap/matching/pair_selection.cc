@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <charconv>
-#include <map>
 #include <optional>
 #include <sstream>
 
 #include "lowlap/core/atomic_file.h"
+#include "lowlap/scene/view_names.h"
 
 namespace lowlap {
 namespace {
@@ -63,32 +63,12 @@ std::optional<std::vector<std::string>> SplitWords(const std::string& line) {
   }
 }
 
-// Views by file name; a name that several views have is ambiguous.
-using ViewNames = std::map<std::string, std::vector<ViewId>>;
-
-Result<ViewId> FindView(const Scene& scene, const ViewNames& names,
-                        const std::string& word) {
-  const auto named = names.find(word);
-  if (named != names.end()) {
-    if (named->second.size() == 1) return named->second.front();
-    return MakeError(ErrorCode::kParse,
-                     "several views are named \"" + word + "\"; use ids");
-  }
-  const std::optional<ViewId> id = ParseNumber<ViewId>(word);
-  if (id && scene.views.count(*id) > 0) return *id;
-  return MakeError(ErrorCode::kParse,
-                   "no view has the id or the file name \"" + word + "\"");
-}
-
 }  // namespace
 
 Result<std::vector<ViewPair>> ParsePairs(const Scene& scene,
                                          const std::string& text,
                                          const std::string& file) {
-  ViewNames names;
-  for (const auto& [id, view] : scene.views) {
-    names[view.filename].push_back(id);
-  }
+  const ViewNames names(scene);
   std::vector<ViewPair> pairs;
   std::istringstream stream(text);
   std::string line;
@@ -104,9 +84,9 @@ Result<std::vector<ViewPair>> ParsePairs(const Scene& scene,
       return fail("expected two views, found " + std::to_string(words->size()) +
                   " words");
     }
-    const Result<ViewId> a = FindView(scene, names, (*words)[0]);
+    const Result<ViewId> a = names.Find((*words)[0]);
     if (!a) return fail(a.error().message);
-    const Result<ViewId> b = FindView(scene, names, (*words)[1]);
+    const Result<ViewId> b = names.Find((*words)[1]);
     if (!b) return fail(b.error().message);
     if (*a == *b) return fail("a view cannot be paired with itself");
     pairs.push_back(Ordered(*a, *b));
@@ -115,8 +95,8 @@ Result<std::vector<ViewPair>> ParsePairs(const Scene& scene,
   return pairs;
 }
 
-Result<std::vector<ViewPair>> SelectPairs(const Scene& scene,
-                                          const std::string& specification) {
+Result<std::vector<ViewPair>> SelectViewPairs(
+    const Scene& scene, const std::string& specification) {
   std::vector<ViewId> ids;
   for (const auto& [id, view] : scene.views) ids.push_back(id);
 

@@ -18,14 +18,12 @@ namespace lowlap {
 ///   anything else: the path of a file of pairs (ParsePairs).
 /// "auto" is refused: it takes features to find those pairs (RetrievePairs).
 /// Errors: kInvalidArgument, kNotFound, kParse (with file and line).
-Result<std::vector<ViewPair>> SelectPairs(const Scene& scene,
-                                          const std::string& specification);
+Result<std::vector<ViewPair>> SelectViewPairs(const Scene& scene,
+                                              const std::string& specification);
 
-/// Pairs from text, one per line: two views, each by its id or by its file
-/// name, separated by blanks; a name with blanks stands in double quotes.
-/// A name equal to a number is read as the name if a view has it, otherwise as
-/// the id. Empty lines and those that start with '#' are skipped. `file` is
-/// for messages only.
+/// Pairs from text, one per line: two views as ViewNames finds them, separated
+/// by blanks; a name with blanks stands in double quotes. Empty lines and those
+/// that start with '#' are skipped. `file` is for messages only.
 Result<std::vector<ViewPair>> ParsePairs(const Scene& scene,
                                          const std::string& text,
                                          const std::string& file);

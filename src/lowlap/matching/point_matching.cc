@@ -2,12 +2,12 @@
 
 #include <algorithm>
 
+#include "lowlap/matching/internal/approximate_nearest_two.h"
 #include "lowlap/matching/internal/nearest_two.h"
 
 namespace lowlap {
 namespace {
 
-using internal::FindNearestTwo;
 using internal::NearestTwo;
 
 bool PassesRatio(const NearestTwo& nearest, double max_ratio) {
@@ -29,7 +29,10 @@ std::vector<FeatureMatch> MatchPoints(
     const std::vector<PointDescriptor>& first,
     const std::vector<PointDescriptor>& second,
     const PointMatchOptions& options) {
-  const std::vector<NearestTwo> forward = FindNearestTwo(first, second);
+  const auto find = options.matcher == PointMatcher::kFlann
+                        ? internal::FindNearestTwoApproximately
+                        : internal::FindNearestTwo;
+  const std::vector<NearestTwo> forward = find(first, second);
   std::vector<FeatureMatch> candidates;
   for (std::size_t i = 0; i < first.size(); ++i) {
     if (PassesRatio(forward[i], options.max_ratio)) {
@@ -43,7 +46,7 @@ std::vector<FeatureMatch> MatchPoints(
   for (const FeatureMatch& match : candidates) {
     targets.push_back(second[match.second]);
   }
-  const std::vector<NearestTwo> backward = FindNearestTwo(targets, first);
+  const std::vector<NearestTwo> backward = find(targets, first);
   std::vector<FeatureMatch> matches;
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     if (static_cast<FeatureIndex>(backward[c].index) == candidates[c].first &&

@@ -12,17 +12,24 @@ namespace lowlap {
 /// cached is then computed anew.
 inline constexpr int kPointMatchingVersion = 1;
 
+/// How nearest descriptors are found.
+enum class PointMatcher {
+  kExact,  // exhaustively: the cost grows with the product of the sizes
+  kFlann,  // in randomised trees (FLANN): faster beyond some 50,000 points
+};
+
 struct PointMatchOptions {
   /// A match must be closer than this times the second nearest (Lowe 2004,
   /// section 7.1), seen from either image.
   double max_ratio = 0.8;
+  PointMatcher matcher = PointMatcher::kExact;
 
   Status Validate() const;
 };
 
 /// Matches that are each other's nearest neighbours and pass the ratio test in
 /// both directions; sorted by the first index, every feature at most once.
-/// The search is exact, in integers. With fewer than two descriptors on a
+/// Distances are exact, in integers. With fewer than two descriptors on a
 /// side there is no second nearest, hence no match.
 std::vector<FeatureMatch> MatchPoints(
     const std::vector<PointDescriptor>& first,

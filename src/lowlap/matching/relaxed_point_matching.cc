@@ -72,6 +72,7 @@ std::vector<FeatureMatch> MatchPointsRelaxed(
     const RelaxedPointOptions& options) {
   PointMatchOptions wide;
   wide.max_ratio = options.max_ratio;
+  wide.matcher = options.matcher;
   const std::vector<FeatureMatch> candidates =
       MatchPoints(first.point_descriptors, second.point_descriptors, wide);
   std::set<FeatureIndex> used1, used2;

@@ -5,6 +5,7 @@
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
 #include "lowlap/features/features.h"
+#include "lowlap/matching/point_matching.h"
 
 namespace lowlap {
 
@@ -12,6 +13,7 @@ struct RelaxedPointOptions {
   /// Pairs with fewer matches are matched again; 0: none.
   int starved_below = 60;
   double max_ratio = 0.9;  // of the second pass
+  PointMatcher matcher = PointMatcher::kExact;
   /// So many of a match's nearest neighbours must lie where its own similarity
   /// puts them, up to a share of their distance.
   int neighbors = 8;

@@ -1,5 +1,6 @@
 #include "lowlap/pipeline/calibrate_images.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -60,7 +61,7 @@ Result<ImageMeasurements> MatchImages(const Scene& scene,
   const bool retrieve = options.pairs == "auto";
   std::vector<ViewPair> pairs;
   if (!retrieve) {  // what can be refused is refused before the long work
-    auto selected = SelectPairs(scene, options.pairs);
+    auto selected = SelectViewPairs(scene, options.pairs);
     if (!selected) return tl::unexpected<Error>(selected.error());
     pairs = std::move(*selected);
   }
@@ -79,11 +80,22 @@ Result<ImageMeasurements> MatchImages(const Scene& scene,
       if (!result) return tl::unexpected<Error>(result.error());
       detected = std::move(*result);
     } else {
-      auto result = DetectFeatures(scene, options.features, context);
+      auto result =
+          DetectFeatures(scene, options.features, context, &detected.failed);
       if (!result) return tl::unexpected<Error>(result.error());
       detected.features = std::move(*result);
     }
   }
+  for (const auto& [view, error] : detected.failed) {
+    if (detected.features.size() < 2) return tl::unexpected<Error>(error);
+    context.Log(LogLevel::kWarning, "left out: " + error.ToString());
+  }
+  pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
+                             [&](const ViewPair& pair) {
+                               return detected.failed.count(pair.first) > 0 ||
+                                      detected.failed.count(pair.second) > 0;
+                             }),
+              pairs.end());
   if (retrieve) {
     const StageLog::Scope scope(stages, "pair retrieval");
     auto found = RetrievePairs(detected.features, options.retrieval, context);
@@ -101,7 +113,8 @@ Result<ImageMeasurements> MatchImages(const Scene& scene,
     matches = std::move(*result);
     if (cache) cache->Prune(options.max_cache_gb * 1e9);
   }
-  return ImageMeasurements{std::move(detected.features), std::move(matches)};
+  return ImageMeasurements{std::move(detected.features), std::move(matches),
+                           std::move(detected.failed)};
 }
 
 Result<std::vector<PairReport>> RelatePairs(

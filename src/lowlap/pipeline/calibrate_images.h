@@ -17,7 +17,7 @@
 namespace lowlap {
 
 struct FrontEndOptions {
-  /// See SelectPairs; or "auto", what RetrievePairs finds in the features.
+  /// See SelectViewPairs; or "auto", what RetrievePairs finds in the features.
   std::string pairs = "all";
   RetrievalOptions retrieval;
   FeatureOptions features;
@@ -39,9 +39,13 @@ struct FrontEndOptions {
 struct ImageMeasurements {
   std::map<ViewId, DetectedFeatures> features;
   std::map<ViewPair, PairMatches> matches;  // of the selected pairs
+  /// Views left out, since their images cannot be used.
+  std::map<ViewId, Error> failed;
 };
 
 /// Detects features in the images of all views and matches the selected pairs.
+/// An image that fails is left out with its pairs, with a warning; the first
+/// error is returned if fewer than two are left.
 /// The result does not depend on what a cache holds. A cancelled run leaves
 /// the cache in order.
 Result<ImageMeasurements> MatchImages(const Scene& scene,

@@ -7,8 +7,11 @@
 #include <set>
 #include <system_error>
 
+#include "lowlap/core/format.h"
 #include "lowlap/features/image.h"
+#include "lowlap/pipeline/internal/calibration_fit.h"
 #include "lowlap/pipeline/internal/exif.h"
+#include "lowlap/scene/view_names.h"
 
 namespace lowlap {
 namespace {
@@ -30,16 +33,34 @@ bool NameFits(const std::string& name, const std::string& filename) {
   return name == filename || name == fs::path(filename).stem().string();
 }
 
+Error WithPath(const char* message, const std::string& path) {
+  return {ErrorCode::kInvalidArgument, message, Escaped(path), ""};
+}
+
 Result<std::vector<std::string>> ListImages(const std::string& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error)) {
     return MakeError(ErrorCode::kNotFound, "no such image folder", folder);
   }
+  if (!IsUtf8(folder)) {
+    return tl::unexpected<Error>(
+        WithPath("the folder's name is not UTF-8", folder));
+  }
   std::vector<std::string> names;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (entry->is_regular_file() && HasImageExtension(entry->path())) {
-      names.push_back(entry->path().filename().string());
+    if (!HasImageExtension(entry->path())) continue;
+    const std::string path = entry->path().string();
+    std::error_code unreadable;
+    const fs::file_status status = fs::status(entry->path(), unreadable);
+    if (!fs::exists(status)) {  // a link that leads nowhere, or in a circle
+      return MakeError(ErrorCode::kIo, unreadable.message(), Escaped(path));
+    }
+    if (!fs::is_regular_file(status)) continue;
+    names.push_back(entry->path().filename().string());
+    if (!IsUtf8(names.back())) {
+      return tl::unexpected<Error>(
+          WithPath("the file's name is not UTF-8; rename it", path));
     }
   }
   if (error) return MakeError(ErrorCode::kIo, error.message(), folder);
@@ -58,32 +79,21 @@ Intrinsic WithFocal(double focal_px, const ImageSize& size) {
   return intrinsic;
 }
 
-Intrinsic WithCalibration(const Mat3& k, const ImageSize& size) {
-  Intrinsic intrinsic;
-  intrinsic.width_px = size.width_px;
-  intrinsic.height_px = size.height_px;
-  intrinsic.fx_px = k(0, 0);
-  intrinsic.fy_px = k(1, 1);
-  intrinsic.principal_point_px = {k(0, 2), k(1, 2)};
-  return intrinsic;
-}
-
 Result<Intrinsic> FromExif(const std::string& path, const ImageSize& size) {
-  const auto focal_px = ReadExifFocalPx(path, size);
-  if (!focal_px) return tl::unexpected<Error>(focal_px.error());
-  if (!*focal_px) {
+  const auto exif = ReadExif(path, size);
+  if (!exif) return tl::unexpected<Error>(exif.error());
+  if (!exif->focal_px) {
     return MakeError(ErrorCode::kInsufficientData,
                      "holds no focal length in EXIF data; give a calibration "
                      "matrix, a focal length, or a file of intrinsics",
                      path);
   }
-  return WithFocal(**focal_px, size);
+  return WithFocal(*exif->focal_px, size);
 }
 
 // The id of the intrinsic in a scene that an image is to have.
 Result<IntrinsicId> FindInScene(const Scene& scene, const std::string& name,
-                                const std::string& path,
-                                const ImageSize& size) {
+                                const std::string& path) {
   IntrinsicId id = kInvalidId;
   for (const auto& [view_id, view] : scene.views) {
     if (fs::path(view.filename).filename() == name &&
@@ -98,53 +108,49 @@ Result<IntrinsicId> FindInScene(const Scene& scene, const std::string& name,
     return MakeError(ErrorCode::kInvalidArgument,
                      "the given scene has no intrinsic for this image", path);
   }
-  const Intrinsic& intrinsic = scene.intrinsics.at(id);
-  if (intrinsic.width_px != size.width_px ||
-      intrinsic.height_px != size.height_px) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "the image has " + std::to_string(size.width_px) + " x " +
-                         std::to_string(size.height_px) +
-                         " pixels, the given intrinsic " +
-                         std::to_string(intrinsic.width_px) + " x " +
-                         std::to_string(intrinsic.height_px),
-                     path);
-  }
   return id;
 }
 
-// Adds the intrinsic of an image to the scene, unless it is there.
-Result<IntrinsicId> AddIntrinsic(const IntrinsicSource& source,
-                                 const std::string& name,
-                                 const std::string& path, const ImageSize& size,
-                                 Scene* scene) {
-  Intrinsic intrinsic;
-  IntrinsicId id = kInvalidId;
-  if (source.scene) {
-    const auto found = FindInScene(*source.scene, name, path, size);
-    if (!found) return found;
-    id = *found;
-    intrinsic = source.scene->intrinsics.at(id);
-  } else if (source.calibration) {
-    intrinsic = WithCalibration(*source.calibration, size);
-  } else if (source.focal_px) {
-    intrinsic = WithFocal(*source.focal_px, size);
-  } else {
-    const auto from_exif = FromExif(path, size);
-    if (!from_exif) return tl::unexpected<Error>(from_exif.error());
-    intrinsic = *from_exif;
+// One calibration for all photographs, with the size that it is for; a focal
+// length alone is the same however a photograph is turned.
+Result<std::optional<Intrinsic>> CommonIntrinsic(
+    const IntrinsicSource& source, const std::vector<std::string>& paths,
+    const std::vector<ImageSize>& sizes, std::vector<std::string>* notes) {
+  if (source.calibration) {
+    const Mat3& k = *source.calibration;
+    Intrinsic intrinsic;
+    intrinsic.fx_px = k(0, 0);
+    intrinsic.fy_px = k(1, 1);
+    intrinsic.principal_point_px = {k(0, 2), k(1, 2)};
+    const auto made_for = FindCalibratedSize(intrinsic, paths, sizes);
+    if (!made_for) return tl::unexpected<Error>(made_for.error());
+    intrinsic.width_px = made_for->size.width_px;
+    intrinsic.height_px = made_for->size.height_px;
+    if (!made_for->warning.empty()) notes->push_back(made_for->warning);
+    return std::optional<Intrinsic>(intrinsic);
   }
-  if (const Status valid = intrinsic.Validate(); !valid) {
-    return MakeError(ErrorCode::kInvalidArgument, valid.error().message);
+  if (source.focal_px) {
+    const auto size = FindCommonSize(paths, sizes);
+    if (!size) return tl::unexpected<Error>(size.error());
+    return std::optional<Intrinsic>(WithFocal(*source.focal_px, *size));
   }
-  if (id == kInvalidId) {
-    const auto equal = std::find_if(
-        scene->intrinsics.begin(), scene->intrinsics.end(),
-        [&](const auto& entry) { return entry.second == intrinsic; });
-    id = equal != scene->intrinsics.end()
-             ? equal->first
-             : static_cast<IntrinsicId>(scene->intrinsics.size());
+  return std::optional<Intrinsic>();
+}
+
+// The id of an intrinsic in the scene, where it is put unless it is there:
+// `wanted`, if that is free.
+IntrinsicId Add(const Intrinsic& intrinsic, IntrinsicId wanted, Scene* scene) {
+  auto& intrinsics = scene->intrinsics;
+  if (wanted != kInvalidId) {
+    const auto [entry, is_new] = intrinsics.emplace(wanted, intrinsic);
+    if (is_new || entry->second == intrinsic) return wanted;
   }
-  scene->intrinsics.emplace(id, intrinsic);
+  for (const auto& [id, known] : intrinsics) {
+    if (known == intrinsic) return id;
+  }
+  const IntrinsicId id =
+      intrinsics.empty() ? 0 : intrinsics.rbegin()->first + 1;
+  intrinsics[id] = intrinsic;
   return id;
 }
 
@@ -152,7 +158,8 @@ Result<IntrinsicId> AddIntrinsic(const IntrinsicSource& source,
 
 Result<Scene> SceneFromImages(const std::string& folder,
                               const IntrinsicSource& intrinsics,
-                              const std::vector<std::string>& excluded) {
+                              const std::vector<std::string>& excluded,
+                              std::vector<std::string>* notes) {
   if (intrinsics.calibration.has_value() + intrinsics.focal_px.has_value() +
           intrinsics.scene.has_value() >
       1) {
@@ -179,20 +186,54 @@ Result<Scene> SceneFromImages(const std::string& folder,
                      folder);
   }
 
+  std::vector<std::string> paths;
+  std::vector<ImageSize> sizes;
+  for (const std::string& name : *names) {
+    paths.push_back((fs::path(folder) / name).string());
+    const auto size = ReadImageSize(paths.back());
+    if (!size) return tl::unexpected<Error>(size.error());
+    sizes.push_back(*size);
+  }
+  std::vector<std::string> unused;
+  if (notes == nullptr) notes = &unused;
+  const auto common = CommonIntrinsic(intrinsics, paths, sizes, notes);
+  if (!common) return tl::unexpected<Error>(common.error());
+
   Scene scene;
   scene.root_path = folder;
   for (std::size_t n = 0; n < names->size(); ++n) {
     const std::string& name = (*names)[n];
-    const std::string path = (fs::path(folder) / name).string();
-    const auto size = ReadImageSize(path);
-    if (!size) return tl::unexpected<Error>(size.error());
-    const auto intrinsic = AddIntrinsic(intrinsics, name, path, *size, &scene);
-    if (!intrinsic) return tl::unexpected<Error>(intrinsic.error());
+    Result<Intrinsic> given;
+    IntrinsicId wanted = kInvalidId;
+    if (intrinsics.scene) {
+      const auto id = FindInScene(*intrinsics.scene, name, paths[n]);
+      if (!id) return tl::unexpected<Error>(id.error());
+      wanted = *id;
+      given = intrinsics.scene->intrinsics.at(*id);
+    } else if (*common) {
+      given = **common;
+      const bool stands = (sizes[n].height_px > sizes[n].width_px) !=
+                          (given->height_px > given->width_px);
+      if (intrinsics.focal_px && stands) {
+        given = *Turned(*given, QuarterTurn::kClockwise);
+      }
+    } else {
+      given = FromExif(paths[n], sizes[n]);
+    }
+    if (!given) return tl::unexpected<Error>(given.error());
+    const auto fitted = FitToPhotograph(*given, paths[n], sizes[n]);
+    if (!fitted) return tl::unexpected<Error>(fitted.error());
+    if (const Status valid = fitted->intrinsic.Validate(); !valid) {
+      return MakeError(valid.error().code, valid.error().message, paths[n]);
+    }
+    if (!fitted->change.empty()) {
+      notes->push_back(name + ": the calibration was " + fitted->change);
+    }
     View view;
     view.filename = name;
-    view.width_px = size->width_px;
-    view.height_px = size->height_px;
-    view.intrinsic_id = *intrinsic;
+    view.width_px = sizes[n].width_px;
+    view.height_px = sizes[n].height_px;
+    view.intrinsic_id = Add(fitted->intrinsic, wanted, &scene);
     view.pose_id = static_cast<PoseId>(n);
     scene.views[static_cast<ViewId>(n)] = view;
   }
@@ -200,19 +241,13 @@ Result<Scene> SceneFromImages(const std::string& folder,
 }
 
 Result<std::vector<ViewId>> FindViews(const Scene& scene,
-                                      const std::vector<std::string>& names) {
+                                      const std::vector<std::string>& words) {
+  const ViewNames names(scene);
   std::set<ViewId> found;
-  for (const std::string& name : names) {
-    bool fits = false;
-    for (const auto& [id, view] : scene.views) {
-      if (NameFits(name, view.filename) || name == std::to_string(id)) {
-        found.insert(id);
-        fits = true;
-      }
-    }
-    if (!fits) {
-      return MakeError(ErrorCode::kInvalidArgument, "no view '" + name + "'");
-    }
+  for (const std::string& word : words) {
+    const Result<ViewId> view = names.Find(word);
+    if (!view) return tl::unexpected<Error>(view.error());
+    found.insert(*view);
   }
   return std::vector<ViewId>(found.begin(), found.end());
 }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
 #include "lowlap/core/ids.h"
+#include "lowlap/core/result.h"
 
 namespace lowlap {
 
@@ -11,6 +13,8 @@ namespace lowlap {
 struct PairReport {
   ViewPair views;
   bool accepted = false;
+  /// Not accepted: a rotation alone explains what the two views see.
+  bool no_parallax = false;
   std::string reason;  // why not, if not
   std::string geometry;
   int num_point_matches = 0;
@@ -23,5 +27,20 @@ struct PairReport {
 /// For people, where not one pair was accepted: how many were tried, and why
 /// the one with the most matches was not.
 std::string ExplainNoPose(const std::vector<PairReport>& pairs);
+
+/// A view without any relative pose.
+struct UnrelatedView {
+  ViewId view = kInvalidId;
+  bool no_parallax = false;  // so are all its pairs that the points explain
+  std::string reason;
+};
+
+/// The views of the pairs (and those of `failed`, whose images could not be
+/// used) that no accepted pair holds, by id, each with why: what is wrong with
+/// its image; "no parallax", if a pair of it was refused for that; or the
+/// reason of its pair of most matches.
+std::vector<UnrelatedView> FindUnrelatedViews(
+    const std::vector<PairReport>& pairs,
+    const std::map<ViewId, Error>& failed);
 
 }  // namespace lowlap

@@ -210,9 +210,16 @@ std::string ToJson(const RunSummary& summary, const Scene& scene) {
                   {"line_matches", pair.num_line_matches},
                   {"line_inliers", pair.num_line_inliers},
                   {"log10_nfa", pair.log10_nfa},
-                  {"geometry", pair.geometry}};
+                  {"geometry", pair.geometry},
+                  {"no_parallax", pair.no_parallax}};
     if (!pair.accepted) entry["reason"] = pair.reason;
     json["pairs"].push_back(std::move(entry));
+  }
+  json["unrelated_views"] = Json::array();
+  for (const UnrelatedView& view : summary.unrelated) {
+    json["unrelated_views"].push_back({{"view", view.view},
+                                       {"no_parallax", view.no_parallax},
+                                       {"reason", view.reason}});
   }
   if (summary.solve) json["solve"] = SolveJson(*summary.solve);
   if (summary.evaluation_before_adjustment) {

@@ -16,6 +16,7 @@ namespace lowlap {
 struct RunSummary {
   std::string command;
   std::vector<PairReport> pairs;
+  std::vector<UnrelatedView> unrelated;
   std::optional<SolveResult> solve;
   std::optional<PoseEvaluation> evaluation_before_adjustment;
   std::optional<PoseEvaluation> evaluation;

@@ -28,4 +28,8 @@ namespace lowlap {
 /// `$.views[key=3].id_intrinsic`; sfm_data/FORMAT.md explains the notation.
 Status ValidateScene(const Scene& scene);
 
+/// The part of it that concerns the rotations, directions, evidence and
+/// covariances of one relative pose and its alternatives.
+Status ValidateRelativePose(const RelativePose& pose);
+
 }  // namespace lowlap

@@ -1,39 +1,12 @@
 #include <set>
 #include <string>
 
+#include "lowlap/core/format.h"
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/scene/internal/validation_parts.h"
 
 namespace lowlap::internal {
 namespace {
-
-// Well-formed UTF-8 (RFC 3629): no overlong forms, surrogates or values beyond
-// U+10FFFF.
-bool IsUtf8(const std::string& text) {
-  for (std::size_t i = 0; i < text.size();) {
-    const auto byte = [&](std::size_t n) -> unsigned {
-      return i + n < text.size() ? static_cast<unsigned char>(text[i + n]) : 0;
-    };
-    const unsigned lead = byte(0);
-    std::size_t length = 1;
-    unsigned low = 0x80, high = 0xBF;  // range of the second byte
-    if (lead >= 0x80) {
-      if (lead < 0xC2 || lead > 0xF4) return false;
-      length = lead < 0xE0 ? 2 : lead < 0xF0 ? 3 : 4;
-      if (lead == 0xE0) low = 0xA0;
-      if (lead == 0xED) high = 0x9F;
-      if (lead == 0xF0) low = 0x90;
-      if (lead == 0xF4) high = 0x8F;
-    }
-    for (std::size_t n = 1; n < length; ++n) {
-      if (byte(n) < low || byte(n) > high) return false;
-      low = 0x80;
-      high = 0xBF;
-    }
-    i += length;
-  }
-  return true;
-}
 
 Status ValidateView(const Scene& scene, ViewId id, const View& view) {
   const auto invalid = [&](std::string message, const char* member) {

@@ -3,6 +3,7 @@
 
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/scene/internal/validation_parts.h"
+#include "lowlap/scene/validation.h"
 
 namespace lowlap::internal {
 namespace {
@@ -123,6 +124,26 @@ Status ValidateRelativePose(const ViewTable& views, const RelativePose& edge,
 }
 
 }  // namespace
+
+}  // namespace lowlap::internal
+
+namespace lowlap {
+
+Status ValidateRelativePose(const RelativePose& pose) {
+  if (Status status = internal::ValidateMotion(pose, {}); !status) {
+    return status;
+  }
+  for (const AlternativeMotion& other : pose.alternatives) {
+    if (Status status = internal::ValidateMotion(other, {}); !status) {
+      return status;
+    }
+  }
+  return {};
+}
+
+}  // namespace lowlap
+
+namespace lowlap::internal {
 
 Status ValidateFeatures(const Scene& scene, const ViewTable& views) {
   for (const auto& [view, features] : scene.features) {

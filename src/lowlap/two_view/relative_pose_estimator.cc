@@ -9,11 +9,11 @@
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/robust/a_contrario.h"
-#include "lowlap/two_view/chance_support.h"
-#include "lowlap/two_view/line_crossings.h"
-#include "lowlap/two_view/planar_motion.h"
-#include "lowlap/two_view/pose_search.h"
-#include "lowlap/two_view/refine_relative_pose.h"
+#include "lowlap/two_view/internal/line_crossings.h"
+#include "lowlap/two_view/internal/planar_motion.h"
+#include "lowlap/two_view/internal/pose_search.h"
+#include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/translation_evidence.h"
 
 namespace lowlap {
 namespace {
@@ -154,8 +154,8 @@ RelativePose ToRelativePose(const TwoViewInput& input,
   for (const int m : inliers) {
     pose.point_inliers.push_back(input.point_matches[m]);
   }
-  pose.log10_nfa = candidate.score.log10_nfa;
-  pose.point_threshold_px = candidate.score.threshold;
+  pose.log10_nfa = candidate.support.log10_nfa;
+  pose.point_threshold_px = candidate.support.threshold;
   pose.covariance =
       RelativePoseCovariance(candidate.pose, matches.pairs, candidate.inliers,
                              search.RefinementOptions(candidate));
@@ -167,7 +167,7 @@ std::optional<ScenePlane> DominantPlaneOf(const PoseCandidate& candidate,
                                           Random& random) {
   // Transfer errors have two components, each with the noise of both views.
   return DominantPlane(candidate.pose, pairs, candidate.inliers,
-                       3 * candidate.score.threshold, random);
+                       3 * candidate.support.threshold, random);
 }
 
 /// The other explanation of a scene whose points lie mostly on `plane`.
@@ -249,13 +249,13 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
       search.Search(random, result.num_samples);
   std::optional<PoseCandidate> best;
   if (!candidates.empty()) best = candidates.front();
-  if (!best || !(best->score.log10_nfa < 0)) {
+  if (!best || !(best->support.log10_nfa < 0)) {
     return MakeError(
         ErrorCode::kInsufficientData,
         "relative pose: no motion explains the " +
             std::to_string(pairs.size()) +
             " points and crossings of lines better than chance" +
-            (best ? " (log10 NFA " + Decimal(best->score.log10_nfa) + ")"
+            (best ? " (log10 NFA " + Decimal(best->support.log10_nfa) + ")"
                   : ""));
   }
   std::optional<ScenePlane> plane = DominantPlaneOf(*best, pairs, random);
@@ -267,13 +267,15 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
         search.CoreScore(best->pose, scale_px) -
         search.CoreScore(other->pose, scale_px) +
         std::log(10.0) * (other->direction_penalty - best->direction_penalty);
-    if (advantage < 0) {
+    // Few matches may leave the other motion none in front of the cameras.
+    const bool meaningful = other->support.log10_nfa < 0;
+    if (meaningful && advantage < 0) {
       std::swap(*best, *other);
       plane = DominantPlaneOf(*best, pairs, random);
     }
     // Where both are one motion, the better optimum of it is kept.
-    if (!SameMotion(best->pose, other->pose)) {
-      result.geometry = std::abs(advantage) < kDecisiveScore
+    if (!SamePose(best->pose, other->pose)) {
+      result.geometry = meaningful && std::abs(advantage) < kDecisiveScore
                             ? TwoViewGeometry::kAmbiguousPlane
                             : TwoViewGeometry::kPlanar;
     }
@@ -282,9 +284,10 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
     result.num_plane_inliers = static_cast<int>(plane->inliers.size());
   }
   const TranslationEvidence translation =
-      TestTranslation(pairs, best->pose, best->inliers, best->score.threshold);
+      TestTranslation(pairs, best->pose, best->inliers, best->support.threshold,
+                      PoseSearch::kMinThresholdPx);
   result.num_rotation_inliers = translation.num_rotation_inliers;
-  if (!(translation.log10_nfa < 0)) {
+  if (!translation.IsSeen()) {
     result.geometry = TwoViewGeometry::kRotationOnly;
   }
   result.pose = ToRelativePose(input, matches, search, *best);
@@ -308,8 +311,9 @@ RelativePose ImproveRelativePose(const TwoViewInput& input,
       std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
   const PoseSearch search(matches.pairs, CommonDirections(input),
                           SampsonLaw(input), bounded);
-  RelativePose improved = ToRelativePose(input, matches, search,
-                                         search.Finish(pose.Cam2FromCam1()));
+  const PoseCandidate candidate = search.Finish(pose.Cam2FromCam1());
+  if (!std::isfinite(candidate.support.log10_nfa)) return pose;
+  RelativePose improved = ToRelativePose(input, matches, search, candidate);
   improved.log10_nfa = pose.log10_nfa;
   return improved;
 }

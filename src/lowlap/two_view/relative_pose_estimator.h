@@ -60,8 +60,8 @@ const char* TwoViewGeometryName(TwoViewGeometry geometry);
 struct TwoViewResult {
   RelativePose pose;
   TwoViewGeometry geometry = TwoViewGeometry::kGeneral;
-  /// Other motions that the points cannot exclude; line or triplet evidence
-  /// may. Empty unless kAmbiguousPlane.
+  /// Other motions that the points cannot exclude (log10 NFA < 0, too); line or
+  /// triplet evidence may. Empty unless kAmbiguousPlane.
   std::vector<RelativePose> alternatives;
 
   // Diagnostics.
@@ -83,7 +83,7 @@ struct TwoViewResult {
 /// directions, no orthogonality assumed: Salaün, Marlet, Monasse, ECCV 2016)
 /// with the translation from two points. Crossings of neighbouring matched
 /// lines take part as points. Every motion is refined on points, crossings and
-/// common directions together; the one with the greatest merit (core of small
+/// common directions together; the one with the greatest score (core of small
 /// residuals, less what the directions have against it) wins.
 ///
 /// Residual: the Sampson distance of x2^T [t]x R x1 = 0 in pixels. The
@@ -111,6 +111,7 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
 /// The pose refined on matches that were found with its help: threshold,
 /// inliers and covariance are those of the new matches, the evidence
 /// (log10_nfa) stays that of the first ones, which knew nothing of the pose.
+/// Where too few of them fit the pose to refine it, it comes back as it was.
 /// `input` is valid; its line matches count with their crossings and
 /// directions.
 RelativePose ImproveRelativePose(const TwoViewInput& input,

@@ -9,6 +9,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include "lowlap/core/format.h"
 #include "lowlap/core/result.h"
 
 namespace lowlap {
@@ -54,7 +55,7 @@ class TokenReader {
       is_good = is_good && std::isfinite(value);
     }
     if (!is_good) {
-      Fail("'" + std::string(token.substr(0, 32)) + "' is not " + what);
+      Fail("'" + Escaped(std::string(token.substr(0, 32))) + "' is not " + what);
       return T{};
     }
     offset_ = end;

@@ -1,5 +1,6 @@
 #include "lowlap/pipeline/internal/cached_measurements.h"
 
+#include <algorithm>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -7,7 +8,7 @@
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/core/parallel.h"
-#include "lowlap/features/image_memory.h"
+#include "lowlap/features/internal/image_memory.h"
 #include "lowlap/pipeline/internal/measurement_bytes.h"
 #include "lowlap/pipeline/internal/measurement_key.h"
 
@@ -109,10 +110,12 @@ Result<KeyedFeatures> DetectFeatures(const Scene& scene,
 
   std::vector<ViewSlot*> missing;
   for (ViewSlot& slot : slots) {
-    if (slot.error) return tl::unexpected<Error>(*slot.error);
-    if (!slot.features) missing.push_back(&slot);
+    if (!slot.features && !slot.error) missing.push_back(&slot);
   }
-  cache.LogUse(slots.size() - missing.size(), slots.size());
+  cache.LogUse(
+      std::count_if(slots.begin(), slots.end(),
+                    [](const ViewSlot& s) { return s.features.has_value(); }),
+      slots.size());
   RunContext limited = context;
   limited.num_threads = DetectionThreads(scene, options, context);
   const ReusedImageMemory reused_memory;
@@ -134,7 +137,10 @@ Result<KeyedFeatures> DetectFeatures(const Scene& scene,
 
   KeyedFeatures result;
   for (ViewSlot& slot : slots) {
-    if (slot.error) return tl::unexpected<Error>(*slot.error);
+    if (!slot.features) {
+      result.failed.emplace(slot.id, *slot.error);
+      continue;
+    }
     result.keys.emplace(slot.id, slot.key);
     result.features.emplace(slot.id, std::move(*slot.features));
   }
@@ -154,7 +160,10 @@ Result<std::map<ViewPair, PairMatches>> MatchFeatures(
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     const auto first = features.keys.find(pairs[n].first);
     const auto second = features.keys.find(pairs[n].second);
-    if (first == features.keys.end() || second == features.keys.end()) continue;
+    if (first == features.keys.end() || second == features.keys.end()) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "a pair names a view without features");
+    }
     keys[n] = internal::MatchKey(first->second, second->second, options);
     found[n] = cache.Find(keys[n], internal::MatchesFromBytes);
   }
@@ -164,29 +173,16 @@ Result<std::map<ViewPair, PairMatches>> MatchFeatures(
   }
   cache.LogUse(pairs.size() - missing.size(), pairs.size());
 
-  // Each pair on its own, so that it is stored as soon as it is done.
-  RunContext of_pair = context;
-  of_pair.num_threads = 1;
-  of_pair.progress = nullptr;
-  std::vector<std::optional<Error>> errors(missing.size());
   const Status done =
       ParallelFor(context, "matching", missing.size(), [&](std::size_t m) {
         const std::size_t n = missing[m];
-        auto matches =
-            MatchFeatures(features.features, {pairs[n]}, options, of_pair);
-        if (!matches) {
-          errors[m] = matches.error();
-          return;
-        }
-        found[n] = std::move(matches->at(pairs[n]));
+        found[n] = MatchPair(features.features.at(pairs[n].first),
+                             features.features.at(pairs[n].second), options);
         cache.Write(keys[n], internal::ToBytes(*found[n]));
       });
   if (!done) return tl::unexpected<Error>(done.error());
 
   std::map<ViewPair, PairMatches> result;
-  for (const std::optional<Error>& error : errors) {
-    if (error) return tl::unexpected<Error>(*error);
-  }
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     result.emplace(pairs[n], std::move(*found[n]));
   }

@@ -23,9 +23,10 @@ namespace lowlap {
 struct KeyedFeatures {
   std::map<ViewId, DetectedFeatures> features;
   std::map<ViewId, Hash128::Value> keys;
+  std::map<ViewId, Error> failed;  // views whose images have no features
 };
 
-/// Errors as in DetectFeatures.
+/// Errors as in DetectFeatures, but for those of single images.
 Result<KeyedFeatures> DetectFeatures(const Scene& scene,
                                      const FeatureOptions& options,
                                      const CacheFolder& cache,

@@ -15,9 +15,9 @@ namespace {
 using ExifPointer = std::unique_ptr<ExifData, decltype(&exif_data_unref)>;
 
 // The first value of a tag as a positive number; nullopt if there is none.
-std::optional<double> PositiveNumber(ExifData* data, ExifTag tag) {
-  const ExifEntry* entry =
-      exif_content_get_entry(data->ifd[EXIF_IFD_EXIF], tag);
+std::optional<double> PositiveNumber(ExifData* data, ExifTag tag,
+                                     ExifIfd part = EXIF_IFD_EXIF) {
+  const ExifEntry* entry = exif_content_get_entry(data->ifd[part], tag);
   if (entry == nullptr || entry->data == nullptr || entry->components < 1 ||
       entry->size < exif_format_get_size(entry->format)) {
     return std::nullopt;
@@ -77,26 +77,35 @@ std::optional<double> FocalFromFilm(ExifData* data, const ImageSize& size) {
 
 }  // namespace
 
-Result<std::optional<double>> ReadExifFocalPx(const std::string& path,
-                                              const ImageSize& size) {
+Result<ExifGeometry> ReadExif(const std::string& path, const ImageSize& size) {
   const Result<std::string> bytes = ReadWholeFile(path);
   if (!bytes) return tl::unexpected<Error>(bytes.error());
+  ExifGeometry geometry;
   if (bytes->compare(0, 2, "\xff\xd8") != 0 ||
       bytes->size() > std::numeric_limits<unsigned>::max()) {
-    return std::optional<double>();
+    return geometry;
   }
   const ExifPointer data(
       exif_data_new_from_data(
           reinterpret_cast<const unsigned char*>(bytes->data()),
           static_cast<unsigned>(bytes->size())),
       &exif_data_unref);
-  if (data == nullptr) return std::optional<double>();
-  const auto sensor_px = FocalFromSensor(data.get(), size);
-  const auto film_px = FocalFromFilm(data.get(), size);
-  if (!film_px) return sensor_px;
-  const bool agree =
-      sensor_px && std::abs(*sensor_px - *film_px) <= 0.1 * *film_px;
-  return agree ? sensor_px : film_px;
+  if (data == nullptr) return geometry;
+  geometry.focal_px = FocalFromSensor(data.get(), size);
+  if (const auto film_px = FocalFromFilm(data.get(), size);
+      film_px && !(geometry.focal_px &&
+                   std::abs(*geometry.focal_px - *film_px) <= 0.1 * *film_px)) {
+    geometry.focal_px = film_px;
+  }
+  const auto whole = [&](ExifTag tag, ExifIfd part, double limit) {
+    const double value = PositiveNumber(data.get(), tag, part).value_or(0);
+    return value <= limit ? static_cast<int>(value) : 0;
+  };
+  geometry.taken = {whole(EXIF_TAG_PIXEL_X_DIMENSION, EXIF_IFD_EXIF, 1e6),
+                    whole(EXIF_TAG_PIXEL_Y_DIMENSION, EXIF_IFD_EXIF, 1e6)};
+  geometry.orientation =
+      std::max(1, whole(EXIF_TAG_ORIENTATION, EXIF_IFD_0, 8));
+  return geometry;
 }
 
 }  // namespace lowlap

@@ -24,13 +24,15 @@ void AddOptions(const LineOptions& options, Hash128* hash) {
 }
 
 void AddOptions(const PointMatchOptions& options, Hash128* hash) {
-  const auto& [max_ratio] = options;
+  const auto& [max_ratio, matcher] = options;
   AddAll(hash, kPointMatchingVersion, max_ratio);
+  if (matcher != PointMatcher::kExact) hash->Add("flann");
 }
 
 void AddOptions(const RelaxedPointOptions& options, Hash128* hash) {
-  const auto& [starved_below, max_ratio, neighbors, min_agreeing,
+  const auto& [starved_below, max_ratio, matcher, neighbors, min_agreeing,
                max_deviation] = options;
+  static_cast<void>(matcher);  // the same as of the first pass
   AddAll(hash, starved_below, max_ratio, neighbors, min_agreeing,
          max_deviation);
 }

@@ -100,6 +100,10 @@ void AddSolve(const SolveResult& solve, const Scene& scene,
 ReportContent MakeReport(const RunSummary& summary, const Scene& scene) {
   ReportContent content;
   content.title = "lowlap " + summary.command;
+  for (const UnrelatedView& view : summary.unrelated) {
+    content.warnings.push_back(NameOf(scene, view.view) +
+                               " has no relative pose: " + view.reason);
+  }
   if (summary.solve) AddSolve(*summary.solve, scene, &content);
   if (summary.evaluation && summary.evaluation->position.count > 0) {
     content.figures.emplace_back("mean position error",

@@ -1,11 +1,11 @@
-#include "lowlap/two_view/essential_kernel.h"
+#include "lowlap/two_view/internal/essential_kernel.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "lowlap/geometry/epipolar.h"
-#include "lowlap/two_view/five_point.h"
-#include "lowlap/two_view/refine_relative_pose.h"
+#include "lowlap/two_view/internal/five_point.h"
+#include "lowlap/two_view/internal/refine_relative_pose.h"
 
 namespace lowlap {
 

@@ -2,7 +2,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/two_view/essential_kernel.h"
+#include "lowlap/two_view/internal/essential_kernel.h"
 
 namespace lowlap {
 

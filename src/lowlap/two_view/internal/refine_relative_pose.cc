@@ -1,4 +1,4 @@
-#include "lowlap/two_view/refine_relative_pose.h"
+#include "lowlap/two_view/internal/refine_relative_pose.h"
 
 #include <Eigen/Cholesky>
 #include <cmath>
@@ -192,6 +192,7 @@ std::optional<Mat5> RelativePoseCovariance(
     return std::nullopt;
   }
   const Mat5 covariance = factor.solve(Mat5::Identity());
+  if (!covariance.allFinite()) return std::nullopt;
   return Mat5(0.5 * (covariance + covariance.transpose()));
 }
 

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "lowlap/two_view/essential_kernel.h"
-#include "lowlap/two_view/refine_relative_pose.h"
+#include "lowlap/two_view/internal/essential_kernel.h"
+#include "lowlap/two_view/internal/refine_relative_pose.h"
 
 namespace lowlap {
 

@@ -1,4 +1,4 @@
-#include "lowlap/two_view/planar_motion.h"
+#include "lowlap/two_view/internal/planar_motion.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>

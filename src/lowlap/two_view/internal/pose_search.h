@@ -6,22 +6,22 @@
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rigid_transform.h"
 #include "lowlap/robust/a_contrario.h"
-#include "lowlap/two_view/essential_kernel.h"
-#include "lowlap/two_view/parallel_directions.h"
-#include "lowlap/two_view/refine_relative_pose.h"
+#include "lowlap/two_view/internal/essential_kernel.h"
+#include "lowlap/two_view/internal/parallel_directions.h"
+#include "lowlap/two_view/internal/refine_relative_pose.h"
 #include "lowlap/two_view/relative_pose_estimator.h"
 
 namespace lowlap {
 
 struct PoseCandidate {
   RigidTransform pose;
-  AContrarioScore score;     // of the points, against chance
+  AContrarioScore support;   // of the points, against chance
   std::vector<int> inliers;  // visible, within the threshold; ascending
   double direction_penalty = 0;
 
   /// What speaks for it, in decimal digits: the core score of the points less
   /// the penalty of the directions.
-  double merit = 0;
+  double score = 0;
 };
 
 /// The search for the motion of one pair, from points and common directions.
@@ -33,7 +33,7 @@ class PoseSearch {
   PoseSearch(const PointPairs& pairs, std::vector<DirectionPair> directions,
              const BackgroundLaw& law, const TwoViewOptions& options);
 
-  /// Motions worth a look, the greatest merit first: that of five-point samples
+  /// Motions worth a look, the greatest score first: that of five-point samples
   /// (a-contrario RANSAC, sharpened), and for each rotation that two pairs of
   /// directions give, that of two-point samples. Empty if no sample gave one.
   std::vector<PoseCandidate> Search(Random& random, int& num_samples);
@@ -72,6 +72,6 @@ class PoseSearch {
 
 /// To within half a degree of rotation and two of direction: closer than that,
 /// refinement from either side is expected to meet.
-bool SameMotion(const RigidTransform& a, const RigidTransform& b);
+bool SamePose(const RigidTransform& a, const RigidTransform& b);
 
 }  // namespace lowlap

@@ -5,7 +5,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/two_view/point_pairs.h"
+#include "lowlap/two_view/internal/point_pairs.h"
 
 namespace lowlap {
 

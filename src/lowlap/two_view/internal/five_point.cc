@@ -1,11 +1,11 @@
-#include "lowlap/two_view/five_point.h"
+#include "lowlap/two_view/internal/five_point.h"
 
 #include <Eigen/LU>
 #include <Eigen/QR>
 #include <cmath>
 #include <optional>
 
-#include "lowlap/two_view/polynomial.h"
+#include "lowlap/two_view/internal/polynomial.h"
 
 namespace lowlap {
 namespace {

@@ -1,11 +1,11 @@
-#include "lowlap/two_view/sharpen_pose.h"
+#include "lowlap/two_view/internal/sharpen_pose.h"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "lowlap/robust/a_contrario_ransac.h"
-#include "lowlap/two_view/refine_relative_pose.h"
+#include "lowlap/two_view/internal/refine_relative_pose.h"
 
 namespace lowlap {
 namespace {

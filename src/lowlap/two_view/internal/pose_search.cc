@@ -1,4 +1,4 @@
-#include "lowlap/two_view/pose_search.h"
+#include "lowlap/two_view/internal/pose_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,10 @@
 #include "lowlap/geometry/epipolar.h"
 #include "lowlap/geometry/rotation.h"
 #include "lowlap/robust/a_contrario_ransac.h"
-#include "lowlap/two_view/chance_support.h"
-#include "lowlap/two_view/five_point.h"
-#include "lowlap/two_view/sharpen_pose.h"
-#include "lowlap/two_view/two_point_kernel.h"
+#include "lowlap/two_view/internal/chance_support.h"
+#include "lowlap/two_view/internal/five_point.h"
+#include "lowlap/two_view/internal/sharpen_pose.h"
+#include "lowlap/two_view/internal/two_point_kernel.h"
 
 namespace lowlap {
 namespace {
@@ -58,7 +58,7 @@ std::vector<PoseCandidate> PoseSearch::Search(Random& random,
   }
   std::stable_sort(candidates.begin(), candidates.end(),
                    [](const PoseCandidate& a, const PoseCandidate& b) {
-                     return a.merit > b.merit;
+                     return a.score > b.score;
                    });
   return candidates;
 }
@@ -132,10 +132,10 @@ double PoseSearch::PointVariancePx2(const RigidTransform& cam2_from_cam1,
 PoseRefinementOptions PoseSearch::RefinementOptions(
     const PoseCandidate& candidate) const {
   PoseRefinementOptions options;
-  options.loss_scale_px = 0.5 * candidate.score.threshold;
+  options.loss_scale_px = 0.5 * candidate.support.threshold;
   options.directions = directions_;
   options.point_variance_px2 =
-      PointVariancePx2(candidate.pose, candidate.score.threshold);
+      PointVariancePx2(candidate.pose, candidate.support.threshold);
   return options;
 }
 
@@ -145,11 +145,11 @@ PoseCandidate PoseSearch::Finish(const RigidTransform& cam2_from_cam1) const {
   PoseCandidate candidate;
   candidate.pose = WithMostVisible(cam2_from_cam1);
   for (int round = 0; round < 6; ++round) {
-    candidate.score = ScoreAgainstChance(kernel_, ladder, candidate.pose);
+    candidate.support = ScoreAgainstChance(kernel_, ladder, candidate.pose);
     const RigidTransform refined =
         RefineRelativePose(candidate.pose, kernel_.pairs(),
                            kernel_.VisibleWithinThreshold(
-                               candidate.pose, 2 * candidate.score.threshold),
+                               candidate.pose, 2 * candidate.support.threshold),
                            RefinementOptions(candidate));
     const double change =
         RotationAngleBetween(refined.rotation, candidate.pose.rotation) +
@@ -157,12 +157,12 @@ PoseCandidate PoseSearch::Finish(const RigidTransform& cam2_from_cam1) const {
     candidate.pose = refined;
     if (change < 1e-9) break;
   }
-  candidate.score = ScoreAgainstChance(kernel_, ladder, candidate.pose);
-  candidate.inliers =
-      kernel_.VisibleWithinThreshold(candidate.pose, candidate.score.threshold);
+  candidate.support = ScoreAgainstChance(kernel_, ladder, candidate.pose);
+  candidate.inliers = kernel_.VisibleWithinThreshold(
+      candidate.pose, candidate.support.threshold);
   candidate.direction_penalty =
       DirectionPenalty(directions_, candidate.pose.rotation);
-  candidate.merit = CoreScore(candidate.pose, core_scale_px_) / std::log(10.0) -
+  candidate.score = CoreScore(candidate.pose, core_scale_px_) / std::log(10.0) -
                     candidate.direction_penalty;
   return candidate;
 }
@@ -180,7 +180,7 @@ double PoseSearch::CoreScore(const RigidTransform& cam2_from_cam1,
   return score;
 }
 
-bool SameMotion(const RigidTransform& a, const RigidTransform& b) {
+bool SamePose(const RigidTransform& a, const RigidTransform& b) {
   return RotationAngleBetween(a.rotation, b.rotation) < RadFromDeg(0.5) &&
          AngleBetween(a.translation, b.translation) < RadFromDeg(2);
 }

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// Views by what people call them. A word is looked up, in this order, as
+///   the file name, as the scene has it ("left/0001.jpg"),
+///   its last part ("0001.jpg"), or that without extension ("0001"),
+///   the id of a view.
+/// The first of these that any view fits decides; if several views fit, the
+/// word is ambiguous and refused. Where the names of all views are numbers, a
+/// number is always a name ("1" is "0001.jpg"), never an id: ids are places in
+/// a list, which shift as soon as a photograph is left out.
+class ViewNames {
+ public:
+  explicit ViewNames(const Scene& scene);
+
+  /// kInvalidArgument: no view, or several.
+  Result<ViewId> Find(const std::string& word) const;
+
+ private:
+  using Index = std::map<std::string, std::vector<ViewId>>;
+
+  std::vector<Index> indices_;  // in the order of precedence
+};
+
+}  // namespace lowlap

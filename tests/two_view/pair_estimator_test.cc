@@ -1,0 +1,116 @@
+#include "lowlap/two_view/pair_estimator.h"
+
+#include <gmock/gmock.h>
+
+#include "support/matchers.h"
+#include "tests/two_view/two_view_scene.h"
+
+namespace lowlap {
+namespace {
+
+using testing::DirectionErrorDeg;
+using ::testing::HasSubstr;
+using testing::IsError;
+using testing::IsOk;
+using testing::kFocalPx;
+using testing::MakeTwoViewScene;
+using testing::RotationErrorDeg;
+using testing::TwoViewScene;
+using testing::TwoViewSceneOptions;
+
+/// A view of the scene in pixels, without what detectors know.
+ViewMeasurements Measure(const NormalizedFeatures& normalized) {
+  Intrinsic intrinsic;
+  intrinsic.width_px = 1600;
+  intrinsic.height_px = 1200;
+  intrinsic.fx_px = intrinsic.fy_px = kFocalPx;
+  intrinsic.principal_point_px = {799.5, 599.5};
+  ViewFeatures features;
+  for (const Vec3& x : normalized.points) {
+    features.points_px.push_back(intrinsic.Project(x));
+  }
+  return MeasureView(features, intrinsic, Vec2(1600, 1200), nullptr, {});
+}
+
+PairEstimate Estimate(const TwoViewScene& scene) {
+  return EstimatePair({3, 8}, Measure(scene.features1),
+                      Measure(scene.features2), {scene.matches, {}}, {}, 1);
+}
+
+TEST(EstimatePair, GivesThePoseWithItsInliers) {
+  TwoViewSceneOptions options;
+  options.num_wrong = 60;
+  options.noise_px = 0.3;
+  const TwoViewScene scene = MakeTwoViewScene(options, 1);
+  const PairEstimate estimate = Estimate(scene);
+  ASSERT_TRUE(estimate.pose) << estimate.reason;
+  EXPECT_EQ(estimate.pose->views, (ViewPair{3, 8}));
+  EXPECT_EQ(estimate.geometry, TwoViewGeometry::kGeneral);
+  EXPECT_FALSE(estimate.no_parallax);
+  EXPECT_EQ(estimate.num_point_inliers,
+            static_cast<int>(estimate.pose->point_inliers.size()));
+  EXPECT_EQ(estimate.log10_nfa, estimate.pose->log10_nfa);
+  // The same as the estimator alone, where there is nothing to guide.
+  const auto alone = EstimateRelativePose(scene.Input(), {}, 1);
+  ASSERT_THAT(alone, IsOk());
+  EXPECT_LT(RotationErrorDeg(estimate.pose->rotation, alone->pose.rotation),
+            1e-3);
+  EXPECT_LT(DirectionErrorDeg(estimate.pose->direction, alone->pose.direction),
+            1e-2);
+}
+
+TEST(EstimatePair, SaysWhyThereIsNoPose) {
+  TwoViewSceneOptions few;
+  few.num_right = 4;
+  const PairEstimate too_few = Estimate(MakeTwoViewScene(few, 2));
+  EXPECT_FALSE(too_few.pose);
+  EXPECT_FALSE(too_few.no_parallax);
+  EXPECT_FALSE(too_few.geometry);
+  EXPECT_THAT(too_few.reason, HasSubstr("4 usable points"));
+
+  TwoViewSceneOptions turned;
+  turned.baseline = 0;
+  turned.noise_px = 0.3;
+  const PairEstimate rotation = Estimate(MakeTwoViewScene(turned, 3));
+  EXPECT_FALSE(rotation.pose);
+  EXPECT_TRUE(rotation.no_parallax);
+  EXPECT_EQ(rotation.geometry, TwoViewGeometry::kRotationOnly);
+  EXPECT_THAT(rotation.reason, HasSubstr("no parallax"));
+  EXPECT_GT(rotation.num_point_inliers, 150);
+}
+
+TEST(RefinePair, ImprovesOnTheInliersAlone) {
+  TwoViewSceneOptions options;
+  options.noise_px = 0.3;
+  const TwoViewScene scene = MakeTwoViewScene(options, 4);
+  const ViewMeasurements first = Measure(scene.features1);
+  const ViewMeasurements second = Measure(scene.features2);
+  RelativePose rough;
+  rough.views = {3, 8};
+  rough.rotation = RotationFromAngleAxis(Vec3(0.002, -0.001, 0.001)) *
+                   scene.cam2_from_cam1.rotation;
+  rough.direction =
+      (scene.cam2_from_cam1.translation + Vec3(0, 0.01, 0)).normalized();
+  rough.point_inliers = scene.matches;
+  rough.log10_nfa = -50;
+  rough.point_threshold_px = 3;
+  const RelativePose refined = RefinePair(rough, first, second, {});
+  EXPECT_EQ(refined.log10_nfa, rough.log10_nfa);
+  EXPECT_LT(
+      RotationErrorDeg(refined.rotation, scene.cam2_from_cam1.rotation),
+      0.5 * RotationErrorDeg(rough.rotation, scene.cam2_from_cam1.rotation));
+  // Without matches there is nothing to go by.
+  rough.point_inliers.clear();
+  EXPECT_TRUE(RefinePair(rough, first, second, {}) == rough);
+}
+
+TEST(PairOptions, NeedPointsOrLines) {
+  PairOptions options;
+  EXPECT_THAT(options.Validate(), IsOk());
+  options.use_points = options.use_lines = false;
+  EXPECT_THAT(options.Validate(),
+              IsError(ErrorCode::kInvalidArgument, "points or lines"));
+}
+
+}  // namespace
+}  // namespace lowlap
