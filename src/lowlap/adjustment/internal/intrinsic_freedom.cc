@@ -9,30 +9,21 @@ namespace {
 // Where it stands among the parameters of an intrinsic.
 constexpr int kPrincipalPoint = 2;
 
-bool IsNamed(const AdjustmentOptions& options,
-             const IntrinsicState& intrinsic) {
-  return options.refine_intrinsics.count(intrinsic.id) > 0;
-}
-
 }  // namespace
 
 IntrinsicRefinement RefinementOf(const AdjustmentOptions& options,
                                  const IntrinsicState& intrinsic) {
   if (intrinsic.value.model == CameraModel::kSpherical) return {};
-  if (IsNamed(options, intrinsic)) {
-    return options.refine_intrinsics.at(intrinsic.id);
-  }
   IntrinsicRefinement refinement;
-  refinement.principal_point = options.principal_point_stddev > 0;
+  const auto named = options.refine_intrinsics.find(intrinsic.id);
+  if (named != options.refine_intrinsics.end()) refinement = named->second;
+  refinement.principal_point |= options.principal_point_stddev > 0;
   return refinement;
 }
 
 double PrincipalPointStddevPx(const AdjustmentOptions& options,
                               const IntrinsicState& intrinsic) {
-  if (intrinsic.value.model == CameraModel::kSpherical ||
-      IsNamed(options, intrinsic)) {
-    return 0;
-  }
+  if (intrinsic.value.model == CameraModel::kSpherical) return 0;
   return options.principal_point_stddev * intrinsic.value.ImageDiagonal();
 }
 

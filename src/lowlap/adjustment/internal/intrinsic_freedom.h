@@ -9,8 +9,8 @@
 
 namespace lowlap::internal {
 
-/// What of an intrinsic is unknown: what refine_intrinsics says of it, or else
-/// its principal point, within principal_point_stddev.
+/// What of an intrinsic is unknown: what refine_intrinsics says of it, and its
+/// principal point if there is a principal_point_stddev.
 IntrinsicRefinement RefinementOf(const AdjustmentOptions& options,
                                  const IntrinsicState& intrinsic);
 
@@ -18,8 +18,7 @@ IntrinsicRefinement RefinementOf(const AdjustmentOptions& options,
 Eigen::MatrixXd FreeDirections(const IntrinsicRefinement& refinement,
                                const IntrinsicState& intrinsic);
 
-/// How well the given principal point is known; 0 where nothing holds the
-/// principal point to it, or nothing moves it.
+/// How well the given principal point is known; 0 where nothing is said of it.
 double PrincipalPointStddevPx(const AdjustmentOptions& options,
                               const IntrinsicState& intrinsic);
 

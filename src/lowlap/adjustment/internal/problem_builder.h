@@ -31,6 +31,7 @@ class ProblemBuilder {
   /// Degrees of freedom of the blocks that are not eliminated.
   int ReducedSize();
   double* CenterBlock(int pose);
+  double* IntrinsicBlock(int intrinsic);
   /// From the solver's blocks into cameras and state.
   void TakeResults();
 
@@ -43,7 +44,6 @@ class ProblemBuilder {
   void SetManifolds();
   bool IsRefined(int intrinsic) const;
   double* RotationBlock(int pose);
-  double* IntrinsicBlock(int intrinsic);
   double* PointBlock(int point);
   double* LineBlock(int line);
   void CopyIntoBlocks();

@@ -179,6 +179,20 @@ std::vector<PairState> LoadPairs(const Scene& scene,
   return pairs;
 }
 
+void RefreshRays(const Scene& scene, const CameraSet& cameras,
+                 StructureState* state) {
+  for (LineTrackState& line : state->lines) {
+    for (LineCandidate& candidate : line.candidates) {
+      const LineSegment& segment =
+          scene.features.at(cameras.views[candidate.view].id)
+              .segments[candidate.feature];
+      const std::optional<SegmentRays> rays =
+          MakeSegmentRays(segment, cameras.IntrinsicOf(candidate.view), true);
+      if (rays) candidate.rays = *rays;
+    }
+  }
+}
+
 Landmark ToLandmark(const CameraSet& cameras, const PointTrackState& track) {
   Landmark landmark;
   landmark.position = track.position;

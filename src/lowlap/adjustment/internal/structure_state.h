@@ -52,6 +52,11 @@ std::vector<LineTrackState> LoadLines(const Scene& scene,
 std::vector<PairState> LoadPairs(const Scene& scene,
                                  const std::vector<LineTrackState>& lines);
 
+/// The rays of all lines' segments from the present intrinsics, with their
+/// derivatives.
+void RefreshRays(const Scene& scene, const CameraSet& cameras,
+                 StructureState* state);
+
 Landmark ToLandmark(const CameraSet& cameras, const PointTrackState& track);
 LineLandmark ToLandmark(const CameraSet& cameras, const LineTrackState& track);
 
