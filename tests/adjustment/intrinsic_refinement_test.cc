@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/internal/subspace_manifold.h"
+#include "lowlap/adjustment/internal/costs/subspace_manifold.h"
 #include "lowlap/adjustment/structure_builder.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"

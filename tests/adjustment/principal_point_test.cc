@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/internal/intrinsic_freedom.h"
+#include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
 #include "lowlap/adjustment/structure_builder.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"

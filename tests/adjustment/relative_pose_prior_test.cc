@@ -1,4 +1,4 @@
-#include "lowlap/adjustment/internal/relative_pose_prior.h"
+#include "lowlap/adjustment/internal/costs/relative_pose_prior.h"
 
 #include <gtest/gtest.h>
 

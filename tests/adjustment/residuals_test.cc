@@ -5,9 +5,9 @@
 
 #include <memory>
 
-#include "lowlap/adjustment/internal/coplanar_costs.h"
-#include "lowlap/adjustment/internal/line_reprojection_cost.h"
-#include "lowlap/adjustment/internal/point_reprojection_cost.h"
+#include "lowlap/adjustment/internal/costs/coplanar_costs.h"
+#include "lowlap/adjustment/internal/costs/line_reprojection_cost.h"
+#include "lowlap/adjustment/internal/costs/point_reprojection_cost.h"
 #include "lowlap/core/random.h"
 
 namespace lowlap::internal {

@@ -9,12 +9,12 @@
 #include <string>
 #include <utility>
 
-#include "lowlap/adjustment/internal/calibration_score.h"
-#include "lowlap/adjustment/internal/outlier_round.h"
-#include "lowlap/adjustment/internal/pair_selection.h"
-#include "lowlap/adjustment/internal/pair_terms.h"
-#include "lowlap/adjustment/internal/solve.h"
-#include "lowlap/adjustment/internal/structure_state.h"
+#include "lowlap/adjustment/internal/rounds/calibration_score.h"
+#include "lowlap/adjustment/internal/rounds/outlier_round.h"
+#include "lowlap/adjustment/internal/rounds/pair_selection.h"
+#include "lowlap/adjustment/internal/rounds/pair_terms.h"
+#include "lowlap/adjustment/internal/rounds/solve.h"
+#include "lowlap/adjustment/internal/structure/structure_state.h"
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
