@@ -353,6 +353,9 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
   }
   summary.poses_adjusted = adjusted.size();
   if (options.test_calibration) {
+    if (!context.Progress("adjustment: calibration", 0, 1)) {
+      return MakeError(ErrorCode::kCancelled, "stopped on request");
+    }
     summary.calibration_preferences = internal::FindCalibrationPreferences(
         *scene, options, adjuster.noise(), cameras, state);
   }

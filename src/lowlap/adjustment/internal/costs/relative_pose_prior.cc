@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "lowlap/geometry/rotation.h"
+
 namespace lowlap::internal {
 namespace {
 
@@ -45,9 +47,9 @@ std::vector<RelativePosePrior> LoadRelativePosePriors(
         kDirectionFloorRad * kDirectionFloorRad * Mat2::Identity();
     const Eigen::LLT<Eigen::Matrix<double, 5, 5>> factor(covariance);
     if (factor.info() != Eigen::Success) continue;
-    prior.cost.cam2_from_cam1 = Eigen::Quaterniond(pose.rotation);
-    prior.cost.tangent_basis = TangentBasis(pose.direction);
-    prior.cost.sqrt_information =
+    prior.measured.cam2_from_cam1 = Eigen::Quaterniond(pose.rotation);
+    prior.measured.tangent_basis = TangentBasis(pose.direction);
+    prior.measured.sqrt_information =
         factor.matrixL().solve(Eigen::Matrix<double, 5, 5>::Identity());
     priors.push_back(prior);
   }

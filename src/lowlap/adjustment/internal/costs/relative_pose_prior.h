@@ -11,7 +11,7 @@ namespace lowlap::internal {
 struct RelativePosePrior {
   int first = -1;  // indices into CameraSet::poses
   int second = -1;
-  RelativePoseCost cost;
+  MeasuredRelativePose measured;
 };
 
 /// The relative poses of the scene that state a covariance and that the poses

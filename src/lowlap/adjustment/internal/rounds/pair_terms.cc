@@ -54,13 +54,12 @@ double PairErrorPx(const CameraSet& cameras, const StructureState& state,
     const LineParameters to = Parameters(state.lines[term.to]);
     const double focal_px = cameras.IntrinsicOf(term.view).value.MeanFocalPx();
     const Vec3& center = cameras.PoseOf(term.view).center;
+    const double* const blocks[] = {center.data(), on.data(), to.data()};
     double values[3] = {0, 0, 0};
     if (residual == AdjustedCoplanarResidual::kTransfer) {
-      CoplanarTransferCost{focal_px}(center.data(), on.data(), to.data(),
-                                     values);
+      CoplanarTransferCost(focal_px).Evaluate(blocks, values, nullptr);
     } else {
-      CoplanarImageDistanceCost{focal_px}(center.data(), on.data(), to.data(),
-                                          values);
+      CoplanarImageDistanceCost(focal_px).Evaluate(blocks, values, nullptr);
     }
     squares +=
         values[0] * values[0] + values[1] * values[1] + values[2] * values[2];

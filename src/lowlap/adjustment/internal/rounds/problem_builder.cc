@@ -1,5 +1,9 @@
 #include "lowlap/adjustment/internal/rounds/problem_builder.h"
 
+#include <ceres/line_manifold.h>
+#include <ceres/manifold.h>
+#include <ceres/sphere_manifold.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -165,13 +169,9 @@ void ProblemBuilder::AddPairs() {
           LineBlock(term.to)};
       ceres::CostFunction* cost = nullptr;
       if (options_.coplanar_residual == AdjustedCoplanarResidual::kTransfer) {
-        cost =
-            new ceres::AutoDiffCostFunction<CoplanarTransferCost, 1, 3, 6, 6>(
-                new CoplanarTransferCost{focal_px});
+        cost = new CoplanarTransferCost(focal_px);
       } else {
-        cost = new ceres::AutoDiffCostFunction<CoplanarImageDistanceCost, 3, 3,
-                                               6, 6>(
-            new CoplanarImageDistanceCost{focal_px});
+        cost = new CoplanarImageDistanceCost(focal_px);
       }
       problem_->AddResidualBlock(cost, loss, blocks);
     }
@@ -205,10 +205,9 @@ void ProblemBuilder::AddRelativePoses() {
     const int component = component_of[prior.first];
     if (component < 0 || component != component_of[prior.second]) continue;
     problem_->AddResidualBlock(
-        new ceres::AutoDiffCostFunction<RelativePoseCost, 5, 4, 3, 4, 3>(
-            new RelativePoseCost(prior.cost)),
-        loss, RotationBlock(prior.first), CenterBlock(prior.first),
-        RotationBlock(prior.second), CenterBlock(prior.second));
+        new RelativePoseCost(prior.measured), loss, RotationBlock(prior.first),
+        CenterBlock(prior.first), RotationBlock(prior.second),
+        CenterBlock(prior.second));
   }
 }
 

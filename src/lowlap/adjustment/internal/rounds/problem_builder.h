@@ -1,6 +1,8 @@
 #pragma once
 
-#include <ceres/ceres.h>
+#include <ceres/loss_function.h>
+#include <ceres/ordered_groups.h>
+#include <ceres/problem.h>
 
 #include <memory>
 #include <vector>

@@ -1,5 +1,7 @@
 #include "lowlap/adjustment/internal/rounds/solve.h"
 
+#include <ceres/solver.h>
+
 #include <algorithm>
 #include <cmath>
 

@@ -76,12 +76,14 @@ bool Linearise(const std::vector<Observation>& observations,
     if (!used[n]) continue;
     const Observation& observation = observations[n];
     Mat23 by_x_cam;
-    const std::optional<Vec2> pixel_px =
-        ProjectWithJacobian(*observation.intrinsic,
-                            observation.cam_from_world * position, &by_x_cam);
-    if (!pixel_px) return false;
-    Vec2 difference_px = *pixel_px - observation.pixel_px;
-    WrapPanorama(observation.intrinsic->value, &difference_px);
+    const Vec3 x_cam = observation.cam_from_world * position;
+    const Intrinsic& intrinsic = observation.intrinsic->value;
+    if (!IsProjectable(intrinsic.model, x_cam)) return false;
+    Vec2 difference_px =
+        ProjectPoint(intrinsic, observation.intrinsic->parameters.data(), x_cam,
+                     &by_x_cam) -
+        observation.pixel_px;
+    WrapPanorama(intrinsic, &difference_px);
     const Mat23 jacobian =
         observation.whitening * by_x_cam * observation.cam_from_world.rotation;
     *hessian += jacobian.transpose() * jacobian;
