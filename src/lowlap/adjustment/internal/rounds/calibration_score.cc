@@ -264,12 +264,12 @@ void Choose(const Score& score, std::vector<Candidate>* candidates) {
 }  // namespace
 
 std::vector<CalibrationPreference> FindCalibrationPreferences(
-    const Scene& scene, const AdjustmentOptions& options,
-    const NoiseLevels& noise, CameraSet cameras, StructureState state) {
+    const AdjustmentOptions& options, const NoiseLevels& noise,
+    CameraSet cameras, StructureState state) {
   const std::vector<Group> groups = MakeGroups(options, cameras);
   const CameraSet held = cameras;
   AdjustmentOptions freed = options;
-  freed.use_coplanar = false;
+  freed.use_lines = false;
   freed.principal_point_stddev = 0;
   for (IntrinsicState& intrinsic : cameras.intrinsics) {
     if (intrinsic.value.model == CameraModel::kPinhole) {
@@ -278,8 +278,9 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
     }
     freed.refine_intrinsics[intrinsic.id] = kAllParts;
   }
+  state.lines.clear();
+  state.pairs.clear();
   state.priors.clear();
-  RefreshRays(scene, cameras, &state);
   const ProblemSelection selection = SelectForSolve(cameras, state, freed);
   if (groups.empty() || selection.IsEmpty()) return {};
   const std::vector<Component> components =
