@@ -5,6 +5,7 @@
 #include "cli/command.h"
 #include "cli/solve_flags.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/adjustment/intrinsic_refinement.h"
 #include "lowlap/adjustment/structure_builder.h"
 #include "lowlap/pipeline/output_folder.h"
 #include "lowlap/pipeline/summary_json.h"
@@ -46,6 +47,7 @@ int Adjust(const Flags& flags) {
                  flags.scene,
                  {}});
   }
+  RestoreGivenIntrinsics(&*scene);
   const auto truth = LoadGroundTruth(flags.ground_truth, *scene);
   if (!truth) return Fail(truth.error());
   RunSummary summary;
@@ -53,8 +55,6 @@ int Adjust(const Flags& flags) {
   if (*truth) {
     summary.evaluation_before_adjustment = EvaluatePoses(*scene, **truth);
   }
-  Scene start;
-  start.intrinsics = scene->intrinsics;
   if (const Status set =
           SetRefinement(flags.refine_intrinsics, &*scene, &options);
       !set) {
@@ -98,7 +98,7 @@ int Adjust(const Flags& flags) {
   std::printf("cost %.6g -> %.6g in %d iterations, %d outlier rounds\n",
               adjustment.initial_cost, adjustment.final_cost,
               adjustment.iterations, adjustment.outlier_rounds);
-  PrintIntrinsics(start, *scene);
+  PrintCalibration(*scene, options, adjustment);
   if (summary.evaluation) {
     std::printf("\n%s\n", ToText(*summary.evaluation).c_str());
   }
@@ -112,7 +112,8 @@ void AddAdjust(CLI::App* program, Action* action) {
   CLI::App* command = program->add_subcommand(
       "adjust",
       "Bundle adjustment of a solved scene, over points, lines and "
-      "coplanar line pairs");
+      "coplanar line pairs; it starts from the calibration as it was given, "
+      "also where the scene was adjusted to another one");
   command->add_option("scene", flags->scene, "Solved scene file")->required();
   command->add_option("-o,--output", flags->output, "Folder for the results")
       ->required();

@@ -82,13 +82,16 @@ Result<std::vector<PairReport>> Measure(const RunFlags& flags,
     return tl::unexpected<Error>(solved.error());
   }
   constexpr double kLargeShiftPx = 1;
-  if (!solved || LargestIntrinsicShiftPx(*scene, first) <= kLargeShiftPx) {
+  if (!solved || LargestIntrinsicShiftPx(first) <= kLargeShiftPx) {
     return pairs;
   }
   context.Log(LogLevel::kInfo,
               "relative poses once more, with refined intrinsics");
-  PrintIntrinsics(*scene, first);
+  for (const std::string& line : DescribeIntrinsicChanges(first)) {
+    context.Log(LogLevel::kInfo, line);
+  }
   scene->intrinsics = first.intrinsics;
+  scene->given_intrinsics = first.given_intrinsics;
   return RelatePairs(*measurements, front_end, context, stages, scene);
 }
 

@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
+#include "lowlap/adjustment/intrinsic_refinement.h"
 #include "lowlap/pipeline/output_folder.h"
 
 namespace lowlap::cli {
@@ -31,6 +32,7 @@ int Solve(const Flags& flags) {
   auto loaded = LoadMeasuredScene(flags.input, context, &stages);
   if (!loaded) return Fail(loaded.error());
   summary.pairs = std::move(loaded->pairs);
+  RestoreGivenIntrinsics(&loaded->scene);
   return SolveAndWrite(std::move(loaded->scene), flags.solve,
                        std::move(summary), &stages, context, flags.input.scene,
                        flags.output);

@@ -206,8 +206,9 @@ void AddPrincipalPointFlag(CLI::App* command, double* stddev) {
   command
       ->add_option("--principal-point-stddev", *stddev,
                    "How well the given principal points are known, as a share "
-                   "of the image diagonal: the bundle adjustment moves them "
-                   "within this (0: exactly)")
+                   "of the image diagonal (0.0003: a pixel of six "
+                   "megapixels): the bundle adjustment moves them within "
+                   "this; 0: it holds them")
       ->check(NonNegative())
       ->capture_default_str();
 }
@@ -239,12 +240,12 @@ Status SetAdjustedFeatures(const std::vector<std::string>& features,
 CLI::Option* AddRefinementFlag(CLI::App* command, std::string* parts) {
   return command
       ->add_option("--refine-intrinsics", *parts,
-                   "Let the bundle adjustment refine the intrinsics (not done "
-                   "unless asked for), each for "
-                   "all its views: a list of focal, aspect (fy / fx), "
-                   "principal-point, distortion (of a pinhole: k1), or all; "
-                   "without a list: focal,distortion. What is not named is "
-                   "held, the principal point too")
+                   "Free these parts of every intrinsic in the bundle "
+                   "adjustment, and hold the rest: a list of focal, aspect "
+                   "(fy / fx), principal-point, distortion (of a pinhole: "
+                   "k1), or all; without a list: focal,distortion. Without "
+                   "this flag all is held, and said if the images contradict "
+                   "it")
       ->expected(0, 1)
       ->default_str("focal,distortion");
 }
@@ -277,9 +278,21 @@ Status SetRefinement(const std::string& parts, Scene* scene,
   return {};
 }
 
-void PrintIntrinsics(const Scene& before, const Scene& after) {
-  for (const std::string& line : DescribeIntrinsicChanges(before, after)) {
+void PrintCalibration(const Scene& scene, const AdjustmentOptions& options,
+                      const AdjustmentSummary& summary) {
+  if (!options.refine_intrinsics.empty()) {
+    IntrinsicRefinement refined = options.refine_intrinsics.begin()->second;
+    refined.principal_point |= options.principal_point_stddev > 0;
+    const std::string held = DescribeParts(Others(refined));
+    std::printf("intrinsics: %s refined, %s held\n",
+                DescribeParts(refined).c_str(),
+                held.empty() ? "nothing" : held.c_str());
+  }
+  for (const std::string& line : DescribeIntrinsicChanges(scene)) {
     std::printf("%s\n", line.c_str());
+  }
+  for (const std::string& line : DescribeCalibrationPreferences(summary)) {
+    std::printf("note: %s\n", line.c_str());
   }
 }
 
@@ -344,8 +357,6 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
   if (!options) return Fail(options.error());
   const auto truth = LoadGroundTruth(flags.ground_truth, scene);
   if (!truth) return Fail(truth.error());
-  Scene start;
-  start.intrinsics = scene.intrinsics;
   if (const Status set =
           SetRefinement(flags.refine_intrinsics, &scene, &options->adjustment);
       !set) {
@@ -371,7 +382,9 @@ int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
   if (!written) return Fail(written.error());
 
   PrintPoses(summary.solve->poses, scene);
-  PrintIntrinsics(start, scene);
+  if (summary.solve->adjustment) {
+    PrintCalibration(scene, options->adjustment, *summary.solve->adjustment);
+  }
   if (summary.evaluation_before_adjustment &&
       summary.evaluation_before_adjustment->scope == EvaluationScope::kFull) {
     std::printf("\nbefore adjustment: mean position error %.4f\n",

@@ -64,8 +64,10 @@ CLI::Option* AddRefinementFlag(CLI::App* command, std::string* parts);
 Status SetRefinement(const std::string& parts, Scene* scene,
                      AdjustmentOptions* options);
 
-/// What became of refined intrinsics, a line each.
-void PrintIntrinsics(const Scene& before, const Scene& after);
+/// What was free and what became of it, and what the images would change of the
+/// rest; nothing where all is as given and the images agree.
+void PrintCalibration(const Scene& scene, const AdjustmentOptions& options,
+                      const AdjustmentSummary& summary);
 
 /// The true poses of a Strecha folder, matched by image name, of a scene file,
 /// by name or by id (GroundTruthFromScene), or of a problem folder of 1DSfM, by

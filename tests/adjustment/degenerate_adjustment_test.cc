@@ -190,6 +190,32 @@ TEST(DegenerateAdjustmentTest, TwoViewsShareOnePose) {
   EXPECT_LT(ComparePoses(test.true_poses, test.scene).max_center, 1e-6);
 }
 
+// Whenever the host asks: the scene is then as it was.
+TEST(DegenerateAdjustmentTest, StopsAtEveryStep) {
+  TestSceneOptions scene_options;
+  scene_options.noise_px = 0.5;
+  TestScene test = MakeTestScene(scene_options);
+  ASSERT_THAT(BuildStructure(&test.scene, {}, {}), IsOk());
+  test::PerturbPoses(0.01, 0.05, 3, &test.scene);
+  const Scene before = test.scene;
+  int calls = 0, last = std::numeric_limits<int>::max();
+  RunContext context;
+  context.progress = [&](const std::string&, std::size_t, std::size_t) {
+    return ++calls < last;
+  };
+  Scene whole = before;
+  ASSERT_THAT(AdjustScene(&whole, {}, context), IsOk());
+  ASSERT_GT(calls, 10);
+  const int all = calls;
+  for (last = 1; last <= all; last += 7) {
+    calls = 0;
+    EXPECT_THAT(AdjustScene(&test.scene, {}, context),
+                IsError(ErrorCode::kCancelled, ""));
+    EXPECT_EQ(calls, last);
+    EXPECT_TRUE(test.scene == before);
+  }
+}
+
 TEST(DegenerateAdjustmentTest, BadInputLeavesTheSceneAlone) {
   EXPECT_THAT(AdjustScene(nullptr, {}, {}),
               IsError(ErrorCode::kInvalidArgument, "null"));

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/internal/subspace_manifold.h"
+#include "lowlap/adjustment/internal/costs/subspace_manifold.h"
 #include "lowlap/adjustment/structure_builder.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"
@@ -54,10 +54,34 @@ TEST(RefineAllIntrinsicsTest, PinholesGetADistortionToRefine) {
   RefineAllIntrinsics({true}, &scene, &options);
   EXPECT_EQ(options.refine_intrinsics.size(), 2u);  // not the panorama
   EXPECT_TRUE(scene == before);
+  EXPECT_TRUE(scene.given_intrinsics.empty());
   RefineAllIntrinsics({true, false, true}, &scene, &options);
   EXPECT_EQ(scene.intrinsics.at(1).model, CameraModel::kRadialK1);
   EXPECT_THAT(scene.intrinsics.at(1).distortion, ElementsAre(0));
   EXPECT_TRUE(scene.intrinsics.at(3) == before.intrinsics.at(3));
+  RestoreGivenIntrinsics(&scene);
+  EXPECT_TRUE(scene == before);
+}
+
+// However often a scene is adjusted, the calibration as given is kept.
+TEST(RestoreGivenIntrinsicsTest, UndoesEveryRefinement) {
+  TestSceneOptions scene_options;
+  scene_options.noise_px = 0.3;
+  TestScene test = MakeTestScene(scene_options);
+  test.scene.intrinsics.at(7).fx_px *= 1.02;
+  const auto given = test.scene.intrinsics;
+  Adjust({true, false, true}, &test.scene);
+  const Intrinsic first = test.scene.intrinsics.at(7);
+  EXPECT_TRUE(test.scene.given_intrinsics == given);
+  Adjust({false, true, false, true}, &test.scene);
+  EXPECT_FALSE(test.scene.intrinsics.at(7) == first);
+  EXPECT_TRUE(test.scene.given_intrinsics == given);
+  RestoreGivenIntrinsics(&test.scene);
+  EXPECT_TRUE(test.scene.intrinsics == given);
+  EXPECT_TRUE(test.scene.given_intrinsics.empty());
+  Adjust({}, &test.scene);
+  EXPECT_TRUE(test.scene.intrinsics == given);
+  EXPECT_TRUE(test.scene.given_intrinsics.empty());
 }
 
 TEST(RefineAllIntrinsicsTest, AWrongFocalLengthIsFound) {
@@ -126,31 +150,31 @@ TEST(RefineAllIntrinsicsTest, WithoutItNothingChanges) {
 }
 
 TEST(LargestIntrinsicShiftTest, IsThatOfTheCorners) {
-  Scene before;
-  Intrinsic& intrinsic = before.intrinsics[4];
+  Scene scene;
+  Intrinsic& intrinsic = scene.intrinsics[4];
   intrinsic.width_px = 800;
   intrinsic.height_px = 600;
   intrinsic.fx_px = intrinsic.fy_px = 1000;
   intrinsic.principal_point_px = {400, 300};
-  Scene after = before;
-  EXPECT_LT(LargestIntrinsicShiftPx(before, after), 1e-9);
-  after.intrinsics[4].fx_px = after.intrinsics[4].fy_px = 1010;
-  EXPECT_NEAR(LargestIntrinsicShiftPx(before, after), 5, 1e-9);
-  after.intrinsics[5] = after.intrinsics[4];  // in one of them only
-  EXPECT_NEAR(LargestIntrinsicShiftPx(before, after), 5, 1e-9);
+  EXPECT_EQ(LargestIntrinsicShiftPx(scene), 0);
+  scene.given_intrinsics[4] = intrinsic;
+  EXPECT_LT(LargestIntrinsicShiftPx(scene), 1e-9);
+  intrinsic.fx_px = intrinsic.fy_px = 1010;
+  EXPECT_NEAR(LargestIntrinsicShiftPx(scene), 5, 1e-9);
 }
 
 TEST(DescribeIntrinsicChangesTest, NamesWhatMoved) {
-  Scene before;
-  Intrinsic& intrinsic = before.intrinsics[4];
+  Scene scene;
+  Intrinsic& intrinsic = scene.intrinsics[4];
   intrinsic.fx_px = 800;
   intrinsic.fy_px = 801;
-  Scene after = before;
-  EXPECT_TRUE(DescribeIntrinsicChanges(before, after).empty());
-  after.intrinsics[4].fx_px = 810;
-  after.intrinsics[4].model = CameraModel::kRadialK1;
-  after.intrinsics[4].distortion = {-0.05};
-  const auto lines = DescribeIntrinsicChanges(before, after);
+  EXPECT_TRUE(DescribeIntrinsicChanges(scene).empty());
+  scene.given_intrinsics[4] = intrinsic;
+  EXPECT_TRUE(DescribeIntrinsicChanges(scene).empty());
+  intrinsic.fx_px = 810;
+  intrinsic.model = CameraModel::kRadialK1;
+  intrinsic.distortion = {-0.05};
+  const auto lines = DescribeIntrinsicChanges(scene);
   ASSERT_EQ(lines.size(), 1u);
   EXPECT_THAT(lines[0], HasSubstr("intrinsic 4"));
   EXPECT_THAT(lines[0], HasSubstr("focal 800.00, 801.00 -> 810.00, 801.00"));

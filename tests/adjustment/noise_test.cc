@@ -3,10 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include "lowlap/adjustment/internal/line_track.h"
-#include "lowlap/adjustment/internal/noise_scale.h"
-#include "lowlap/adjustment/internal/pair_gap.h"
-#include "lowlap/adjustment/internal/structure_state.h"
+#include "lowlap/adjustment/internal/rounds/pair_gap.h"
+#include "lowlap/adjustment/internal/structure/line_track.h"
+#include "lowlap/adjustment/internal/structure/noise_scale.h"
+#include "lowlap/adjustment/internal/structure/structure_state.h"
 #include "lowlap/core/random.h"
 #include "test_scene.h"
 

@@ -1,11 +1,11 @@
-#include "lowlap/adjustment/internal/point_shape.h"
+#include "lowlap/adjustment/internal/structure/point_shape.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/internal/structure_state.h"
+#include "lowlap/adjustment/internal/structure/structure_state.h"
 #include "lowlap/adjustment/structure_builder.h"
 #include "lowlap/core/random.h"
 #include "test_scene.h"

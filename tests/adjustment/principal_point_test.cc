@@ -3,7 +3,7 @@
 #include <limits>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/internal/intrinsic_freedom.h"
+#include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
 #include "lowlap/adjustment/structure_builder.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"
@@ -69,12 +69,11 @@ TEST(PrincipalPointTest, ExactDataLeaveItWhereItIs) {
   TestScene test = MakeTestScene({});
   const Vec2 given = test.scene.intrinsics.at(kIntrinsic).principal_point_px;
   test::PerturbPoses(0.005, 0.03, 5, &test.scene);
-  const Vec2 moved =
-      Adjusted(&test.scene, AdjustmentOptions{}.principal_point_stddev);
+  const Vec2 moved = Adjusted(&test.scene, 0.0003);
   EXPECT_LT((moved - given).norm(), 1e-3);
 }
 
-TEST(PrincipalPointTest, OnlyOfIntrinsicsThatAreNotNamed) {
+TEST(PrincipalPointTest, MovesOnlyOnRequest) {
   const TestScene test = MakeTestScene({});
   const CameraSet cameras(test.scene);
   IntrinsicState intrinsic = cameras.intrinsics.front();
@@ -85,17 +84,17 @@ TEST(PrincipalPointTest, OnlyOfIntrinsicsThatAreNotNamed) {
   EXPECT_TRUE(RefinementOf(options, intrinsic).principal_point);
   EXPECT_FALSE(RefinementOf(options, intrinsic).focal);
 
-  AdjustmentOptions named = options;
-  named.refine_intrinsics[intrinsic.id].principal_point = true;
-  EXPECT_EQ(PrincipalPointStddevPx(named, intrinsic), 0);
-  EXPECT_TRUE(RefinementOf(named, intrinsic).principal_point);
-  named.refine_intrinsics[intrinsic.id] = {};
-  EXPECT_FALSE(RefinementOf(named, intrinsic).Any());
+  // A deviation on request counts whatever else is refined.
+  options.refine_intrinsics[intrinsic.id].focal = true;
+  EXPECT_TRUE(RefinementOf(options, intrinsic).principal_point);
+  EXPECT_TRUE(RefinementOf(options, intrinsic).focal);
 
-  AdjustmentOptions exact;
-  exact.principal_point_stddev = 0;
-  EXPECT_FALSE(exact.MovesIntrinsics());
-  EXPECT_FALSE(RefinementOf(exact, intrinsic).Any());
+  AdjustmentOptions held;
+  EXPECT_FALSE(held.MovesIntrinsics());
+  EXPECT_FALSE(RefinementOf(held, intrinsic).Any());
+  held.refine_intrinsics[intrinsic.id].focal = true;
+  EXPECT_FALSE(RefinementOf(held, intrinsic).principal_point);
+  EXPECT_EQ(PrincipalPointStddevPx(held, intrinsic), 0);
 
   intrinsic.value.model = CameraModel::kSpherical;
   EXPECT_EQ(PrincipalPointStddevPx(options, intrinsic), 0);

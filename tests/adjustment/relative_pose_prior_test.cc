@@ -1,10 +1,11 @@
-#include "lowlap/adjustment/internal/relative_pose_prior.h"
+#include "lowlap/adjustment/internal/costs/relative_pose_prior.h"
 
 #include <gtest/gtest.h>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/random.h"
 #include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/geometry/rotation.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
 namespace lowlap {
@@ -31,9 +32,11 @@ double NormOf(const RelativePosePrior& prior, const CameraSet& cameras) {
   const auto& a = cameras.poses[prior.first];
   const auto& b = cameras.poses[prior.second];
   Eigen::Matrix<double, 5, 1> residual;
-  EXPECT_TRUE(prior.cost(a.cam_from_world.coeffs().data(), a.center.data(),
-                         b.cam_from_world.coeffs().data(), b.center.data(),
-                         residual.data()));
+  const double* const blocks[] = {
+      a.cam_from_world.coeffs().data(), a.center.data(),
+      b.cam_from_world.coeffs().data(), b.center.data()};
+  EXPECT_TRUE(internal::RelativePoseCost(prior.measured)
+                  .Evaluate(blocks, residual.data(), nullptr));
   return residual.norm();
 }
 

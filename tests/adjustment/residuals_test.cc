@@ -1,14 +1,16 @@
-#include <ceres/ceres.h>
 #include <ceres/gradient_checker.h>
+#include <ceres/line_manifold.h>
 #include <ceres/manifold_test_utils.h>
 #include <gtest/gtest.h>
 
 #include <memory>
 
-#include "lowlap/adjustment/internal/coplanar_costs.h"
-#include "lowlap/adjustment/internal/line_reprojection_cost.h"
-#include "lowlap/adjustment/internal/point_reprojection_cost.h"
+#include "lowlap/adjustment/internal/costs/coplanar_costs.h"
+#include "lowlap/adjustment/internal/costs/line_reprojection_cost.h"
+#include "lowlap/adjustment/internal/costs/point_reprojection_cost.h"
+#include "lowlap/adjustment/internal/costs/relative_pose_cost.h"
 #include "lowlap/core/random.h"
+#include "lowlap/geometry/rotation.h"
 
 namespace lowlap::internal {
 namespace {
@@ -235,12 +237,35 @@ TEST(ResidualsTest, CoplanarGradients) {
       nullptr, &line_manifold, &line_manifold};
   const std::vector<double*> parameters = {
       blocks.center.data(), blocks.line_a.data(), blocks.line_b.data()};
-  const ceres::AutoDiffCostFunction<CoplanarTransferCost, 1, 3, 6, 6> transfer(
-      new CoplanarTransferCost{900});
-  ExpectGradients(transfer, manifolds, parameters);
-  const ceres::AutoDiffCostFunction<CoplanarImageDistanceCost, 3, 3, 6, 6>
-      image(new CoplanarImageDistanceCost{900});
-  ExpectGradients(image, manifolds, parameters);
+  ExpectGradients(CoplanarTransferCost(900), manifolds, parameters);
+  ExpectGradients(CoplanarImageDistanceCost(900), manifolds, parameters);
+}
+
+TEST(ResidualsTest, RelativePoseGradients) {
+  const ceres::EigenQuaternionManifold quaternion;
+  Random random(5);
+  const auto random_vector = [&] {
+    return Vec3(random.Gaussian(), random.Gaussian(), random.Gaussian());
+  };
+  for (int trial = 0; trial < 20; ++trial) {
+    Eigen::Quaterniond q1(RotationFromAngleAxis(random_vector()));
+    Eigen::Quaterniond q2(RotationFromAngleAxis(random_vector()));
+    Vec3 c1 = random_vector(), c2 = random_vector();
+    MeasuredRelativePose measured;
+    measured.cam2_from_cam1 =
+        Eigen::Quaterniond(RotationFromAngleAxis(0.3 * random_vector())) * q2 *
+        q1.conjugate();
+    measured.tangent_basis = TangentBasis(random_vector().normalized());
+    for (double& value : measured.sqrt_information.reshaped()) {
+      value = random.Gaussian();
+    }
+    // Both quaternions of a rotation say the same.
+    if (trial % 2 == 1) q1.coeffs() = -q1.coeffs();
+    ExpectGradients(
+        RelativePoseCost(measured),
+        {&quaternion, nullptr, &quaternion, nullptr},
+        {q1.coeffs().data(), c1.data(), q2.coeffs().data(), c2.data()});
+  }
 }
 
 TEST(ResidualsTest, CoplanarResidualsVanishForLinesThatMeet) {
@@ -250,11 +275,11 @@ TEST(ResidualsTest, CoplanarResidualsVanishForLinesThatMeet) {
   b << meeting - 1.1 * Vec3(-0.3, 1, 0.1), Vec3(-0.3, 1, 0.1).normalized();
   const Vec3 center(0.1, 0.2, -0.3);
   double transfer;
-  CoplanarTransferCost{900}(center.data(), a.data(), b.data(), &transfer);
+  const double* const blocks[] = {center.data(), a.data(), b.data()};
+  CoplanarTransferCost(900).Evaluate(blocks, &transfer, nullptr);
   EXPECT_NEAR(transfer, 0, 1e-9);
   Vec3 image;
-  CoplanarImageDistanceCost{900}(center.data(), a.data(), b.data(),
-                                 image.data());
+  CoplanarImageDistanceCost(900).Evaluate(blocks, image.data(), nullptr);
   EXPECT_LT(image.norm(), 1e-9);
 }
 
@@ -266,11 +291,12 @@ TEST(ResidualsTest, ImageDistanceIsBlindForFrontalPlanesTransferIsNot) {
   b << 0, 0, 5.2, 0, 1, 0;
   const Vec3 facing(0, 0, 0), beside(1, 0.5, 0);
   Vec3 image;
-  CoplanarImageDistanceCost{900}(facing.data(), a.data(), b.data(),
-                                 image.data());
+  const double* const facing_blocks[] = {facing.data(), a.data(), b.data()};
+  CoplanarImageDistanceCost(900).Evaluate(facing_blocks, image.data(), nullptr);
   EXPECT_LT(image.norm(), 1e-9);
   double transfer;
-  CoplanarTransferCost{900}(beside.data(), a.data(), b.data(), &transfer);
+  const double* const beside_blocks[] = {beside.data(), a.data(), b.data()};
+  CoplanarTransferCost(900).Evaluate(beside_blocks, &transfer, nullptr);
   EXPECT_GT(std::abs(transfer), 5);
 }
 

@@ -386,9 +386,14 @@ TEST(StructureBuilderTest, BadInputIsNamed) {
     return false;
   };
   TestScene good = MakeTestScene({});
+  ASSERT_THAT(BuildStructure(&good.scene, {}, {}), IsOk());
+  const Scene before = good.scene;
+  good.scene.poses.begin()->second.center.x() += 0.1;
+  const Scene moved = good.scene;
   EXPECT_THAT(BuildStructure(&good.scene, {}, cancel),
               IsError(ErrorCode::kCancelled, ""));
-  EXPECT_TRUE(good.scene.structure.empty());
+  EXPECT_TRUE(good.scene == moved);
+  EXPECT_TRUE(good.scene.structure == before.structure);
 }
 
 }  // namespace

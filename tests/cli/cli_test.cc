@@ -290,16 +290,38 @@ TEST_F(Cli, IntrinsicsOfASceneFileAndRefinement) {
     intrinsic.fy_px *= 1.02;
   }
   ASSERT_TRUE(WriteSceneBinary(*scene, Path("wrong.lowlap")));
-  const Outcome fixed = Lowlap("solve " + Path("wrong.lowlap") + " -o " +
-                               Path("fixed") + " --principal-point-stddev 0");
+  // A calibration is held, and what the images say of it is said: in the
+  // console, the summary and the report.
+  const Outcome fixed =
+      Lowlap("solve " + Path("wrong.lowlap") + " -o " + Path("fixed"));
   ASSERT_EQ(fixed.exit_code, 0) << fixed.output;
-  EXPECT_THAT(fixed.output, ::testing::Not(HasSubstr("intrinsic 0")));
+  EXPECT_TRUE(ReadSceneBinary(Path("fixed/scene.lowlap"))->intrinsics ==
+              scene->intrinsics);
+  const std::string words = "prefer another calibration of intrinsic 0";
+  EXPECT_THAT(fixed.output, HasSubstr(words));
+  EXPECT_THAT(fixed.output, HasSubstr("--refine-intrinsics focal"));
+  EXPECT_THAT(ReadText(Path("fixed/report.html")), HasSubstr(words));
+  EXPECT_THAT(ReadText(Path("fixed/summary.json")),
+              HasSubstr("\"parts\": \"focal"));
+  const Outcome right =
+      Lowlap("solve " + Path("room.lowlap") + " -o " + Path("right"));
+  EXPECT_THAT(right.output, Not(HasSubstr("another calibration")));
+  EXPECT_THAT(ReadText(Path("right/summary.json")),
+              HasSubstr("\"calibration_preferences\": []"));
   const Outcome refined =
       Lowlap("solve " + Path("wrong.lowlap") + " -o " + Path("refined") +
              " --refine-intrinsics focal");
   ASSERT_EQ(refined.exit_code, 0) << refined.output;
-  EXPECT_THAT(refined.output, HasSubstr("intrinsic 0"));
-  EXPECT_THAT(refined.output, ::testing::Not(HasSubstr("distortion")));
+  EXPECT_THAT(refined.output,
+              HasSubstr("focal refined, aspect,principal-point,distortion "
+                        "held"));
+  EXPECT_THAT(refined.output, HasSubstr("intrinsic 0 (pinhole); focal"));
+  // The next adjustment starts from the calibration as it was given.
+  const Outcome again =
+      Lowlap("adjust " + Path("refined/scene.lowlap") + " -o " + Path("again"));
+  ASSERT_EQ(again.exit_code, 0) << again.output;
+  EXPECT_TRUE(ReadSceneBinary(Path("again/scene.lowlap"))->intrinsics ==
+              scene->intrinsics);
   const Outcome adjusted =
       Lowlap("adjust " + Path("fixed/scene.lowlap") + " -o " +
              Path("adjusted") + " --refine-intrinsics");

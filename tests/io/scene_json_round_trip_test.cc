@@ -53,7 +53,7 @@ TEST(SceneFiles, OlderTextIsReadWithoutDetailsOfTheRatios) {
     }
     return count;
   };
-  EXPECT_EQ(replace_all("\"version\": 3", "\"version\": 2"), 1);
+  EXPECT_EQ(replace_all("\"version\": 4", "\"version\": 2"), 1);
   EXPECT_EQ(replace_all(", \"information_share\": 0.0", ""),
             3 * static_cast<int>(scene.scale_ratios.size()));
   const Result<Scene> read = ParseSceneJson(text);

@@ -46,14 +46,16 @@ struct AdjustmentOptions {
   /// same again, and each costs the solver time.
   int max_pairs_per_line = 3;
 
-  /// The intrinsics to refine. Of those not named only the principal point
-  /// moves, as far as principal_point_stddev lets it.
+  /// The intrinsics to refine, and which parts of them. The rest is held.
   std::map<IntrinsicId, IntrinsicRefinement> refine_intrinsics;
-  /// How well a given principal point is known: the standard deviation of each
-  /// coordinate as a share of the image diagonal. The default, one pixel of six
-  /// megapixels, is what a careful calibration leaves; the images decide where
-  /// they know better, and hardly move it where structure is thin. 0: exactly.
-  double principal_point_stddev = 0.0003;
+  /// 0: principal points move only where refine_intrinsics says so. Else all
+  /// move, and are held to the given ones with this standard deviation of each
+  /// coordinate, as a share of the image diagonal: 0.0003, one pixel of six
+  /// megapixels, is what a careful calibration leaves.
+  double principal_point_stddev = 0;
+  /// Whether the images contradict what is held of the calibration: see
+  /// AdjustmentSummary::calibration_preferences.
+  bool test_calibration = true;
 
   /// True if an intrinsic may move.
   bool MovesIntrinsics() const {

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/core/ids.h"
 #include "lowlap/geometry/types.h"
+#include "lowlap/scene/intrinsic.h"
 
 namespace lowlap {
 
@@ -38,6 +40,19 @@ struct SolveReport {
   double seconds = 0;
 };
 
+/// A calibration that was held, and that the images contradict.
+struct CalibrationPreference {
+  /// Usually one; all of a scene with many, which are tested together.
+  std::vector<IntrinsicId> intrinsics;
+  IntrinsicRefinement parts;    // those that the images would change
+  IntrinsicRefinement refined;  // those that were free anyway
+  /// Of the first intrinsic; what the images prefer is a first-order estimate.
+  Intrinsic held;
+  Intrinsic preferred;
+  /// How far the two are apart, in standard deviations of the estimate.
+  double deviations = 0;
+};
+
 struct AdjustmentSummary {
   double initial_cost = 0;  // of the first solve
   double final_cost = 0;    // of the last; its thresholds may differ
@@ -60,6 +75,9 @@ struct AdjustmentSummary {
   /// Landmarks of the input that are gone at the end, and new ones.
   std::size_t landmarks_removed = 0;
   std::size_t landmarks_added = 0;
+
+  /// Empty where noise explains what there is.
+  std::vector<CalibrationPreference> calibration_preferences;
 
   std::vector<SolveReport> solves;
   int iterations = 0;  // over all solves

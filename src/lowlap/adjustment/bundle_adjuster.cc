@@ -9,11 +9,12 @@
 #include <string>
 #include <utility>
 
-#include "lowlap/adjustment/internal/outlier_round.h"
-#include "lowlap/adjustment/internal/pair_selection.h"
-#include "lowlap/adjustment/internal/pair_terms.h"
-#include "lowlap/adjustment/internal/solve.h"
-#include "lowlap/adjustment/internal/structure_state.h"
+#include "lowlap/adjustment/internal/rounds/calibration_score.h"
+#include "lowlap/adjustment/internal/rounds/outlier_round.h"
+#include "lowlap/adjustment/internal/rounds/pair_selection.h"
+#include "lowlap/adjustment/internal/rounds/pair_terms.h"
+#include "lowlap/adjustment/internal/rounds/solve.h"
+#include "lowlap/adjustment/internal/structure/structure_state.h"
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
@@ -275,7 +276,8 @@ class Adjuster {
 
   // The share of the observations whose use changed.
   Result<double> Update(bool take_new_pairs) {
-    if (options_.MovesIntrinsics()) RefreshRays();
+    // Segments are undistorted with the intrinsics of the last solve.
+    if (options_.MovesIntrinsics()) RefreshRays(scene_, *cameras_, state_);
     if (Status status =
             FollowPoses(options_, noise_.lines, context_, *cameras_, state_);
         !status) {
@@ -288,20 +290,6 @@ class Adjuster {
     return changes->total > 0 ? static_cast<double>(changes->changed) /
                                     static_cast<double>(changes->total)
                               : 0.0;
-  }
-
-  // Segments are undistorted with the intrinsics of the last solve.
-  void RefreshRays() {
-    for (LineTrackState& line : state_->lines) {
-      for (LineCandidate& candidate : line.candidates) {
-        const LineSegment& segment =
-            scene_.features.at(cameras_->views[candidate.view].id)
-                .segments[candidate.feature];
-        const std::optional<internal::SegmentRays> rays = MakeSegmentRays(
-            segment, cameras_->IntrinsicOf(candidate.view), true);
-        if (rays) candidate.rays = *rays;
-      }
-    }
   }
 
   const Scene& scene_;
@@ -364,6 +352,13 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
     if (adjuster.last().pose_observed[n]) adjusted.insert(cameras.poses[n].id);
   }
   summary.poses_adjusted = adjusted.size();
+  if (options.test_calibration) {
+    if (!context.Progress("adjustment: calibration", 0, 1)) {
+      return MakeError(ErrorCode::kCancelled, "stopped on request");
+    }
+    summary.calibration_preferences = internal::FindCalibrationPreferences(
+        *scene, options, adjuster.noise(), cameras, state);
+  }
   for (const auto& [id, pose] : scene->poses) {
     if (adjusted.count(id) == 0) {
       summary.poses_without_observations.push_back(id);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <utility>
 
 namespace lowlap {
 namespace {
@@ -24,6 +25,19 @@ std::string Change(const char* name, const std::vector<double>& before,
          Numbers(after, format);
 }
 
+// "; focal 800.00, 801.00 -> 810.00, 811.01; ..."
+std::string Changes(const Intrinsic& before, const Intrinsic& after) {
+  std::vector<double> coefficients = before.distortion;
+  coefficients.resize(after.distortion.size(), 0);
+  return Change("focal", {before.fx_px, before.fy_px},
+                {after.fx_px, after.fy_px}, "%.2f") +
+         Change("principal point",
+                {before.principal_point_px.x(), before.principal_point_px.y()},
+                {after.principal_point_px.x(), after.principal_point_px.y()},
+                "%.2f") +
+         Change("distortion", coefficients, after.distortion, "%.5f");
+}
+
 }  // namespace
 
 void RefineAllIntrinsics(const IntrinsicRefinement& refinement, Scene* scene,
@@ -33,6 +47,7 @@ void RefineAllIntrinsics(const IntrinsicRefinement& refinement, Scene* scene,
   for (auto& [id, intrinsic] : scene->intrinsics) {
     if (intrinsic.model == CameraModel::kSpherical) continue;
     if (refinement.distortion && intrinsic.model == CameraModel::kPinhole) {
+      scene->given_intrinsics.emplace(id, intrinsic);
       intrinsic.model = CameraModel::kRadialK1;
       intrinsic.distortion = {0};
     }
@@ -40,15 +55,21 @@ void RefineAllIntrinsics(const IntrinsicRefinement& refinement, Scene* scene,
   }
 }
 
-double LargestIntrinsicShiftPx(const Scene& before, const Scene& after) {
+void RestoreGivenIntrinsics(Scene* scene) {
+  for (auto& [id, given] : scene->given_intrinsics) {
+    scene->intrinsics.at(id) = std::move(given);
+  }
+  scene->given_intrinsics.clear();
+}
+
+double LargestIntrinsicShiftPx(const Scene& scene) {
   double largest_px = 0;
-  for (const auto& [id, now] : after.intrinsics) {
-    const auto found = before.intrinsics.find(id);
-    if (found == before.intrinsics.end()) continue;
+  for (const auto& [id, given] : scene.given_intrinsics) {
+    const Intrinsic& now = scene.intrinsics.at(id);
     for (const double x : {0.0, 0.5, 1.0}) {
       for (const double y : {0.0, 0.5, 1.0}) {
         const Vec2 pixel(x * now.width_px, y * now.height_px);
-        const std::optional<Vec3> ray = found->second.Bearing(pixel);
+        const std::optional<Vec3> ray = given.Bearing(pixel);
         if (ray) {
           largest_px = std::max(largest_px, (now.Project(*ray) - pixel).norm());
         }
@@ -58,25 +79,54 @@ double LargestIntrinsicShiftPx(const Scene& before, const Scene& after) {
   return largest_px;
 }
 
-std::vector<std::string> DescribeIntrinsicChanges(const Scene& before,
-                                                  const Scene& after) {
+std::vector<std::string> DescribeIntrinsicChanges(const Scene& scene) {
   std::vector<std::string> lines;
-  for (const auto& [id, now] : after.intrinsics) {
-    const auto found = before.intrinsics.find(id);
-    if (found == before.intrinsics.end() || found->second == now) continue;
-    const Intrinsic& old = found->second;
-    std::vector<double> coefficients = old.distortion;
-    coefficients.resize(now.distortion.size(), 0);
+  for (const auto& [id, given] : scene.given_intrinsics) {
+    const Intrinsic& now = scene.intrinsics.at(id);
+    if (given == now) continue;
+    lines.push_back("intrinsic " + std::to_string(id) + " (" +
+                    CameraModelName(now.model) + ")" + Changes(given, now));
+  }
+  return lines;
+}
+
+IntrinsicRefinement Others(const IntrinsicRefinement& refinement) {
+  return {!refinement.focal, !refinement.principal_point,
+          !refinement.distortion, !refinement.aspect_ratio};
+}
+
+std::string DescribeParts(const IntrinsicRefinement& refinement) {
+  std::string text;
+  for (const auto& [named, name] :
+       {std::pair(refinement.focal, "focal"),
+        std::pair(refinement.aspect_ratio, "aspect"),
+        std::pair(refinement.principal_point, "principal-point"),
+        std::pair(refinement.distortion, "distortion")}) {
+    if (named) text += (text.empty() ? "" : ",") + std::string(name);
+  }
+  return text;
+}
+
+std::vector<std::string> DescribeCalibrationPreferences(
+    const AdjustmentSummary& summary) {
+  std::vector<std::string> lines;
+  for (const CalibrationPreference& preference :
+       summary.calibration_preferences) {
+    IntrinsicRefinement flag = preference.refined;
+    flag.focal |= preference.parts.focal;
+    flag.aspect_ratio |= preference.parts.aspect_ratio;
+    flag.principal_point |= preference.parts.principal_point;
+    flag.distortion |= preference.parts.distortion;
+    const std::size_t others = preference.intrinsics.size() - 1;
     lines.push_back(
-        "intrinsic " + std::to_string(id) + " (" + CameraModelName(now.model) +
-        ")" +
-        Change("focal", {old.fx_px, old.fy_px}, {now.fx_px, now.fy_px},
-               "%.2f") +
-        Change("principal point",
-               {old.principal_point_px.x(), old.principal_point_px.y()},
-               {now.principal_point_px.x(), now.principal_point_px.y()},
-               "%.2f") +
-        Change("distortion", coefficients, now.distortion, "%.5f"));
+        "the images prefer another calibration of intrinsic " +
+        std::to_string(preference.intrinsics.front()) +
+        (others > 0 ? " and, likewise, " + std::to_string(others) + " more"
+                    : "") +
+        " than the one that is held, by " +
+        Numbers({preference.deviations}, "%.1f") + " deviations" +
+        Changes(preference.held, preference.preferred) +
+        "; --refine-intrinsics " + DescribeParts(flag) + " follows them");
   }
   return lines;
 }

@@ -4,24 +4,40 @@
 #include <vector>
 
 #include "lowlap/adjustment/adjustment_options.h"
+#include "lowlap/adjustment/adjustment_summary.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
 
 /// Sets options->refine_intrinsics for every intrinsic of the scene that has
 /// parameters (not for panoramas). Where the distortion is to be refined, a
-/// pinhole becomes a kRadialK1 without distortion, which is the same camera.
+/// pinhole becomes a kRadialK1 without distortion, which is the same camera; it
+/// stays in scene->given_intrinsics.
 void RefineAllIntrinsics(const IntrinsicRefinement& refinement, Scene* scene,
                          AdjustmentOptions* options);
 
-/// How far the image of a viewing ray moves, in pixels, from the intrinsics of
-/// one scene to those of the other: the largest value over the corners and the
-/// middles of the sides of all intrinsics that both have.
-double LargestIntrinsicShiftPx(const Scene& before, const Scene& after);
+/// Back to scene->given_intrinsics, which is empty then: an adjustment of an
+/// adjusted scene starts from the calibration as it was given.
+void RestoreGivenIntrinsics(Scene* scene);
 
-/// "focal 2759.5, 2764.2 -> ..., k1 0 -> -0.02": one line per intrinsic that
-/// differs between the two scenes.
-std::vector<std::string> DescribeIntrinsicChanges(const Scene& before,
-                                                  const Scene& after);
+/// How far the image of a viewing ray moves, in pixels, from the given
+/// intrinsics to the present ones: the largest value over the corners and the
+/// middles of the sides.
+double LargestIntrinsicShiftPx(const Scene& scene);
+
+/// "focal 2759.5, 2764.2 -> ...; distortion 0 -> -0.02": one line for every
+/// intrinsic that is not the given one.
+std::vector<std::string> DescribeIntrinsicChanges(const Scene& scene);
+
+/// "focal,aspect", as --refine-intrinsics takes it; empty for none.
+std::string DescribeParts(const IntrinsicRefinement& refinement);
+/// What is not named.
+IntrinsicRefinement Others(const IntrinsicRefinement& refinement);
+
+/// "the images prefer ... to the calibration of intrinsic 0 that is held (5.3
+/// deviations): focal 2759.5, 2764.2 -> ...; --refine-intrinsics focal follows
+/// them".
+std::vector<std::string> DescribeCalibrationPreferences(
+    const AdjustmentSummary& summary);
 
 }  // namespace lowlap

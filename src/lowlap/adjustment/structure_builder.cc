@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/adjustment/internal/coplanar_pairs.h"
-#include "lowlap/adjustment/internal/structure_state.h"
+#include "lowlap/adjustment/internal/structure/coplanar_pairs.h"
+#include "lowlap/adjustment/internal/structure/structure_state.h"
 #include "lowlap/core/median.h"
 #include "lowlap/scene/validation.h"
 
@@ -19,7 +19,7 @@ namespace lowlap {
 namespace {
 
 using internal::CameraSet;
-using internal::Fate;
+using internal::LandmarkStatus;
 using internal::LineTrackState;
 using internal::NoiseBounds;
 using internal::NoiseScale;
@@ -58,8 +58,8 @@ void Summarise(const std::vector<TrackState>& tracks, const CameraSet& cameras,
   summary->tracks = tracks.size();
   for (const TrackState& track : tracks) {
     summary->observations += track.candidates.size();
-    switch (track.fate) {
-      case Fate::kLandmark: {
+    switch (track.status) {
+      case LandmarkStatus::kLandmark: {
         ++summary->landmarks;
         std::set<int> poses;
         for (const auto& candidate : track.candidates) {
@@ -71,19 +71,19 @@ void Summarise(const std::vector<TrackState>& tracks, const CameraSet& cameras,
         summary->observations_dropped += track.candidates.size() - used;
         break;
       }
-      case Fate::kTooFewViews:
+      case LandmarkStatus::kTooFewViews:
         ++summary->too_few_views;
         break;
-      case Fate::kInconsistent:
+      case LandmarkStatus::kInconsistent:
         ++summary->inconsistent;
         break;
-      case Fate::kBehindCamera:
+      case LandmarkStatus::kBehindCamera:
         ++summary->behind_camera;
         break;
-      case Fate::kUncertain:
+      case LandmarkStatus::kUncertain:
         ++summary->uncertain;
         break;
-      case Fate::kImplausible:
+      case LandmarkStatus::kImplausible:
         ++summary->implausible;
         break;
     }

@@ -18,14 +18,14 @@ namespace {
 // Like PNG's, the first byte is not text and the last ones show a file that was
 // sent as text.
 constexpr std::string_view kMagic("\x89LOWLAP\n", 8);
-constexpr std::uint32_t kVersion = 3;
-// Ends before the section "RATD".
+constexpr std::uint32_t kVersion = 4;
 constexpr std::uint32_t kOldestVersion = 2;
 
-// In the order of the file; all are always there.
-constexpr std::array<std::string_view, 14> kSections = {
-    "ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT",
-    "RELP", "PTRK", "LTRK", "RATI", "LINE", "COPL", "RATD"};
+// In the order of the file; all are always there. Versions 3 and 4 added the
+// last two, one each.
+constexpr std::array<std::string_view, 15> kSections = {
+    "ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT", "RELP",
+    "PTRK", "LTRK", "RATI", "LINE", "COPL", "RATD", "GIVN"};
 
 std::uint32_t Crc32(std::string_view bytes) {
   return static_cast<std::uint32_t>(
@@ -63,6 +63,8 @@ void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
     TransferVector(archive, scene.coplanar_pairs, 8, kTransferMatch);
   } else if (tag == "RATD") {
     TransferRatioDetails(archive, scene.scale_ratios);
+  } else if (tag == "GIVN") {
+    TransferMap(archive, scene.given_intrinsics, kTransferIntrinsic);
   }
 }
 
@@ -98,13 +100,13 @@ Scene ReadSections(const std::string& bytes) {
   if (version < kOldestVersion || version > kVersion) {
     throw Failure{Error{ErrorCode::kUnsupported,
                         "version " + std::to_string(version) + " is not " +
-                            std::to_string(kOldestVersion) + " or " +
+                            std::to_string(kOldestVersion) + " to " +
                             std::to_string(kVersion),
                         {},
                         "byte " + std::to_string(kMagic.size())}};
   }
   file.Integer(section_count);
-  const std::size_t num_sections = kSections.size() - (version < kVersion);
+  const std::size_t num_sections = kSections.size() - (kVersion - version);
   if (section_count != num_sections) {
     file.Fail("the number of sections is wrong");
   }

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "lowlap/adjustment/intrinsic_refinement.h"
+
 namespace lowlap {
 namespace {
 
@@ -63,6 +65,29 @@ Json TriangulationJson(const TriangulationSummary& kind) {
           {"uncertain", kind.uncertain},
           {"implausible", kind.implausible},
           {"threshold_px", kind.threshold_px}};
+}
+
+Json IntrinsicJson(const Intrinsic& intrinsic) {
+  return {
+      {"model", CameraModelName(intrinsic.model)},
+      {"fx", intrinsic.fx_px},
+      {"fy", intrinsic.fy_px},
+      {"principal_point",
+       {intrinsic.principal_point_px.x(), intrinsic.principal_point_px.y()}},
+      {"distortion", intrinsic.distortion}};
+}
+
+Json PreferencesJson(const AdjustmentSummary& adjustment) {
+  Json preferences = Json::array();
+  for (const CalibrationPreference& preference :
+       adjustment.calibration_preferences) {
+    preferences.push_back({{"intrinsics", preference.intrinsics},
+                           {"parts", DescribeParts(preference.parts)},
+                           {"deviations", preference.deviations},
+                           {"held", IntrinsicJson(preference.held)},
+                           {"preferred", IntrinsicJson(preference.preferred)}});
+  }
+  return preferences;
 }
 
 // What nothing confirms, or something contradicts.
@@ -190,7 +215,8 @@ Json SolveJson(const SolveResult& solve) {
         {"poses_without_observations", a.poses_without_observations},
         {"points", AdjustedKindJson(a.points)},
         {"lines", AdjustedKindJson(a.lines)},
-        {"coplanar", AdjustedKindJson(a.coplanar)}};
+        {"coplanar", AdjustedKindJson(a.coplanar)},
+        {"calibration_preferences", PreferencesJson(a)}};
   }
   return json;
 }

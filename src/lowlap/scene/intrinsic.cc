@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lowlap/scene/internal/distortion.h"
 #include "lowlap/scene/internal/undistort.h"
 
 namespace lowlap {
@@ -30,15 +31,6 @@ const ModelEntry& Entry(CameraModel model) {
                        [&](const ModelEntry& e) { return e.model == model; });
 }
 
-Vec2 DistortFisheye(const std::vector<double>& k, const Vec2& p) {
-  const double r = p.norm();
-  if (r < 1e-12) return p;
-  const double theta = std::atan(r), t2 = theta * theta;
-  const double theta_d =
-      theta * (1 + t2 * (k[0] + t2 * (k[1] + t2 * (k[2] + t2 * k[3]))));
-  return p * (theta_d / r);
-}
-
 }  // namespace
 
 const char* CameraModelName(CameraModel model) { return Entry(model).name; }
@@ -53,25 +45,10 @@ std::optional<CameraModel> CameraModelFromName(const std::string& name) {
 int DistortionCount(CameraModel model) { return Entry(model).distortion_count; }
 
 Vec2 Distort(CameraModel model, const std::vector<double>& k, const Vec2& p) {
-  const double r2 = p.squaredNorm();
-  switch (model) {
-    case CameraModel::kPinhole:
-    case CameraModel::kSpherical:
-      return p;
-    case CameraModel::kRadialK1:
-      return p * (1 + k[0] * r2);
-    case CameraModel::kRadialK3:
-      return p * (1 + r2 * (k[0] + r2 * (k[1] + r2 * k[2])));
-    case CameraModel::kBrownT2: {
-      const double radial = 1 + r2 * (k[0] + r2 * (k[1] + r2 * k[2]));
-      const double t1 = k[3], t2 = k[4], xy = p.x() * p.y();
-      return {p.x() * radial + t2 * (r2 + 2 * p.x() * p.x()) + 2 * t1 * xy,
-              p.y() * radial + t1 * (r2 + 2 * p.y() * p.y()) + 2 * t2 * xy};
-    }
-    case CameraModel::kFisheye:
-      return DistortFisheye(k, p);
-  }
-  return p;
+  Vec2 distorted;
+  internal::DistortPoint(model, k.data(), p.x(), p.y(), &distorted.x(),
+                         &distorted.y());
+  return distorted;
 }
 
 Vec2 Intrinsic::Project(const Vec3& x) const {

@@ -42,7 +42,8 @@ std::string Scene::ImagePath(ViewId view) const {
 
 bool operator==(const Scene& a, const Scene& b) {
   return a.root_path == b.root_path && a.views == b.views &&
-         a.intrinsics == b.intrinsics && a.poses == b.poses &&
+         a.intrinsics == b.intrinsics &&
+         a.given_intrinsics == b.given_intrinsics && a.poses == b.poses &&
          a.features == b.features && a.relative_poses == b.relative_poses &&
          a.point_tracks == b.point_tracks && a.line_tracks == b.line_tracks &&
          a.scale_ratios == b.scale_ratios && a.structure == b.structure &&
@@ -80,8 +81,11 @@ Scene WithoutViews(const Scene& scene, const std::vector<ViewId>& excluded) {
   }
   erase_if(kept.poses,
            [&](const auto& e) { return used_poses.count(e.first) == 0; });
-  erase_if(kept.intrinsics,
-           [&](const auto& e) { return used_intrinsics.count(e.first) == 0; });
+  for (auto* intrinsics : {&kept.intrinsics, &kept.given_intrinsics}) {
+    erase_if(*intrinsics, [&](const auto& e) {
+      return used_intrinsics.count(e.first) == 0;
+    });
+  }
 
   for (auto* tracks : {&kept.point_tracks, &kept.line_tracks}) {
     erase_if(*tracks, [&](auto& e) {

@@ -37,6 +37,8 @@ struct Scene {
   std::string root_path;  // image folder; may be relative to the scene file
   std::map<ViewId, View> views;
   std::map<IntrinsicId, Intrinsic> intrinsics;
+  /// Of the intrinsics that an adjustment moved: as they were given originally.
+  std::map<IntrinsicId, Intrinsic> given_intrinsics;
   std::map<PoseId, Pose> poses;  // only solved poses
 
   std::map<ViewId, ViewFeatures> features;

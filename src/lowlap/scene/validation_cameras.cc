@@ -54,6 +54,16 @@ Status ValidateCameras(const Scene& scene, const ViewTable&) {
       return Invalid(status.error().message, place);
     }
   }
+  for (const auto& [id, given] : scene.given_intrinsics) {
+    const std::string place =
+        OwnItemPlace("given_intrinsics", "id", std::to_string(id));
+    if (scene.intrinsics.count(id) == 0) {
+      return Invalid("there is no intrinsic " + std::to_string(id), place);
+    }
+    if (const Status status = given.Validate(); !status) {
+      return Invalid(status.error().message, place);
+    }
+  }
   for (const auto& [id, pose] : scene.poses) {
     const std::string place = ItemPlace("extrinsics", id);
     if (id == kInvalidId) return Invalid("this id is reserved", place);

@@ -39,8 +39,13 @@ CameraSet::CameraSet(const Scene& scene) {
     const auto [intrinsic_at, new_intrinsic] = intrinsic_index.emplace(
         view.intrinsic_id, static_cast<int>(intrinsics.size()));
     if (new_intrinsic) {
-      intrinsics.push_back(
-          {view.intrinsic_id, *intrinsic, intrinsic->principal_point_px, {}});
+      const auto given = scene.given_intrinsics.find(view.intrinsic_id);
+      intrinsics.push_back({view.intrinsic_id,
+                            *intrinsic,
+                            given != scene.given_intrinsics.end()
+                                ? given->second.principal_point_px
+                                : intrinsic->principal_point_px,
+                            {}});
       intrinsics.back().ParametersFromValue();
     }
     view_index.emplace(id, static_cast<int>(views.size()));
@@ -74,7 +79,10 @@ void CameraSet::WriteTo(Scene* scene) const {
     pose.center = state.center;
   }
   for (const IntrinsicState& state : intrinsics) {
-    scene->intrinsics.at(state.id) = state.value;
+    Intrinsic& value = scene->intrinsics.at(state.id);
+    if (value == state.value) continue;
+    scene->given_intrinsics.emplace(state.id, value);
+    value = state.value;
   }
 }
 

@@ -27,7 +27,7 @@ struct PoseState {
 struct IntrinsicState {
   IntrinsicId id = kInvalidId;
   Intrinsic value;
-  Vec2 given_principal_point_px = Vec2::Zero();  // that of the scene
+  Vec2 given_principal_point_px = Vec2::Zero();  // as given
   IntrinsicParameters parameters{};              // the solver's copy of `value`
 
   int ParameterCount() const {
@@ -64,7 +64,8 @@ struct CameraSet {
   double MeanImageArea() const;
   double MeanImageDiagonal() const;
 
-  /// Poses and intrinsics back into the scene.
+  /// Poses and intrinsics back into the scene, which keeps the given ones of
+  /// intrinsics that moved.
   void WriteTo(Scene* scene) const;
 };
 

@@ -5,8 +5,9 @@
 namespace lowlap {
 namespace {
 
-// Version 2 had no second modes and shares of information.
-constexpr std::uint32_t kVersion = 3, kOldestVersion = 2;
+// Version 3 had no given intrinsics, version 2 no second modes and shares of
+// information either.
+constexpr std::uint32_t kVersion = 4, kOldestVersion = 2;
 
 // Calls `add(a, b)` for the pairs of a flat array of ids.
 template <class Add>
@@ -172,6 +173,29 @@ ScaleRatio ReadScaleRatio(const JsonValue& record) {
   return ratio;
 }
 
+Intrinsic ReadGivenIntrinsic(const JsonValue& record) {
+  record.AllowOnly({"id", "model", "width", "height", "fx", "fy",
+                    "principal_point", "distortion"});
+  const JsonValue name = record.At("model");
+  const std::optional<CameraModel> model = CameraModelFromName(name.String());
+  if (!model) {
+    name.Fail("camera model \"" + name.String() + "\" is not known",
+              ErrorCode::kUnsupported);
+  }
+  Intrinsic intrinsic;
+  intrinsic.model = *model;
+  intrinsic.width_px = record.At("width").Count();
+  intrinsic.height_px = record.At("height").Count();
+  intrinsic.fx_px = record.At("fx").Real();
+  intrinsic.fy_px = record.At("fy").Real();
+  intrinsic.principal_point_px = record.At("principal_point").Vector<2>();
+  const JsonValue distortion = record.At("distortion");
+  for (const JsonValue coefficient : distortion.Elements()) {
+    intrinsic.distortion.push_back(coefficient.Real());
+  }
+  return intrinsic;
+}
+
 LineLandmark ReadLine(const JsonValue& record) {
   record.AllowOnly(
       {"id", "direction", "moment", "start", "end", "observations"});
@@ -201,14 +225,24 @@ void ReadOwnSections(const JsonValue& own, Scene& scene) {
   const JsonValue version = own.At("version");
   if (version.Id() < kOldestVersion || version.Id() > kVersion) {
     version.Fail("version " + std::to_string(version.Id()) + " is not " +
-                     std::to_string(kOldestVersion) + " or " +
+                     std::to_string(kOldestVersion) + " to " +
                      std::to_string(kVersion),
                  ErrorCode::kUnsupported);
   }
-  own.AllowOnly({"version", "features", "relative_poses", "point_tracks",
-                 "line_tracks", "scale_ratios", "line_structure",
-                 "coplanar_pairs"});
+  own.AllowOnly({"version", "given_intrinsics", "features", "relative_poses",
+                 "point_tracks", "line_tracks", "scale_ratios",
+                 "line_structure", "coplanar_pairs"});
   // A section that is missing is empty.
+  if (const auto list = own.Find("given_intrinsics")) {
+    for (const JsonValue record : list->Elements()) {
+      const JsonValue id = record.At("id");
+      if (!scene.given_intrinsics.emplace(id.Id(), ReadGivenIntrinsic(record))
+               .second) {
+        id.Fail("id " + std::to_string(id.Id()) + " is repeated",
+                ErrorCode::kInvalidScene);
+      }
+    }
+  }
   if (const auto list = own.Find("features")) {
     for (const JsonValue record : list->Elements()) {
       const JsonValue view = record.At("view");

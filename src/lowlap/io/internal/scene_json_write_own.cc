@@ -160,6 +160,27 @@ void AppendScaleRatio(const ScaleRatio& ratio, std::string& text) {
   text += "]}";
 }
 
+void AppendGivenIntrinsic(IntrinsicId id, const Intrinsic& intrinsic,
+                          std::string& text) {
+  text += "{";
+  AppendKey("id", text);
+  AppendInteger(id, text);
+  AppendKey("model", text);
+  AppendString(CameraModelName(intrinsic.model), text);
+  AppendCount("width", intrinsic.width_px, text);
+  AppendCount("height", intrinsic.height_px, text);
+  AppendNamedReal("fx", intrinsic.fx_px, text);
+  AppendNamedReal("fy", intrinsic.fy_px, text);
+  AppendKey("principal_point", text);
+  AppendVector(intrinsic.principal_point_px, text);
+  AppendKey("distortion", text);
+  AppendVector(Eigen::Map<const Eigen::VectorXd>(
+                   intrinsic.distortion.data(),
+                   static_cast<Eigen::Index>(intrinsic.distortion.size())),
+               text);
+  text += "}";
+}
+
 void AppendLine(LineTrackId id, const LineLandmark& landmark,
                 std::string& text) {
   text += "{";
@@ -183,6 +204,9 @@ void AppendOwnSections(const Scene& scene, std::string& text) {
   const auto append_features = [](const auto& entry, std::string& out) {
     AppendFeatures(entry.first, entry.second, out);
   };
+  const auto append_given_intrinsic = [](const auto& entry, std::string& out) {
+    AppendGivenIntrinsic(entry.first, entry.second, out);
+  };
   const auto append_relative_pose = [](const auto& entry, std::string& out) {
     AppendRelativePose(entry.second, out);
   };
@@ -192,7 +216,10 @@ void AppendOwnSections(const Scene& scene, std::string& text) {
   const auto append_line = [](const auto& entry, std::string& out) {
     AppendLine(entry.first, entry.second, out);
   };
-  text += "\"version\": 3,\n";
+  text += "\"version\": 4,\n";
+  AppendSection("given_intrinsics", scene.given_intrinsics,
+                append_given_intrinsic, text);
+  text += ",\n";
   AppendSection("features", scene.features, append_features, text);
   text += ",\n";
   AppendSection("relative_poses", scene.relative_poses, append_relative_pose,

@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "lowlap/adjustment/intrinsic_refinement.h"
 #include "lowlap/averaging/pose_warnings.h"
 #include "lowlap/pipeline/internal/ratio_table.h"
 
@@ -89,6 +90,10 @@ void AddSolve(const SolveResult& solve, const Scene& scene,
         Number(solve.adjustment->points.final_rmse_px, "%.2f px"));
     content->figures.emplace_back(
         "line RMSE", Number(solve.adjustment->lines.final_rmse_px, "%.2f px"));
+    for (std::string& note :
+         DescribeCalibrationPreferences(*solve.adjustment)) {
+      content->warnings.push_back(std::move(note));
+    }
   }
   for (std::string& warning : PoseWarnings(poses, scene)) {
     content->warnings.push_back(std::move(warning));

@@ -1,0 +1,400 @@
+#include "lowlap/adjustment/internal/rounds/calibration_score.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <set>
+
+#include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
+#include "lowlap/adjustment/internal/rounds/linearised_problem.h"
+#include "lowlap/adjustment/internal/rounds/quiet_logging.h"
+#include "lowlap/robust/chi_square.h"
+
+namespace lowlap::internal {
+namespace {
+
+using MatX = Eigen::MatrixXd;
+using VecX = Eigen::VectorXd;
+using SparseMat = LinearisedProblem::SparseMat;
+
+constexpr std::size_t kMaxSeparate = 16;
+constexpr double kFalseAlarms = 0.01;
+constexpr IntrinsicRefinement kAllParts{true, true, true, true};
+
+using Part = bool IntrinsicRefinement::*;
+// In the order of the columns of FreeDirections.
+constexpr Part kParts[] = {
+    &IntrinsicRefinement::focal, &IntrinsicRefinement::aspect_ratio,
+    &IntrinsicRefinement::principal_point, &IntrinsicRefinement::distortion};
+
+int Size(Part part, const Intrinsic& intrinsic) {
+  if (part == &IntrinsicRefinement::principal_point) return 2;
+  if (part == &IntrinsicRefinement::distortion) {
+    return static_cast<int>(intrinsic.distortion.size());
+  }
+  return 1;
+}
+
+// How far a part of the solver's parameters moves at a change of 1: focal
+// lengths and aspect by the factor e, the principal point by the diagonal.
+double Unit(Part part, const Intrinsic& intrinsic) {
+  if (part == &IntrinsicRefinement::focal) {
+    return std::hypot(intrinsic.fx_px, intrinsic.fy_px);
+  }
+  if (part == &IntrinsicRefinement::aspect_ratio) return intrinsic.fy_px;
+  return part == &IntrinsicRefinement::principal_point
+             ? intrinsic.ImageDiagonal()
+             : 1;
+}
+
+void Apply(Part part, const VecX& change, Intrinsic* intrinsic) {
+  if (part == &IntrinsicRefinement::focal) intrinsic->fx_px *= 1 + change(0);
+  if (part == &IntrinsicRefinement::focal ||
+      part == &IntrinsicRefinement::aspect_ratio) {
+    intrinsic->fy_px *= 1 + change(0);
+  } else if (part == &IntrinsicRefinement::principal_point) {
+    intrinsic->principal_point_px += intrinsic->ImageDiagonal() * change;
+  } else {
+    for (std::size_t n = 0; n < intrinsic->distortion.size(); ++n) {
+      intrinsic->distortion[n] += change(static_cast<Eigen::Index>(n));
+    }
+  }
+}
+
+// A held part of the intrinsics that are tested together: consecutive columns
+// of the held parameters t.
+struct Candidate {
+  std::size_t group = 0;
+  Part part = nullptr;
+  int first = 0;
+  int size = 0;
+  bool chosen = false;
+};
+
+struct Group {
+  std::vector<int> intrinsics;
+  IntrinsicRefinement refined;
+};
+
+std::vector<Group> MakeGroups(const AdjustmentOptions& options,
+                              const CameraSet& cameras) {
+  std::vector<Group> groups;
+  const bool separate = cameras.intrinsics.size() <= kMaxSeparate;
+  for (std::size_t n = 0; n < cameras.intrinsics.size(); ++n) {
+    const IntrinsicState& intrinsic = cameras.intrinsics[n];
+    if (intrinsic.value.model == CameraModel::kSpherical) continue;
+    const IntrinsicRefinement refined = RefinementOf(options, intrinsic);
+    if (separate || groups.empty()) groups.push_back({{}, refined});
+    groups.back().intrinsics.push_back(static_cast<int>(n));
+    for (const Part part : kParts) {
+      groups.back().refined.*part |= refined.*part;
+    }
+  }
+  return groups;
+}
+
+// The score test in the held parameters alone; see the header.
+struct Score {
+  VecX u;
+  MatX information;
+  MatX prior_information;  // if everything else were known
+  MatX variance;           // of u, from the landmarks' shares
+};
+
+// Columns: the free directions, and how the held parameters move the kept ones.
+struct Directions {
+  SparseMat free;
+  MatX held;
+};
+
+std::optional<Score> ComputeScore(const LinearisedProblem& linearised,
+                                  const Directions& directions) {
+  const SparseMat hessian =
+      linearised.jacobian.transpose() * linearised.jacobian;
+  const SparseMat inverse = linearised.InverseOfEliminated(hessian);
+  const SparseMat kept = linearised.SchurComplement(hessian, inverse);
+  const int first = linearised.eliminated_size, size = linearised.KeptSize();
+
+  // What nothing determines (the scale of a link of two views) has no gradient
+  // either: it stays where it is.
+  constexpr double kDamping = 1e-10;
+  SparseMat free = directions.free.transpose() * kept * directions.free;
+  const VecX own =
+      SparseMat(hessian.block(first, first, size, size)).diagonal();
+  const VecX own_free = directions.free.transpose() * own;
+  for (Eigen::Index n = 0; n < free.cols(); ++n) {
+    free.coeffRef(n, n) += kDamping * own_free(n);
+  }
+  const Eigen::SimplicialLDLT<SparseMat> factor(free);
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  const MatX kept_held = kept * directions.held;
+  const MatX cross = directions.free.transpose() * kept_held;
+  const MatX solved = factor.solve(cross);
+  Score score;
+  score.prior_information = directions.held.transpose() * kept_held;
+  score.information = score.prior_information - cross.transpose() * solved;
+  const MatX efficient = directions.held - directions.free * solved;
+
+  // The residuals without what the landmarks' own freedom explains.
+  const SparseMat by_landmarks = linearised.jacobian.leftCols(first);
+  const VecX residuals =
+      linearised.residuals -
+      by_landmarks *
+          (inverse * (by_landmarks.transpose() * linearised.residuals));
+  using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+  const RowMajor rows = linearised.jacobian;
+  const Eigen::Index count = directions.held.cols();
+  score.u = VecX::Zero(count);
+  score.variance = MatX::Zero(count, count);
+  VecX share = VecX::Zero(count);
+  Eigen::Index landmark = -1;
+  const auto finish_landmark = [&] {
+    score.u += share;
+    score.variance += share * share.transpose();
+    share.setZero();
+  };
+  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
+    bool at_landmark = true;  // the first column of the row
+    for (RowMajor::InnerIterator it(rows, row); it; ++it) {
+      if (it.col() >= first) {
+        share += residuals(row) * it.value() *
+                 efficient.row(it.col() - first).transpose();
+      } else if (at_landmark && it.col() != landmark) {
+        finish_landmark();
+        landmark = it.col();
+      }
+      at_landmark = false;
+    }
+  }
+  finish_landmark();
+  const double redundancy = static_cast<double>(rows.rows()) - first;
+  const double unknowns = static_cast<double>(free.cols() + count);
+  if (!(redundancy > unknowns)) return std::nullopt;
+  score.variance *= redundancy / (redundancy - unknowns);
+  return score;
+}
+
+MatX Block(const MatX& matrix, const std::vector<int>& rows,
+           const std::vector<int>& cols) {
+  MatX block(rows.size(), cols.size());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t col = 0; col < cols.size(); ++col) {
+      block(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col)) =
+          matrix(rows[row], cols[col]);
+    }
+  }
+  return block;
+}
+
+// The statistic of the parameters `which`, given that those in `free` are free;
+// 0 where the images do not determine them.
+double Statistic(const Score& score, const std::vector<int>& which,
+                 const std::vector<int>& free) {
+  // u' = M (u_which, u_free).
+  std::vector<int> both = which;
+  both.insert(both.end(), free.begin(), free.end());
+  const auto size = static_cast<Eigen::Index>(which.size());
+  MatX reduce = MatX::Identity(size, static_cast<Eigen::Index>(both.size()));
+  if (!free.empty()) {
+    reduce.rightCols(static_cast<Eigen::Index>(free.size())) =
+        -Block(score.information, which, free) *
+        PseudoInverse(Block(score.information, free, free));
+  }
+  const VecX u = reduce * Block(score.u, both, {0});
+  const MatX information =
+      reduce * Block(score.information, both, both) * reduce.transpose();
+  const MatX variance =
+      reduce * Block(score.variance, both, both) * reduce.transpose();
+  constexpr double kLeastShare = 1e-7;
+  const VecX scale = Block(score.prior_information, which, which)
+                         .diagonal()
+                         .cwiseSqrt()
+                         .cwiseInverse();
+  if (!scale.allFinite()) return 0;
+  const Eigen::SelfAdjointEigenSolver<MatX> eigen(
+      MatX(scale.asDiagonal() * information * scale.asDiagonal()),
+      Eigen::EigenvaluesOnly);
+  if (!(eigen.eigenvalues()(0) > kLeastShare)) return 0;
+  const double by_model = u.dot(information.ldlt().solve(u));
+  const double by_spread = u.dot(PseudoInverse(variance) * u);
+  const double least = std::min(by_model, by_spread);
+  return std::isfinite(least) ? std::max(0.0, least) : 0;
+}
+
+std::vector<int> Columns(const std::vector<Candidate>& candidates,
+                         const std::function<bool(const Candidate&)>& wanted) {
+  std::vector<int> columns;
+  for (const Candidate& candidate : candidates) {
+    if (!wanted(candidate)) continue;
+    for (int n = 0; n < candidate.size; ++n) {
+      columns.push_back(candidate.first + n);
+    }
+  }
+  return columns;
+}
+
+// Marks the candidates that noise does not explain.
+void Choose(const Score& score, std::vector<Candidate>* candidates) {
+  const double level =
+      std::log(kFalseAlarms / static_cast<double>(candidates->size()));
+  for (;;) {
+    const std::vector<int> chosen =
+        Columns(*candidates, [](const Candidate& c) { return c.chosen; });
+    Candidate* best = nullptr;
+    double least = level;
+    for (Candidate& candidate : *candidates) {
+      if (candidate.chosen) continue;
+      const std::vector<int> own = Columns(
+          *candidates, [&](const Candidate& c) { return &c == &candidate; });
+      const double log_tail =
+          LogChiSquareTail(Statistic(score, own, chosen), candidate.size);
+      if (log_tail < least) {
+        least = log_tail;
+        best = &candidate;
+      }
+    }
+    if (best == nullptr) return;
+    best->chosen = true;
+  }
+}
+
+}  // namespace
+
+std::vector<CalibrationPreference> FindCalibrationPreferences(
+    const Scene& scene, const AdjustmentOptions& options,
+    const NoiseLevels& noise, CameraSet cameras, StructureState state) {
+  const std::vector<Group> groups = MakeGroups(options, cameras);
+  const CameraSet held = cameras;
+  AdjustmentOptions freed = options;
+  freed.use_coplanar = false;
+  freed.principal_point_stddev = 0;
+  for (IntrinsicState& intrinsic : cameras.intrinsics) {
+    if (intrinsic.value.model == CameraModel::kPinhole) {
+      intrinsic.value.model = CameraModel::kRadialK1;
+      intrinsic.value.distortion = {0};
+    }
+    freed.refine_intrinsics[intrinsic.id] = kAllParts;
+  }
+  state.priors.clear();
+  // Errors of depth in two views are large and curved: their share of the score
+  // has a mean.
+  for (PointTrackState& point : state.points) {
+    std::set<int> poses;
+    for (const PointCandidate& candidate : point.candidates) {
+      if (candidate.used) poses.insert(cameras.views[candidate.view].pose);
+    }
+    if (poses.size() < 3) point.status = LandmarkStatus::kTooFewViews;
+  }
+  RefreshRays(scene, cameras, &state);
+  const ProblemSelection selection = SelectForSolve(cameras, state, freed);
+  if (groups.empty() || selection.IsEmpty()) return {};
+  const std::vector<Component> components =
+      FindComponents(cameras, state, selection);
+  PoseState reference;
+  for (const Component& component : components) {
+    EnterComponentFrame(component, &cameras, &state, &reference);
+  }
+  const QuietLogging quiet;
+  SolveRequest request;
+  request.noise = noise;
+  ProblemBuilder builder(freed, request, selection, components, &cameras,
+                         &state);
+  const LinearisedProblem linearised(&builder);
+
+  // A column for every free direction and every held parameter.
+  std::vector<Candidate> candidates;
+  std::vector<Eigen::Triplet<double>> free, moves;
+  std::vector<char> is_free(static_cast<std::size_t>(linearised.KeptSize()), 1);
+  int count = 0;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    std::vector<int> column(groups[g].intrinsics.size());
+    for (std::size_t n = 0; n < column.size(); ++n) {
+      column[n] = linearised.KeptColumn(
+          builder.IntrinsicBlock(groups[g].intrinsics[n]));
+    }
+    for (const Part part : kParts) {
+      Candidate candidate{g, part, count, 0, false};
+      for (std::size_t n = 0; n < column.size(); ++n) {
+        if (column[n] < 0) continue;  // no landmark in its views
+        const Intrinsic& value =
+            cameras.intrinsics[groups[g].intrinsics[n]].value;
+        const int size = Size(part, value);
+        for (int k = 0; k < size && !(groups[g].refined.*part); ++k) {
+          is_free[static_cast<std::size_t>(column[n] + k)] = 0;
+          moves.emplace_back(column[n] + k, count + k, Unit(part, value));
+          candidate.size = std::max(candidate.size, size);
+        }
+        column[n] += size;
+      }
+      count += candidate.size;
+      if (candidate.size > 0) candidates.push_back(candidate);
+    }
+  }
+  if (candidates.empty()) return {};
+  int free_count = 0;
+  for (int n = 0; n < linearised.KeptSize(); ++n) {
+    if (is_free[static_cast<std::size_t>(n)]) {
+      free.emplace_back(n, free_count++, 1);
+    }
+  }
+  Directions directions;
+  directions.free.resize(linearised.KeptSize(), free_count);
+  directions.free.setFromTriplets(free.begin(), free.end());
+  SparseMat held_directions(linearised.KeptSize(), count);
+  held_directions.setFromTriplets(moves.begin(), moves.end());
+  directions.held = held_directions;
+
+  const std::optional<Score> score = ComputeScore(linearised, directions);
+  if (!score) return {};
+  Choose(*score, &candidates);
+
+  const std::vector<int> chosen =
+      Columns(candidates, [](const Candidate& c) { return c.chosen; });
+  if (chosen.empty()) return {};
+  VecX change = VecX::Zero(count);
+  const VecX step = -(PseudoInverse(Block(score->information, chosen, chosen)) *
+                      Block(score->u, chosen, {0}));
+  for (std::size_t n = 0; n < chosen.size(); ++n) {
+    change(chosen[n]) = step(static_cast<Eigen::Index>(n));
+  }
+  std::vector<CalibrationPreference> preferences;
+  for (std::size_t g = 0; g < groups.size(); ++g) {
+    CalibrationPreference preference;
+    for (const int n : groups[g].intrinsics) {
+      preference.intrinsics.push_back(cameras.intrinsics[n].id);
+    }
+    const int representative = groups[g].intrinsics.front();
+    preference.held = held.intrinsics[representative].value;
+    preference.preferred = preference.held;
+    preference.refined = groups[g].refined;
+    for (const Candidate& candidate : candidates) {
+      if (candidate.group != g || !candidate.chosen) continue;
+      preference.parts.*candidate.part = true;
+      if (candidate.part == &IntrinsicRefinement::distortion) {
+        preference.preferred.model =
+            cameras.intrinsics[representative].value.model;
+        preference.preferred.distortion =
+            cameras.intrinsics[representative].value.distortion;
+      }
+      Apply(candidate.part, change.segment(candidate.first, candidate.size),
+            &preference.preferred);
+    }
+    if (!preference.parts.Any()) continue;
+    const auto of_group = [&](const Candidate& c) {
+      return c.chosen && c.group == g;
+    };
+    preference.deviations =
+        std::sqrt(Statistic(*score, Columns(candidates, of_group),
+                            Columns(candidates, [&](const Candidate& c) {
+                              return c.chosen && !of_group(c);
+                            })));
+    preferences.push_back(std::move(preference));
+  }
+  return preferences;
+}
+
+}  // namespace lowlap::internal

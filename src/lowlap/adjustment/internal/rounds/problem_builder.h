@@ -1,0 +1,67 @@
+#pragma once
+
+#include <ceres/loss_function.h>
+#include <ceres/ordered_groups.h>
+#include <ceres/problem.h>
+
+#include <memory>
+#include <vector>
+
+#include "lowlap/adjustment/internal/costs/line_reprojection_cost.h"
+#include "lowlap/adjustment/internal/rounds/problem_selection.h"
+#include "lowlap/adjustment/internal/rounds/solve.h"
+
+namespace lowlap::internal {
+
+/// A ceres::Problem over copies of the selected poses, intrinsics, lines and
+/// points, in the frames of their components. Owns what the problem points to.
+///
+/// All blocks lie in one array, in the order of their indices: the solver
+/// orders blocks of a group by address, and the order of sums must not depend
+/// on where the heap puts things.
+class ProblemBuilder {
+ public:
+  ProblemBuilder(const AdjustmentOptions& options, const SolveRequest& request,
+                 const ProblemSelection& selection,
+                 const std::vector<Component>& components, CameraSet* cameras,
+                 StructureState* state);
+
+  ceres::Problem& problem() { return *problem_; }
+  /// Points and an independent set of the lines first: what the Schur
+  /// complement eliminates.
+  std::shared_ptr<ceres::ParameterBlockOrdering> Ordering();
+  /// Degrees of freedom of the blocks that are not eliminated.
+  int ReducedSize();
+  double* CenterBlock(int pose);
+  double* IntrinsicBlock(int intrinsic);
+  /// From the solver's blocks into cameras and state.
+  void TakeResults();
+
+ private:
+  void AddPoints();
+  void AddLines();
+  void AddPairs();
+  void AddRelativePoses();
+  void AddPrincipalPoints();
+  void SetManifolds();
+  bool IsRefined(int intrinsic) const;
+  double* RotationBlock(int pose);
+  double* PointBlock(int point);
+  double* LineBlock(int line);
+  void CopyIntoBlocks();
+  /// Loss for residuals in pixels, in units of the noise.
+  ceres::LossFunction* MakeLoss(const NoiseScale& noise, double weight);
+
+  const AdjustmentOptions& options_;
+  const SolveRequest& request_;
+  const ProblemSelection& selection_;
+  const std::vector<Component>& components_;
+  CameraSet* cameras_;
+  StructureState* state_;
+
+  std::vector<double> blocks_;
+  std::vector<std::unique_ptr<ceres::LossFunction>> losses_;
+  std::unique_ptr<ceres::Problem> problem_;
+};
+
+}  // namespace lowlap::internal

@@ -1,0 +1,187 @@
+#include "lowlap/adjustment/internal/rounds/problem_selection.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "lowlap/core/union_find.h"
+
+namespace lowlap::internal {
+namespace {
+
+template <class Track>
+int FirstPose(const CameraSet& cameras, const Track& track) {
+  for (const auto& candidate : track.candidates) {
+    if (candidate.used) return cameras.views[candidate.view].pose;
+  }
+  return -1;
+}
+
+// The similarity component_from_world: y = rotation (x - origin) / unit.
+struct Frame {
+  Eigen::Quaterniond rotation;
+  Vec3 origin;
+  double unit;
+
+  Vec3 Enter(const Vec3& x) const { return rotation * (x - origin) / unit; }
+  Vec3 Leave(const Vec3& y) const {
+    return unit * (rotation.conjugate() * y) + origin;
+  }
+};
+
+Frame FrameOf(const Component& component, const PoseState& reference) {
+  return {reference.cam_from_world, reference.center,
+          component.baseline > 0 ? component.baseline : 1};
+}
+
+}  // namespace
+
+std::vector<int> ViewsOf(const LineTrackState& line) {
+  std::set<int> views;
+  for (const LineCandidate& candidate : line.candidates) {
+    if (candidate.used) views.insert(candidate.view);
+  }
+  return {views.begin(), views.end()};
+}
+
+ProblemSelection SelectForSolve(const CameraSet& cameras,
+                                const StructureState& state,
+                                const AdjustmentOptions& options) {
+  ProblemSelection selection;
+  selection.pair_degree.assign(state.lines.size(), 0);
+  if (options.use_points) {
+    for (std::size_t n = 0; n < state.points.size(); ++n) {
+      if (state.points[n].IsLandmark()) {
+        selection.points.push_back(static_cast<int>(n));
+      }
+    }
+  }
+  if (!options.use_lines) return selection;
+  if (options.use_coplanar) {
+    for (std::size_t n = 0; n < state.pairs.size(); ++n) {
+      const PairState& pair = state.pairs[n];
+      if (!pair.used || !state.lines[pair.first].IsLandmark() ||
+          !state.lines[pair.second].IsLandmark()) {
+        continue;
+      }
+      selection.pairs.push_back(static_cast<int>(n));
+      ++selection.pair_degree[pair.first];
+      ++selection.pair_degree[pair.second];
+    }
+  }
+  for (std::size_t n = 0; n < state.lines.size(); ++n) {
+    const LineTrackState& line = state.lines[n];
+    if (line.IsLandmark() &&
+        (selection.pair_degree[n] > 0 || line.PoseCount(cameras) > 2)) {
+      selection.lines.push_back(static_cast<int>(n));
+    }
+  }
+  return selection;
+}
+
+std::vector<Component> FindComponents(const CameraSet& cameras,
+                                      const StructureState& state,
+                                      const ProblemSelection& selection) {
+  UnionFind sets(cameras.poses.size());
+  const auto find = [&](int pose) {
+    return sets.Find(static_cast<std::size_t>(pose));
+  };
+  const auto unite = [&](int a, int b) {
+    sets.Union(static_cast<std::size_t>(a), static_cast<std::size_t>(b));
+  };
+  std::vector<char> observed(cameras.poses.size(), 0);
+  std::vector<std::size_t> candidates(cameras.poses.size(), 0);
+  const auto join = [&](const auto& track) {
+    const int first = FirstPose(cameras, track);
+    for (const auto& candidate : track.candidates) {
+      const int pose = cameras.views[candidate.view].pose;
+      ++candidates[pose];
+      if (!candidate.used) continue;
+      observed[pose] = 1;
+      unite(first, pose);
+    }
+  };
+  for (const int n : selection.points) join(state.points[n]);
+  for (const int n : selection.lines) join(state.lines[n]);
+  for (const int n : selection.pairs) {
+    unite(FirstPose(cameras, state.lines[state.pairs[n].first]),
+          FirstPose(cameras, state.lines[state.pairs[n].second]));
+  }
+
+  std::map<std::size_t, Component> by_root;  // then ordered by their first pose
+  std::vector<std::size_t> roots;
+  for (std::size_t n = 0; n < cameras.poses.size(); ++n) {
+    if (!observed[n]) continue;
+    const int pose = static_cast<int>(n);
+    const std::size_t root = find(pose);
+    Component& component = by_root[root];
+    if (component.poses.empty()) roots.push_back(root);
+    component.poses.push_back(pose);
+    if (component.reference < 0 ||
+        candidates[pose] > candidates[component.reference]) {
+      component.reference = pose;
+    }
+  }
+  for (const int n : selection.points) {
+    by_root.at(find(FirstPose(cameras, state.points[n]))).points.push_back(n);
+  }
+  for (const int n : selection.lines) {
+    by_root.at(find(FirstPose(cameras, state.lines[n]))).lines.push_back(n);
+  }
+  std::vector<Component> components;
+  for (const std::size_t root : roots) {
+    Component& component = by_root.at(root);
+    const Vec3& origin = cameras.poses[component.reference].center;
+    for (const int pose : component.poses) {
+      const double distance = (cameras.poses[pose].center - origin).norm();
+      if (distance > component.baseline) {
+        component.baseline = distance;
+        component.partner = pose;
+      }
+    }
+    components.push_back(std::move(component));
+  }
+  return components;
+}
+
+void EnterComponentFrame(const Component& component, CameraSet* cameras,
+                         StructureState* state, PoseState* saved_reference) {
+  *saved_reference = cameras->poses[component.reference];
+  const Frame frame = FrameOf(component, *saved_reference);
+  const Eigen::Quaterniond world_from_frame = frame.rotation.conjugate();
+  for (const int n : component.poses) {
+    PoseState& pose = cameras->poses[n];
+    pose.cam_from_world = (pose.cam_from_world * world_from_frame).normalized();
+    pose.center = frame.Enter(pose.center);
+  }
+  for (const int n : component.points) {
+    state->points[n].position = frame.Enter(state->points[n].position);
+  }
+  for (const int n : component.lines) {
+    LineTrackState& line = state->lines[n];
+    line.point = frame.Enter(line.point);
+    line.direction = (frame.rotation * line.direction).normalized();
+  }
+}
+
+void LeaveComponentFrame(const Component& component,
+                         const PoseState& saved_reference, CameraSet* cameras,
+                         StructureState* state) {
+  const Frame frame = FrameOf(component, saved_reference);
+  for (const int n : component.poses) {
+    PoseState& pose = cameras->poses[n];
+    pose.cam_from_world = (pose.cam_from_world * frame.rotation).normalized();
+    pose.center = frame.Leave(pose.center);
+  }
+  cameras->poses[component.reference] = saved_reference;
+  for (const int n : component.points) {
+    state->points[n].position = frame.Leave(state->points[n].position);
+  }
+  for (const int n : component.lines) {
+    LineTrackState& line = state->lines[n];
+    line.point = frame.Leave(line.point);
+    line.direction = (frame.rotation.conjugate() * line.direction).normalized();
+  }
+}
+
+}  // namespace lowlap::internal

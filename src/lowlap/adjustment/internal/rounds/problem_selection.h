@@ -1,0 +1,53 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/adjustment/adjustment_options.h"
+#include "lowlap/adjustment/internal/structure/structure_state.h"
+
+namespace lowlap::internal {
+
+/// What takes part in a solve: indices into the tracks and pairs of the state.
+/// Lines of two poses without a pair in use constrain nothing and are left out.
+struct ProblemSelection {
+  std::vector<int> points;
+  std::vector<int> lines;
+  std::vector<int> pairs;
+  /// Of every line of the state: the number of selected pairs it is in.
+  std::vector<int> pair_degree;
+
+  bool IsEmpty() const { return points.empty() && lines.empty(); }
+};
+
+ProblemSelection SelectForSolve(const CameraSet& cameras,
+                                const StructureState& state,
+                                const AdjustmentOptions& options);
+
+/// Views that see a line with a segment in use, ascending, each once.
+std::vector<int> ViewsOf(const LineTrackState& line);
+
+/// The poses that share selected structure, and their gauge.
+struct Component {
+  std::vector<int> poses;
+  std::vector<int> points;
+  std::vector<int> lines;
+  int reference = -1;   // the pose that is held: that with most observations
+  int partner = -1;     // the pose farthest from it
+  double baseline = 0;  // their distance; 0 if all centres coincide
+};
+
+/// Components of at least two poses. Every selected landmark is in one.
+std::vector<Component> FindComponents(const CameraSet& cameras,
+                                      const StructureState& state,
+                                      const ProblemSelection& selection);
+
+/// Moves a component into the frame of its reference camera, with the baseline
+/// as the unit, and back. In this frame the input's position, orientation and
+/// scale have no influence on the solve.
+void EnterComponentFrame(const Component& component, CameraSet* cameras,
+                         StructureState* state, PoseState* saved_reference);
+void LeaveComponentFrame(const Component& component,
+                         const PoseState& saved_reference, CameraSet* cameras,
+                         StructureState* state);
+
+}  // namespace lowlap::internal

@@ -1,0 +1,151 @@
+#include "lowlap/adjustment/internal/rounds/solve.h"
+
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "lowlap/adjustment/internal/rounds/center_covariance.h"
+#include "lowlap/adjustment/internal/rounds/problem_builder.h"
+#include "lowlap/adjustment/internal/rounds/quiet_logging.h"
+
+namespace lowlap::internal {
+namespace {
+
+class ProgressCallback final : public ceres::IterationCallback {
+ public:
+  ProgressCallback(const RunContext& context, const std::string& stage,
+                   int max_iterations)
+      : context_(context), stage_(stage), max_iterations_(max_iterations) {}
+
+  ceres::CallbackReturnType operator()(
+      const ceres::IterationSummary& summary) override {
+    cancelled_ = !context_.Progress(
+        "adjustment: " + stage_,
+        static_cast<std::size_t>(std::max(0, summary.iteration)),
+        static_cast<std::size_t>(max_iterations_));
+    return cancelled_ ? ceres::SOLVER_ABORT : ceres::SOLVER_CONTINUE;
+  }
+  bool cancelled() const { return cancelled_; }
+
+ private:
+  const RunContext& context_;
+  std::string stage_;
+  int max_iterations_;
+  bool cancelled_ = false;
+};
+
+ceres::Solver::Options SolverOptions(const AdjustmentOptions& options,
+                                     const SolveRequest& request,
+                                     ProblemBuilder* builder) {
+  ceres::Solver::Options solver;
+  // The dense reduced system of a hundred cameras factorises in milliseconds.
+  constexpr int kMaxDenseSize = 600;
+  solver.linear_solver_type = builder->ReducedSize() <= kMaxDenseSize
+                                  ? ceres::DENSE_SCHUR
+                                  : ceres::SPARSE_SCHUR;
+  solver.linear_solver_ordering = builder->Ordering();
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = request.function_tolerance;
+  solver.parameter_tolerance = 1e-10;
+  solver.gradient_tolerance = 1e-14;
+  // More threads would add up the reduced system in an order of chance.
+  solver.num_threads = 1;
+  solver.logging_type = ceres::SILENT;
+  return solver;
+}
+
+bool AllFinite(const CameraSet& cameras, const StructureState& state,
+               const ProblemSelection& selection) {
+  for (const PoseState& pose : cameras.poses) {
+    if (!pose.center.allFinite() || !pose.cam_from_world.coeffs().allFinite()) {
+      return false;
+    }
+  }
+  for (const IntrinsicState& intrinsic : cameras.intrinsics) {
+    for (const double value : intrinsic.parameters) {
+      if (!std::isfinite(value)) return false;
+    }
+  }
+  for (const int n : selection.points) {
+    if (!state.points[n].position.allFinite()) return false;
+  }
+  for (const int n : selection.lines) {
+    if (!state.lines[n].point.allFinite() ||
+        !state.lines[n].direction.allFinite()) {
+      return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
+                               const SolveRequest& request,
+                               const RunContext& context, CameraSet* cameras,
+                               StructureState* state) {
+  const ProblemSelection selection = SelectForSolve(*cameras, *state, options);
+  if (selection.IsEmpty()) {
+    return MakeError(
+        ErrorCode::kInsufficientData,
+        cameras->views.empty()
+            ? "nothing to adjust: no view has both a pose and an intrinsic"
+            : "nothing to adjust: no point in two posed views, no line in "
+              "three, and no coplanar pair");
+  }
+  const std::vector<Component> components =
+      FindComponents(*cameras, *state, selection);
+  std::vector<PoseState> saved(components.size());
+  for (std::size_t n = 0; n < components.size(); ++n) {
+    EnterComponentFrame(components[n], cameras, state, &saved[n]);
+  }
+
+  const QuietLogging quiet;
+  ProblemBuilder builder(options, request, selection, components, cameras,
+                         state);
+  ceres::Solver::Options solver_options =
+      SolverOptions(options, request, &builder);
+  ProgressCallback progress(context, request.stage, options.max_iterations);
+  solver_options.callbacks.push_back(&progress);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver_options, &builder.problem(), &summary);
+  if (progress.cancelled()) {
+    return MakeError(ErrorCode::kCancelled, "stopped on request", {},
+                     "adjustment: " + request.stage);
+  }
+  builder.TakeResults();
+  if (!summary.IsSolutionUsable() || !AllFinite(*cameras, *state, selection)) {
+    return MakeError(ErrorCode::kNumerical,
+                     "the adjustment failed: " + summary.message, {},
+                     request.stage);
+  }
+
+  SolveOutcome outcome;
+  if (request.center_covariances) {
+    outcome.center_covariances =
+        CenterCovariances(components, saved, *cameras, &builder);
+  }
+  for (std::size_t n = 0; n < components.size(); ++n) {
+    LeaveComponentFrame(components[n], saved[n], cameras, state);
+  }
+  outcome.components = components.size();
+  outcome.pose_observed.assign(cameras->poses.size(), 0);
+  for (const Component& component : components) {
+    for (const int pose : component.poses) outcome.pose_observed[pose] = 1;
+  }
+  SolveReport& report = outcome.report;
+  report.stage = request.stage;
+  report.residuals = static_cast<std::size_t>(summary.num_residuals_reduced);
+  report.parameters =
+      static_cast<std::size_t>(summary.num_effective_parameters_reduced);
+  report.initial_cost = summary.initial_cost;
+  report.final_cost = summary.final_cost;
+  report.iterations =
+      std::max(0, static_cast<int>(summary.iterations.size()) - 1);
+  report.converged = summary.termination_type == ceres::CONVERGENCE;
+  report.seconds = summary.total_time_in_seconds;
+  return outcome;
+}
+
+}  // namespace lowlap::internal
