@@ -198,9 +198,10 @@ void AddRun(CLI::App* program, Action* action) {
                    "line")
       ->capture_default_str();
   command
-      ->add_option("--matcher", flags->matcher,
-                   "How points are matched: exact, or flann (approximately, "
-                   "faster where photographs have some 50,000 points or more)")
+      ->add_option(
+          "--matcher", flags->matcher,
+          "How points are matched: exact, or flann (approximately, "
+          "faster where photographs have hundreds of thousands of points)")
       ->check(CLI::IsMember({"exact", "flann"}))
       ->capture_default_str();
   command

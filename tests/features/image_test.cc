@@ -107,7 +107,7 @@ TEST_F(ImageTest, AJpegIsWholeOnlyWithItsOwnEnd) {
   // inside a segment is not that of the image.
   cv::Mat noise(64, 64, CV_8UC1);
   cv::randu(noise, 0, 256);
-  const std::string thumbnail = "\xff\xe1\x00\x06\xff\xd9\xff\xd9";
+  const std::string thumbnail("\xff\xe1\x00\x06\xff\xd9\xff\xd9", 8);
   for (const int progressive : {0, 1}) {
     cv::imwrite(Path("a.jpg"), noise,
                 {cv::IMWRITE_JPEG_PROGRESSIVE, progressive,

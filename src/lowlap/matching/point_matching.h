@@ -15,7 +15,7 @@ inline constexpr int kPointMatchingVersion = 1;
 /// How nearest descriptors are found.
 enum class PointMatcher {
   kExact,  // exhaustively: the cost grows with the product of the sizes
-  kFlann,  // in randomised trees (FLANN): faster beyond some 50,000 points
+  kFlann,  // in a tree (FLANN): faster beyond some 200,000 points
 };
 
 struct PointMatchOptions {

@@ -8,8 +8,9 @@
 namespace lowlap::internal {
 namespace {
 
-constexpr int kTrees = 4;
-constexpr int kChecks = 256;  // leaves that a query visits
+constexpr int kBranching = 32;
+constexpr int kIterations = 5;
+constexpr int kChecks = 256;  // descriptors that a query is compared with
 
 // A view; FLANN has no const matrix.
 flann::Matrix<std::uint8_t> AsMatrix(const std::vector<PointDescriptor>& rows) {
@@ -28,7 +29,8 @@ std::vector<NearestTwo> FindNearestTwoApproximately(
   flann::Index<flann::L2<std::uint8_t>> index(AsMatrix(database),
                                               flann::KDTreeIndexParams(kTrees));
   {
-    // Trees are drawn from the process's one stream of random numbers.
+    // The first centres are drawn from the process's one stream of random
+    // numbers. Its randomised trees, and other centres, have no seed.
     static std::mutex mutex;
     const std::lock_guard<std::mutex> lock(mutex);
     flann::seed_random(0);

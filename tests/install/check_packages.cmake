@@ -1,0 +1,31 @@
+# cmake -DBUILD_DIR= -DWORK_DIR= -DCPACK= -DDPKG_DEB= -P check_packages.cmake
+function(run)
+  execute_process(COMMAND ${ARGV} WORKING_DIRECTORY "${BUILD_DIR}"
+                  RESULT_VARIABLE result OUTPUT_VARIABLE output
+                  ERROR_VARIABLE output)
+  if(NOT result EQUAL 0)
+    list(JOIN ARGV " " command)
+    message(FATAL_ERROR "failed (${result}): ${command}\n${output}")
+  endif()
+  set(output "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE "${WORK_DIR}")
+run("${CPACK}" -G DEB -B "${WORK_DIR}")
+file(GLOB program "${WORK_DIR}/lowlap_*.deb")
+file(GLOB development "${WORK_DIR}/liblowlap-dev_*.deb")
+run("${DPKG_DEB}" --field "${program}" Depends)
+foreach(library libopencv-core libcholmod coinor-libclp libexif libc6)
+  if(NOT output MATCHES "${library}")
+    message(FATAL_ERROR "the package does not depend on ${library}: ${output}")
+  endif()
+endforeach()
+run("${DPKG_DEB}" --contents "${development}")
+foreach(file "include/lowlap/core/result.h" "lowlapConfig.cmake"
+        "liblowlap_pipeline.a")
+  if(NOT output MATCHES "${file}")
+    message(FATAL_ERROR "liblowlap-dev lacks ${file}")
+  endif()
+endforeach()
+run("${DPKG_DEB}" --extract "${program}" "${WORK_DIR}/root")
+run("${WORK_DIR}/root/usr/bin/lowlap" --version)
