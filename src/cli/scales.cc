@@ -13,7 +13,7 @@
 #include "lowlap/evaluation/relative_errors.h"
 #include "lowlap/pipeline/ratio_table.h"
 #include "lowlap/pipeline/summary_json.h"
-#include "lowlap/scale/ratio_profile.h"
+#include "lowlap/scale/internal/search/ratio_profile.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
 

@@ -13,7 +13,7 @@
 #include "benchmarks/processor_time.h"
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/ratio_sweep.h"
+#include "lowlap/scale/internal/search/ratio_sweep.h"
 #include "lowlap/scale/scale_estimator.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "scale/synthetic_triplet.h"

@@ -9,9 +9,9 @@
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/closest_direction.h"
 #include "lowlap/geometry/triangulation.h"
-#include "lowlap/scale/coplanar_ratio.h"
-#include "lowlap/scale/trifocal_line.h"
-#include "lowlap/scale/trifocal_point.h"
+#include "lowlap/scale/evidence/internal/coplanar_ratio.h"
+#include "lowlap/scale/evidence/internal/trifocal_line.h"
+#include "lowlap/scale/evidence/internal/trifocal_point.h"
 #include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
 

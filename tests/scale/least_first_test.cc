@@ -1,4 +1,4 @@
-#include "lowlap/scale/least_first.h"
+#include "lowlap/scale/evidence/internal/least_first.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
-#include "lowlap/scale/plane_points.h"
+#include "lowlap/scale/evidence/internal/plane_points.h"
 
 #include <gtest/gtest.h>
 
-#include "lowlap/scale/trifocal_point.h"
+#include "lowlap/scale/evidence/internal/trifocal_point.h"
 #include "scale/synthetic_planes.h"
 
 namespace lowlap {

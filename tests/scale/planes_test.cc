@@ -1,4 +1,4 @@
-#include "lowlap/scale/planes.h"
+#include "lowlap/scale/internal/planes/planes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/scale/ratio_profile.h"
+#include "lowlap/scale/internal/search/ratio_profile.h"
 
 #include <gtest/gtest.h>
 

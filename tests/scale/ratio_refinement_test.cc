@@ -1,4 +1,4 @@
-#include "lowlap/scale/ratio_refinement.h"
+#include "lowlap/scale/internal/uncertainty/ratio_refinement.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/scale/ratio_sweep.h"
+#include "lowlap/scale/internal/search/ratio_sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lowlap/core/random.h"
-#include "lowlap/scale/feature_intervals.h"
+#include "lowlap/scale/internal/search/feature_intervals.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap {

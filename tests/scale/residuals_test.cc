@@ -11,10 +11,10 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/triangulation.h"
-#include "lowlap/scale/coplanar_ratio.h"
-#include "lowlap/scale/ratio_residuals.h"
-#include "lowlap/scale/ratio_support.h"
-#include "lowlap/scale/trifocal_line.h"
+#include "lowlap/scale/evidence/internal/coplanar_ratio.h"
+#include "lowlap/scale/evidence/internal/ratio_residuals.h"
+#include "lowlap/scale/evidence/internal/trifocal_line.h"
+#include "lowlap/scale/internal/criterion/ratio_support.h"
 #include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
 

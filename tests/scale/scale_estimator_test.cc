@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/scale/ratio_inliers.h"
+#include "lowlap/scale/internal/uncertainty/ratio_inliers.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap {

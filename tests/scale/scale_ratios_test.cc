@@ -7,8 +7,8 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/planes_by_pair.h"
-#include "lowlap/scale/ratio_profile.h"
+#include "lowlap/scale/internal/planes/planes_by_pair.h"
+#include "lowlap/scale/internal/search/ratio_profile.h"
 #include "lowlap/scale/triplet_view.h"
 #include "lowlap/scene/view_graph.h"
 

@@ -4,7 +4,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/plane_points.h"
+#include "lowlap/scale/evidence/internal/plane_points.h"
 #include "lowlap/scale/triplet_view.h"
 #include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"

@@ -6,7 +6,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/pose_uncertainty.h"
+#include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
 #include "scale/synthetic_room.h"
 
 namespace lowlap::testing {

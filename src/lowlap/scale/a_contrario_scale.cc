@@ -2,12 +2,12 @@
 
 #include <vector>
 
-#include "lowlap/scale/ratio_inliers.h"
-#include "lowlap/scale/ratio_nfa.h"
-#include "lowlap/scale/ratio_search.h"
-#include "lowlap/scale/ratio_support.h"
-#include "lowlap/scale/ratio_sweep.h"
-#include "lowlap/scale/second_mode.h"
+#include "lowlap/scale/internal/criterion/ratio_nfa.h"
+#include "lowlap/scale/internal/criterion/ratio_support.h"
+#include "lowlap/scale/internal/search/ratio_search.h"
+#include "lowlap/scale/internal/search/ratio_sweep.h"
+#include "lowlap/scale/internal/search/second_mode.h"
+#include "lowlap/scale/internal/uncertainty/ratio_inliers.h"
 
 namespace lowlap {
 namespace {

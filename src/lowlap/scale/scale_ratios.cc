@@ -1,7 +1,7 @@
 #include "lowlap/scale/scale_ratios.h"
 
+#include "lowlap/scale/internal/triplet_rounds.h"
 #include "lowlap/scale/scale_estimator.h"
-#include "lowlap/scale/triplet_tests.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {

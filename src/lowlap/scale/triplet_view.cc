@@ -4,9 +4,9 @@
 #include <string>
 #include <utility>
 
-#include "lowlap/scale/broken_lines.h"
-#include "lowlap/scale/planes_by_pair.h"
-#include "lowlap/scale/pose_uncertainty.h"
+#include "lowlap/scale/internal/fragmented_segments.h"
+#include "lowlap/scale/internal/planes/planes_by_pair.h"
+#include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
 
 namespace lowlap {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
-#include "lowlap/scale/coplanar_candidates.h"
-#include "lowlap/scale/plane_points.h"
+#include "lowlap/scale/evidence/internal/coplanar_candidates.h"
+#include "lowlap/scale/evidence/internal/plane_points.h"
 #include "lowlap/scale/scale_options.h"
 #include "lowlap/scale/triplet_geometry.h"
 #include "lowlap/scene/normalized_features.h"
