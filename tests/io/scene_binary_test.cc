@@ -149,28 +149,10 @@ TEST(SceneBinary, ForeignAndNewerFiles) {
               IsError(ErrorCode::kParse, "not a .lowlap file"));
   EXPECT_THAT(ParseSceneBinary(bytes + "x"),
               IsError(ErrorCode::kParse, "follows the last section"));
-  bytes[8] = 4;
+  bytes[8] = 5;
   EXPECT_THAT(ParseSceneBinary(bytes, "new.lowlap"),
               IsError(ErrorCode::kUnsupported,
-                      "new.lowlap: byte 8: version 4 is not 2 or 3"));
-}
-
-// Version 2 ends before the details of the scale ratios.
-TEST(SceneBinary, OlderFilesHaveNoDetailsOfTheRatios) {
-  std::string bytes = FullSceneBytes();
-  bytes.resize(SectionOffset(bytes, "RATD"));
-  bytes[8] = 2;
-  bytes[12] = 13;
-  const Result<Scene> scene = ParseSceneBinary(bytes);
-  ASSERT_TRUE(scene.has_value());
-  Scene expected = FullScene();
-  for (ScaleRatio& ratio : expected.scale_ratios) {
-    ratio.second_mode.reset();
-    for (KindSupport* kind : {&ratio.points, &ratio.lines, &ratio.coplanar}) {
-      kind->information_share = 0;
-    }
-  }
-  EXPECT_EQ(*scene, expected);
+                      "new.lowlap: byte 8: version 5 is not 2 to 4"));
 }
 
 TEST(SceneBinary, DamageIsLocated) {

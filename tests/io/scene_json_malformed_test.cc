@@ -169,8 +169,8 @@ INSTANTIATE_TEST_SUITE_P(
              "\"lowlap\": {}, \"root_path\"", ErrorCode::kParse, "$.lowlap",
              "\"version\" is missing"},
         Case{"OwnVersionUnknown", "\"root_path\"",
-             "\"lowlap\": {\"version\": 4}, \"root_path\"",
-             ErrorCode::kUnsupported, "$.lowlap.version", "version 4"}),
+             "\"lowlap\": {\"version\": 5}, \"root_path\"",
+             ErrorCode::kUnsupported, "$.lowlap.version", "version 5"}),
     kCaseName);
 
 // lowlap's part, damaged in the full scene.
@@ -252,10 +252,11 @@ INSTANTIATE_TEST_SUITE_P(
              "\"maybe\" is not known"},
         Case{"NegativeCount", "\"candidates\": 10", "\"candidates\": -10",
              ErrorCode::kParse,
-             "$.lowlap.scale_ratios[views=7,4,1].points.candidates", "not -10"},
+             "$.lowlap.scale_ratios[views=7,4,1].kinds[0].candidates",
+             "not -10"},
         Case{"SupportWithoutNfa", "\"inliers\": 8, \"log10_nfa\": -12.25,",
              "\"inliers\": 8,", ErrorCode::kParse,
-             "$.lowlap.scale_ratios[views=7,4,1].points",
+             "$.lowlap.scale_ratios[views=7,4,1].kinds[0]",
              "\"log10_nfa\" is missing"},
         Case{"LineTwice", "{\"id\": 3, \"direction\"",
              "{\"id\": 2, \"direction\"", ErrorCode::kInvalidScene,

@@ -7,6 +7,7 @@
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/io/internal/byte_archive.h"
 #include "lowlap/io/internal/crc32.h"
+#include "lowlap/io/internal/old_scale_ratios.h"
 #include "lowlap/io/internal/scale_ratio_records.h"
 #include "lowlap/io/internal/scene_records.h"
 #include "lowlap/io/internal/transfer.h"
@@ -21,14 +22,18 @@ using internal::ByteWriter;
 // Like PNG's, the first byte is not text and the last ones show a file that was
 // sent as text.
 constexpr std::string_view kMagic("\x89LOWLAP\n", 8);
-constexpr std::uint32_t kVersion = 3;
-// Ends before the section "RATD".
+constexpr std::uint32_t kVersion = 4;
 constexpr std::uint32_t kOldestVersion = 2;
+// Scale ratios had kinds of evidence of their own before this version.
+constexpr std::uint32_t kFirstWithKinds = 4;
+// The last section of this version, and of no other.
+constexpr std::uint32_t kVersionOfDetails = 3;
+constexpr std::string_view kRatioDetails = "RATD";
 
 // In the order of the file; all are always there.
-constexpr std::array<std::string_view, 14> kSections = {
+constexpr std::array<std::string_view, 13> kSections = {
     "ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT",
-    "RELP", "PTRK", "LTRK", "RATI", "LINE", "COPL", "RATD"};
+    "RELP", "PTRK", "LTRK", "RATI", "LINE", "COPL"};
 
 template <class Archive, class SceneType>
 void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
@@ -59,13 +64,22 @@ void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
     TransferMap(archive, scene.line_structure, internal::kTransferLine);
   } else if (tag == "COPL") {
     TransferVector(archive, scene.coplanar_pairs, 8, internal::kTransferMatch);
-  } else if (tag == "RATD") {
-    TransferRatioDetails(archive, scene.scale_ratios);
   }
 }
 
-void ReadSection(std::string_view tag, ByteReader& file, std::size_t size,
-                 Scene& scene) {
+void ReadPayload(std::string_view tag, std::uint32_t version,
+                 ByteReader& section, Scene& scene) {
+  if (tag == kRatioDetails) {
+    internal::ReadOldRatioDetails(section, scene.scale_ratios);
+  } else if (tag == "RATI" && version < kFirstWithKinds) {
+    internal::ReadOldScaleRatios(section, scene.scale_ratios);
+  } else {
+    TransferSection(tag, section, scene);
+  }
+}
+
+void ReadSection(std::string_view tag, std::uint32_t version, ByteReader& file,
+                 std::size_t size, Scene& scene) {
   const std::string_view stored_tag = file.Take(tag.size());
   const std::string name(tag);
   if (stored_tag != tag) file.Fail("section " + name + " is missing");
@@ -82,7 +96,7 @@ void ReadSection(std::string_view tag, ByteReader& file, std::size_t size,
     file.Fail("section " + name + " is damaged: its checksum is wrong");
   }
   ByteReader section(payload, "section " + name + ", ", offset);
-  TransferSection(tag, section, scene);
+  ReadPayload(tag, version, section, scene);
   if (section.BytesLeft() > 0) section.Fail("the section is too long");
 }
 
@@ -97,18 +111,21 @@ Scene ReadSections(const std::string& bytes) {
     throw internal::Failure{Error{
         ErrorCode::kUnsupported,
         "version " + std::to_string(version) + " is not " +
-            std::to_string(kOldestVersion) + " or " + std::to_string(kVersion),
+            std::to_string(kOldestVersion) + " to " + std::to_string(kVersion),
         {},
         "byte " + std::to_string(kMagic.size())}};
   }
   file.Integer(section_count);
-  const std::size_t num_sections = kSections.size() - (version < kVersion);
-  if (section_count != num_sections) {
+  const bool has_details = version == kVersionOfDetails;
+  if (section_count != kSections.size() + (has_details ? 1 : 0)) {
     file.Fail("the number of sections is wrong");
   }
   Scene scene;
-  for (std::size_t n = 0; n < num_sections; ++n) {
-    ReadSection(kSections[n], file, bytes.size(), scene);
+  for (const std::string_view tag : kSections) {
+    ReadSection(tag, version, file, bytes.size(), scene);
+  }
+  if (has_details) {
+    ReadSection(kRatioDetails, version, file, bytes.size(), scene);
   }
   if (file.BytesLeft() > 0) file.Fail("something follows the last section");
   return scene;

@@ -1,8 +1,8 @@
 #include "lowlap/scale/internal/triplet_rounds.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace lowlap {
 
@@ -26,17 +26,26 @@ std::vector<std::size_t> LargestFirst(
   return order;
 }
 
-bool HasFeatures(const NormalizedFeaturesByView& features,
-                 const ViewTriplet& views) {
-  return features.count(views.first) > 0 && features.count(views.middle) > 0 &&
-         features.count(views.last) > 0;
+Result<EvidenceKinds> PrepareRound(const EvidenceKinds& kinds,
+                                   EvidenceRound round,
+                                   const SceneFeatures& features,
+                                   const std::vector<ViewTriplet>& triplets,
+                                   const RunContext& context) {
+  EvidenceKinds asked;
+  for (const auto& kind : kinds) {
+    if (kind->Round() != round) continue;
+    auto prepared = kind->Prepare(features, triplets, context);
+    if (!prepared) return tl::unexpected<Error>(prepared.error());
+    asked.push_back(*prepared == nullptr ? kind : std::move(*prepared));
+  }
+  return asked;
 }
 
-void PayForSecondTest(ScaleRatio* ratio) {
-  if (ratio->verdict == RatioVerdict::kNoCandidates) return;
-  ratio->log10_nfa += std::log10(2.0);
-  if (ratio->second_mode) ratio->second_mode->log10_nfa += std::log10(2.0);
-  if (!(ratio->log10_nfa < 0)) ratio->verdict = RatioVerdict::kNotMeaningful;
+bool MaySpeak(const EvidenceKinds& kinds, EvidenceRound round,
+              const SceneFeatures& features, const ViewTriplet& views) {
+  return std::any_of(kinds.begin(), kinds.end(), [&](const auto& kind) {
+    return kind->Round() == round && kind->MaySpeak(features, views);
+  });
 }
 
 }  // namespace lowlap

@@ -7,8 +7,7 @@
 #include "lowlap/core/parallel.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
-#include "lowlap/scale/internal/planes/planes_by_pair.h"
-#include "lowlap/scale/scale_options.h"
+#include "lowlap/scale/evidence/evidence.h"
 #include "lowlap/scale/triplet_view.h"
 #include "lowlap/scene/scale_ratio.h"
 #include "lowlap/scene/scene.h"
@@ -20,46 +19,52 @@ namespace lowlap {
 std::vector<std::size_t> LargestFirst(const Scene& scene,
                                       const std::vector<ViewTriplet>& triplets);
 
-/// False if a view of the triplet has no intrinsic or no features.
-bool HasFeatures(const NormalizedFeaturesByView& features,
-                 const ViewTriplet& views);
+/// The kinds of one round, prepared for the triplets.
+/// Errors: those of EvidenceKind::Prepare.
+Result<EvidenceKinds> PrepareRound(const EvidenceKinds& kinds,
+                                   EvidenceRound round,
+                                   const SceneFeatures& features,
+                                   const std::vector<ViewTriplet>& triplets,
+                                   const RunContext& context);
 
-/// Adds what a second test costs, log10 2: two tests find twice as many false
-/// ratios.
-void PayForSecondTest(ScaleRatio* ratio);
+/// Whether a kind of the round may say something about the triplet.
+bool MaySpeak(const EvidenceKinds& kinds, EvidenceRound round,
+              const SceneFeatures& features, const ViewTriplet& views);
 
 /// The ratio of an outcome of a test; see also RatioProfile.
 inline ScaleRatio& RatioOf(ScaleRatio& ratio) { return ratio; }
 
-/// `test` of every triplet, in parallel: Result<Outcome>(TripletView,
-/// ScaleOptions). Triplets without features have no candidates.
+/// `test` of every triplet, in parallel:
+/// Result<Outcome>(TripletView, TripletEvidence). Triplets without features
+/// have no candidates.
 /// Errors: those of MakeTripletView and of the test, kCancelled.
 template <class Outcome, class Test>
-Result<std::vector<Outcome>> TestOnce(const Scene& scene,
-                                      const NormalizedFeaturesByView& features,
+Result<std::vector<Outcome>> TestOnce(const SceneFeatures& features,
                                       const std::vector<ViewTriplet>& triplets,
-                                      const ScaleOptions& options,
-                                      const PlanesByPair& planes,
+                                      const EvidenceKinds& kinds, int num_tests,
                                       const RunContext& context,
                                       const char* stage, const Test& test) {
-  const std::vector<std::size_t> order = LargestFirst(scene, triplets);
+  const std::vector<std::size_t> order = LargestFirst(features.scene, triplets);
   std::vector<Result<Outcome>> results(triplets.size());
   const Status status =
       ParallelFor(context, stage, triplets.size(), [&](std::size_t n) {
         const ViewTriplet& views = triplets[order[n]];
         Result<Outcome>& result = results[order[n]];
-        if (!HasFeatures(features, views)) {
+        if (!features.HasAll(views)) {
           Outcome nothing;
           RatioOf(nothing).views = views;
           RatioOf(nothing).verdict = RatioVerdict::kNoCandidates;
           result = std::move(nothing);
           return;
         }
-        const Result<TripletView> triplet =
-            MakeTripletView(scene, features, views, options, &planes);
-        result = triplet
-                     ? test(*triplet, options)
-                     : Result<Outcome>(tl::unexpected<Error>(triplet.error()));
+        const Result<TripletView> triplet = MakeTripletView(features, views);
+        if (!triplet) {
+          result = tl::unexpected<Error>(triplet.error());
+          return;
+        }
+        TripletEvidence evidence = GatherEvidence(kinds, *triplet);
+        evidence.num_tests = num_tests;
+        result = test(*triplet, evidence);
       });
   if (!status) return tl::unexpected<Error>(status.error());
   std::vector<Outcome> outcomes;
@@ -71,52 +76,42 @@ Result<std::vector<Outcome>> TestOnce(const Scene& scene,
   return outcomes;
 }
 
-/// The same; triplets that are not meaningful by points, lines and pairs are
-/// tested a second time, with points and lines on planes
-/// (ScaleOptions::use_coplanar_points), and pay for it, if there can be any
-/// (PairsOverlap). Outcomes are those of
-/// the last test of each, in the order of the triplets.
-/// Errors: invalid options too.
+/// The same in rounds: triplets that are not meaningful by the kinds of the
+/// first round are tested a second time, with those of kUndecided as well, if
+/// one of these may speak. Outcomes are those of the last test of each, in the
+/// order of the triplets.
 template <class Outcome, class Test>
 Result<std::vector<Outcome>> TestTriplets(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
-    const ScaleOptions& options, const RunContext& context, const char* stage,
+    const EvidenceKinds& kinds, const RunContext& context, const char* stage,
     const Test& test) {
-  if (const Status status = options.Validate(); !status) {
-    return tl::unexpected<Error>(status.error());
-  }
-  const NormalizedFeaturesByView features = NormalizeAllFeatures(scene);
-  ScaleOptions of_features = options;
-  of_features.use_coplanar_points = false;
-  auto outcomes = TestOnce<Outcome>(scene, features, triplets, of_features, {},
-                                    context, stage, test);
-  if (!outcomes || !options.use_coplanar || !options.use_coplanar_points) {
-    return outcomes;
-  }
+  const SceneFeatures features(scene);
+  auto asked =
+      PrepareRound(kinds, EvidenceRound::kFirst, features, triplets, context);
+  if (!asked) return tl::unexpected<Error>(asked.error());
+  auto outcomes =
+      TestOnce<Outcome>(features, triplets, *asked, 1, context, stage, test);
+  if (!outcomes) return outcomes;
   std::vector<std::size_t> undecided;
   std::vector<ViewTriplet> undecided_triplets;
   for (std::size_t n = 0; n < triplets.size(); ++n) {
-    if (RatioOf((*outcomes)[n]).verdict == RatioVerdict::kMeaningful ||
-        !HasFeatures(features, triplets[n]) ||
-        !PairsOverlap(scene, features, triplets[n])) {
-      continue;
+    if (RatioOf((*outcomes)[n]).verdict != RatioVerdict::kMeaningful &&
+        features.HasAll(triplets[n]) &&
+        MaySpeak(kinds, EvidenceRound::kUndecided, features, triplets[n])) {
+      undecided.push_back(n);
+      undecided_triplets.push_back(triplets[n]);
     }
-    undecided.push_back(n);
-    undecided_triplets.push_back(triplets[n]);
   }
   if (undecided.empty()) return outcomes;
-  const auto planes =
-      FindPlanesByPair(scene, features, undecided_triplets, context);
-  if (!planes) return tl::unexpected<Error>(planes.error());
-  auto again = TestOnce<Outcome>(scene, features, undecided_triplets, options,
-                                 *planes, context, stage, test);
+  const auto more = PrepareRound(kinds, EvidenceRound::kUndecided, features,
+                                 undecided_triplets, context);
+  if (!more) return tl::unexpected<Error>(more.error());
+  asked->insert(asked->end(), more->begin(), more->end());
+  auto again = TestOnce<Outcome>(features, undecided_triplets, *asked, 2,
+                                 context, stage, test);
   if (!again) return again;
   for (std::size_t n = 0; n < undecided.size(); ++n) {
-    Outcome& outcome = (*again)[n];
-    if (options.criterion == ScaleCriterion::kAContrario) {
-      PayForSecondTest(&outcome);
-    }
-    (*outcomes)[undecided[n]] = std::move(outcome);
+    (*outcomes)[undecided[n]] = std::move((*again)[n]);
   }
   return outcomes;
 }

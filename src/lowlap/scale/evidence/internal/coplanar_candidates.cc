@@ -9,7 +9,7 @@
 
 #include "lowlap/scale/evidence/internal/coplanar_ratio.h"
 #include "lowlap/scale/evidence/internal/least_first.h"
-#include "lowlap/scale/evidence/internal/trifocal_line.h"
+#include "lowlap/scale/evidence/internal/line_in_middle.h"
 
 namespace lowlap {
 namespace {

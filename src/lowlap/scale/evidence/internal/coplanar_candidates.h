@@ -31,7 +31,7 @@ struct CoplanarPairCandidates {
 ///
 /// A pair takes one of the N places only if it can say something: two segments
 /// of one index, pairs without a crossing or with a hopeless one
-/// (kMaxCoplanarLogRatioStddev) and pairs with a negative depth are passed
+/// (kMaxPlaneLogRatioStddev) and pairs with a negative depth are passed
 /// over. The distances are bounded by those of the mid-points first, so that
 /// exact ones are computed for few.
 CoplanarPairCandidates FindCoplanarCandidates(

@@ -106,7 +106,7 @@ RatioCandidate CoplanarRatio(const CoplanarLine& a, const CoplanarLine& b) {
                 noise.by_last[n] * noise.by_last[n];
   }
   candidate.log_ratio_stddev = std::sqrt(variance);
-  if (!(candidate.log_ratio_stddev <= kMaxCoplanarLogRatioStddev)) {
+  if (!(candidate.log_ratio_stddev <= kMaxPlaneLogRatioStddev)) {
     return candidate;
   }
   const double z_a = a.qb / crossing->qx_a;

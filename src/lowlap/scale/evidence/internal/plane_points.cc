@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "lowlap/core/union_find.h"
+#include "lowlap/scale/evidence/internal/residual_evidence.h"
+#include "lowlap/scale/evidence/internal/triplet_points.h"
 
 namespace lowlap {
 namespace {
@@ -39,7 +41,7 @@ std::vector<std::vector<Vote>> VotesByPlane(const PairPlanes& planes,
     if (!(inverse_depth > 0)) continue;
     const double stddev = sample.stddev / sample.inverse_depth;
     if (!(std::hypot(stddev, plane.Stddev(sample.ray) / inverse_depth) <=
-          kMaxCoplanarLogRatioStddev)) {
+          kMaxPlaneLogRatioStddev)) {
       continue;
     }
     votes[index].push_back({sample.ray,
@@ -137,7 +139,7 @@ void AddPlanePoints(const TripletGeometry& geometry, const PairPlanes& planes,
     const Place place = Join(votes, planes.planes[n]);
     const double of_plane = planes.planes[n].InverseDepth(place.ray);
     const double of_samples = of_plane * std::exp(place.log_quotient);
-    if (!(of_plane > 0) || !(place.stddev <= kMaxCoplanarLogRatioStddev)) {
+    if (!(of_plane > 0) || !(place.stddev <= kMaxPlaneLogRatioStddev)) {
       continue;
     }
     PlanePoint point;
@@ -183,6 +185,47 @@ class Surfaces {
   UnionFind sets_;
 };
 
+class PlanePoints : public ResidualEvidence<PointResiduals> {
+ public:
+  PlanePoints(const TripletView& triplet,
+              const std::vector<PlanePoint>& points) {
+    const TripletPointSolver solver(triplet.geometry);
+    for (const PlanePoint& point : points) {
+      if (!AddCandidate(point.ratio)) continue;
+      points_.push_back(point);
+      CandidateStatus status;
+      residuals_.Add(
+          triplet.geometry, point.point,
+          solver.Midpoints(point.point, &status).value_or(TripletMidpoints()),
+          point.ratio.log_ratio);
+    }
+  }
+
+  double NumTests() const override { return size(); }
+  int MinAgreeing() const override { return 3; }
+  std::vector<CandidateDetail> Details(
+      const TripletView&, const std::vector<int>& candidates) const override {
+    std::vector<CandidateDetail> details;
+    for (const int n : candidates) {
+      details.emplace_back().place = points_[n].point.in_j.head<2>();
+    }
+    return details;
+  }
+  std::vector<RatioCandidate> RatiosIn(
+      const TripletView&, const TripletGeometry& geometry,
+      const std::vector<int>& candidates) const override {
+    const TripletPointSolver solver(geometry);
+    std::vector<RatioCandidate> ratios;
+    for (const int n : candidates) {
+      ratios.push_back(solver.Ratio(points_[n].point));
+    }
+    return ratios;
+  }
+
+ private:
+  std::vector<PlanePoint> points_;
+};
+
 }  // namespace
 
 std::vector<PlanePoint> FindPlanePoints(const TripletGeometry& geometry,
@@ -206,6 +249,29 @@ std::vector<PlanePoint> FindPlanePoints(const TripletGeometry& geometry,
     if (surest[surfaces.Of(all[n])] == n) points.push_back(all[n]);
   }
   return points;
+}
+
+std::unique_ptr<Evidence> PlanePointsKind::Gather(
+    const TripletView& triplet) const {
+  const ViewTriplet& views = triplet.views;
+  const auto ij = planes_.find({views.middle, views.first});
+  const auto jk = planes_.find({views.middle, views.last});
+  if (ij == planes_.end() || jk == planes_.end()) return nullptr;
+  return std::make_unique<PlanePoints>(
+      triplet, FindPlanePoints(triplet.geometry, ij->second, jk->second));
+}
+
+bool PlanePointsKind::MaySpeak(const SceneFeatures& scene,
+                               const ViewTriplet& views) const {
+  return PairsOverlap(scene, views);
+}
+
+Result<std::shared_ptr<const EvidenceKind>> PlanePointsKind::Prepare(
+    const SceneFeatures& scene, const std::vector<ViewTriplet>& triplets,
+    const RunContext& context) const {
+  auto planes = FindPlanesByPair(scene, triplets, context);
+  if (!planes) return tl::unexpected<Error>(planes.error());
+  return std::make_shared<const PlanePointsKind>(std::move(*planes));
 }
 
 }  // namespace lowlap

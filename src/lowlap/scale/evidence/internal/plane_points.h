@@ -1,8 +1,12 @@
 #pragma once
 
+#include <memory>
+#include <string>
+#include <utility>
 #include <vector>
 
-#include "lowlap/scale/internal/planes/planes.h"
+#include "lowlap/scale/evidence/evidence.h"
+#include "lowlap/scale/internal/planes/planes_by_pair.h"
 
 namespace lowlap {
 
@@ -12,7 +16,7 @@ namespace lowlap {
 struct PlanePoint {
   /// The place, and its images in i (at the depth of pair (i, j)) and in k (at
   /// that of pair (j, k)); `point_in_middle` means nothing.
-  TrifocalPoint point;
+  TripletPoint point;
   RatioCandidate ratio;  // always kValid
   /// Of which pair the plane is: (i, j), else (j, k).
   bool plane_is_first = true;
@@ -31,7 +35,7 @@ struct PlanePoint {
 ///   tau = z_ij / z_jk = rho_jk / rho_ij,
 /// with, to first order, var(log tau) = (s_plane / p . x)^2 + (s_rho / rho)^2:
 /// the fit of the plane and the two measurements. As with pairs of lines, it
-/// is used unless hopeless (kMaxCoplanarLogRatioStddev). Features matched in
+/// is used unless hopeless (kMaxPlaneLogRatioStddev). Features matched in
 /// both pairs are passed over: they are trifocal.
 ///
 /// What lies on one plane agrees with each other, also if it is a wrong one
@@ -48,5 +52,26 @@ struct PlanePoint {
 std::vector<PlanePoint> FindPlanePoints(const TripletGeometry& geometry,
                                         const PairPlanes& planes_ij,
                                         const PairPlanes& planes_jk);
+
+/// Plane points as evidence, for triplets that nothing else decides: the errors
+/// are those of trifocal points. Knows the planes that it was given, or those
+/// of the triplets that it was prepared for; about others it says nothing.
+class PlanePointsKind : public EvidenceKind {
+ public:
+  explicit PlanePointsKind(PlanesByPair planes = {})
+      : planes_(std::move(planes)) {}
+  std::string Name() const override { return "plane_points"; }
+  EvidenceRound Round() const override { return EvidenceRound::kUndecided; }
+  std::unique_ptr<Evidence> Gather(const TripletView& triplet) const override;
+  /// PairsOverlap.
+  bool MaySpeak(const SceneFeatures& scene,
+                const ViewTriplet& views) const override;
+  Result<std::shared_ptr<const EvidenceKind>> Prepare(
+      const SceneFeatures& scene, const std::vector<ViewTriplet>& triplets,
+      const RunContext& context) const override;
+
+ private:
+  PlanesByPair planes_;
+};
 
 }  // namespace lowlap

@@ -1,28 +1,23 @@
 #pragma once
 
+#include <memory>
 #include <optional>
+#include <string>
 
-#include "lowlap/geometry/plucker_line.h"
+#include "lowlap/scale/evidence/evidence.h"
 #include "lowlap/scale/triplet_geometry.h"
 
 namespace lowlap {
 
-/// The depth in camera j at which the ray through x (normalised, in j) meets
-/// the interpretation plane of a line seen in a neighbour n, at unit baseline:
-///   z = (q . b) / (q . x),  q = R_n^T l_n,  b the centre of n in j.
-/// For x on the line's image in j it is the depth of the 3D line. Infinite or
-/// NaN if the ray is parallel to the plane.
-double DepthOnPlane(const RigidTransform& camn_from_camj, const Vec3& normal_n,
-                    const Vec3& x);
-
-/// The 3D line of a match, in camera j's frame at unit baseline. nullopt:
-/// degenerate (the line lies in an epipolar plane, or a segment is not valid),
-/// or negative: an end point of the segment in j would be behind camera j.
-/// `status` says which.
-std::optional<PluckerLine> LineInMiddle(const RigidTransform& camn_from_camj,
-                                        const NormalizedSegment& in_j,
-                                        const NormalizedSegment& in_n,
-                                        CandidateStatus* status);
+/// Lines seen in all three views (TripletView::lines). The error is the mean
+/// distance of the two end points observed in k to the projection of the
+/// infinite line from (i, j), and likewise from (k, j) into i; the mean of the
+/// two.
+class TrifocalLineKind : public EvidenceKind {
+ public:
+  std::string Name() const override { return "lines"; }
+  std::unique_ptr<Evidence> Gather(const TripletView& triplet) const override;
+};
 
 /// The tau that turns the projection of a line into camera k closest to the
 /// observed one (Salaün et al. 2017, section 4, with signs and frames
@@ -34,13 +29,13 @@ std::optional<PluckerLine> LineInMiddle(const RigidTransform& camn_from_camj,
 /// and tau = ClosestDirection(u, v, w). Degenerate: the line lies in an
 /// epipolar plane of either pair. Negative: tau < 0 or behind camera j.
 std::optional<double> TrifocalLineTau(const TripletGeometry& geometry,
-                                      const TrifocalLine& line,
+                                      const TripletLine& line,
                                       CandidateStatus* status);
 
 /// The same read from both ends, combined in the log. The standard deviation is
 /// to first order from all six end points, each moving across its segment by
 /// its stddev_px (differences).
 RatioCandidate TrifocalLineRatio(const TripletGeometry& geometry,
-                                 const TrifocalLine& line);
+                                 const TripletLine& line);
 
 }  // namespace lowlap

@@ -31,18 +31,17 @@ Eigen::AlignedBox2d BoxOfMatches(const Scene& scene,
   return box;
 }
 
-}  // namespace
-
-PairPlanes PlanesOfPair(const Scene& scene,
-                        const NormalizedFeaturesByView& features, ViewId middle,
+PairPlanes PlanesOfPair(const SceneFeatures& features, ViewId middle,
                         ViewId neighbor) {
+  const Scene& scene = features.scene;
   const RelativePose* edge = scene.FindRelativePose(middle, neighbor);
-  const auto in_middle = features.find(middle);
-  const auto in_neighbor = features.find(neighbor);
+  const auto in_middle = features.normalized.find(middle);
+  const auto in_neighbor = features.normalized.find(neighbor);
   const auto raw_middle = scene.features.find(middle);
   const auto raw_neighbor = scene.features.find(neighbor);
-  if (edge == nullptr || in_middle == features.end() ||
-      in_neighbor == features.end() || raw_middle == scene.features.end() ||
+  if (edge == nullptr || in_middle == features.normalized.end() ||
+      in_neighbor == features.normalized.end() ||
+      raw_middle == scene.features.end() ||
       raw_neighbor == scene.features.end()) {
     return {};
   }
@@ -82,17 +81,17 @@ PairPlanes PlanesOfPair(const Scene& scene,
                                  in_neighbor->second.focal_px, points, lines));
 }
 
-bool PairsOverlap(const Scene& scene, const NormalizedFeaturesByView& features,
-                  const ViewTriplet& views) {
-  const NormalizedFeatures& in_middle = features.at(views.middle);
+}  // namespace
+
+bool PairsOverlap(const SceneFeatures& features, const ViewTriplet& views) {
+  const NormalizedFeatures& in_middle = features.normalized.at(views.middle);
   const auto box = [&](ViewId neighbor) {
-    return BoxOfMatches(scene, in_middle, views.middle, neighbor);
+    return BoxOfMatches(features.scene, in_middle, views.middle, neighbor);
   };
   return box(views.first).intersects(box(views.last));
 }
 
-Result<PlanesByPair> FindPlanesByPair(const Scene& scene,
-                                      const NormalizedFeaturesByView& features,
+Result<PlanesByPair> FindPlanesByPair(const SceneFeatures& features,
                                       const std::vector<ViewTriplet>& triplets,
                                       const RunContext& context) {
   PlanesByPair planes;
@@ -105,7 +104,7 @@ Result<PlanesByPair> FindPlanesByPair(const Scene& scene,
   const Status status =
       ParallelFor(context, "planes", pairs.size(), [&](std::size_t n) {
         const auto& [middle, neighbor] = pairs[n]->first;
-        pairs[n]->second = PlanesOfPair(scene, features, middle, neighbor);
+        pairs[n]->second = PlanesOfPair(features, middle, neighbor);
       });
   if (!status) return tl::unexpected<Error>(status.error());
   return planes;

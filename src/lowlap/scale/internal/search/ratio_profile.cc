@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "lowlap/scale/internal/search/ratio_sweep.h"
 #include "lowlap/scale/internal/triplet_rounds.h"
 #include "lowlap/scale/scale_estimator.h"
 
@@ -80,55 +81,46 @@ std::optional<RatioOptimum> SecondMode(const RatioSupport& support,
   return second;
 }
 
-ScaleOptions Calibrated(ScaleOptions options) {
-  options.criterion = ScaleCriterion::kAContrario;
-  options.nfa_form = NfaForm::kCalibrated;
-  options.search = RatioSearch::kSweep;
-  return options;
-}
-
 }  // namespace
 
 Result<RatioProfile> ProfileRatio(const TripletView& triplet,
-                                  const ScaleOptions& given) {
-  const ScaleOptions options = Calibrated(given);
+                                  const TripletEvidence& evidence) {
   const Result<ScaleRatio> ratio =
-      MakeScaleEstimator(options)->Estimate(triplet);
+      AContrarioScaleEstimator({}).Estimate(triplet, evidence);
   if (!ratio) return tl::unexpected<Error>(ratio.error());
   RatioProfile profile;
   profile.ratio = *ratio;
-  const RatioSupport support(triplet, options);
+  const RatioSupport support(evidence);
   if (support.hypotheses().empty()) return profile;
 
-  const RatioNfaCriterion criterion(support, triplet, options);
+  for (int k = 0; k < support.num_kinds(); ++k) {
+    profile.kinds.push_back(evidence.kinds[support.PlaceOf(k)].name);
+  }
+  const RatioNfaCriterion criterion(support, triplet, NfaForm::kCalibrated);
   profile.mode = SweepRatios(support, criterion);
   SupportWorkspace workspace;
   for (const double log_ratio :
        Grid(support.hypotheses().front().log_ratio,
             support.hypotheses().back().log_ratio, profile.mode.log_ratio)) {
     profile.nodes.push_back(
-        {log_ratio, criterion.EvaluateAt(
-                        log_ratio, support.Count(log_ratio, &workspace))});
+        criterion.EvaluateAt(log_ratio, support.Count(log_ratio, &workspace)));
   }
   profile.second_mode = SecondMode(support, criterion, profile);
-  return profile;
-}
-
-void PayForSecondTest(RatioProfile* profile) {
-  if (profile->nodes.empty()) return;
-  const auto pay = [](RatioOptimum* optimum) {
-    optimum->nfa.log10_nfa += std::log10(2.0);
+  // The ratio has paid for its tests.
+  const auto pay = [&](RatioOptimum* optimum) {
+    optimum->nfa.log10_nfa +=
+        std::log10(static_cast<double>(evidence.num_tests));
   };
-  PayForSecondTest(&profile->ratio);
-  pay(&profile->mode);
-  if (profile->second_mode) pay(&*profile->second_mode);
-  for (RatioOptimum& node : profile->nodes) pay(&node);
+  pay(&profile.mode);
+  if (profile.second_mode) pay(&*profile.second_mode);
+  for (RatioOptimum& node : profile.nodes) pay(&node);
+  return profile;
 }
 
 Result<std::vector<RatioProfile>> ProfileScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
-    const ScaleOptions& given, const RunContext& context) {
-  return TestTriplets<RatioProfile>(scene, triplets, Calibrated(given), context,
+    const EvidenceKinds& kinds, const RunContext& context) {
+  return TestTriplets<RatioProfile>(scene, triplets, kinds, context,
                                     "ratio profiles", ProfileRatio);
 }
 

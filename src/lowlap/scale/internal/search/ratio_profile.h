@@ -1,23 +1,26 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
-#include "lowlap/scale/internal/search/ratio_sweep.h"
-#include "lowlap/scale/scale_options.h"
+#include "lowlap/scale/evidence/evidence.h"
+#include "lowlap/scale/internal/criterion/ratio_nfa.h"
 #include "lowlap/scale/triplet_view.h"
 #include "lowlap/scene/scale_ratio.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
 
-/// NFA(tau) of a triplet: what its features say about every ratio, not the best
-/// one alone.
+/// NFA(tau) of a triplet: what its candidates say about every ratio, not the
+/// best one alone.
 struct RatioProfile {
-  /// The NFA on a grid of log ratios: even over the range of the features' own
-  /// ratios, and finer and finer towards the mode. Sorted; empty without
+  /// The names of RatioNfa::kinds.
+  std::vector<std::string> kinds;
+  /// The NFA on a grid of log ratios: even over the range of the candidates'
+  /// own ratios, and finer and finer towards the mode. Sorted; empty without
   /// candidates.
   std::vector<RatioOptimum> nodes;
   /// The least NFA of all ratios (SweepRatios).
@@ -34,21 +37,17 @@ struct RatioProfile {
 
 /// For TestTriplets.
 inline ScaleRatio& RatioOf(RatioProfile& profile) { return profile.ratio; }
-void PayForSecondTest(RatioProfile* profile);
 
-/// The profile of one triplet, by the calibrated a-contrario criterion,
-/// whatever `options` says about the form, criterion and search.
+/// The profile of one triplet, by the calibrated a-contrario criterion.
 ///
 /// Errors: those of ScaleEstimator::Estimate.
 Result<RatioProfile> ProfileRatio(const TripletView& triplet,
-                                  const ScaleOptions& options);
+                                  const TripletEvidence& evidence);
 
-/// The profiles of many triplets, in their order. Points on planes
-/// (use_coplanar_points) take part exactly where EstimateScaleRatios asks them:
-/// in a second test of the triplets that are not meaningful without, which adds
-/// log10 2 to every total. Errors as in EstimateScaleRatios.
+/// The profiles of many triplets, in their order. Every kind takes part exactly
+/// where EstimateScaleRatios asks it. Errors as there.
 Result<std::vector<RatioProfile>> ProfileScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
-    const ScaleOptions& options, const RunContext& context);
+    const EvidenceKinds& kinds, const RunContext& context);
 
 }  // namespace lowlap

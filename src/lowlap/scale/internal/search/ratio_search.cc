@@ -1,5 +1,7 @@
 #include "lowlap/scale/internal/search/ratio_search.h"
 
+#include <map>
+
 namespace lowlap {
 namespace {
 
@@ -18,11 +20,11 @@ std::vector<int> EvenlySpaced(int count, int wanted) {
 
 std::vector<int> CoarseSubset(const std::vector<Hypothesis>& hypotheses) {
   std::vector<int> subset;
-  for (const FeatureKind kind : kFeatureKinds) {
-    std::vector<int> of_kind;
-    for (std::size_t n = 0; n < hypotheses.size(); ++n) {
-      if (hypotheses[n].kind == kind) of_kind.push_back(static_cast<int>(n));
-    }
+  std::map<int, std::vector<int>> by_kind;
+  for (std::size_t n = 0; n < hypotheses.size(); ++n) {
+    by_kind[hypotheses[n].kind].push_back(static_cast<int>(n));
+  }
+  for (const auto& [kind, of_kind] : by_kind) {
     for (const int rank :
          EvenlySpaced(static_cast<int>(of_kind.size()), kCoarseHypotheses)) {
       subset.push_back(of_kind[rank]);

@@ -1,60 +1,24 @@
 #include "lowlap/scale/internal/search/ratio_sweep.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <queue>
+#include <utility>
 #include <vector>
 
 #include "lowlap/robust/interval_sweep.h"
-#include "lowlap/scale/internal/search/feature_intervals.h"
+#include "lowlap/scale/internal/search/candidate_intervals.h"
 #include "lowlap/scale/internal/search/second_mode.h"
 
 namespace lowlap {
 namespace {
-
-// Counters of the sweep: a ladder each for points, lines, plane points, and
-// both sides of every tier of pairs.
-constexpr int kPoints = 0;
-constexpr int kLines = kNumThresholds;
-constexpr int kPlanePoints = 2 * kNumThresholds;
-constexpr int Side(int tier, int side) {
-  return (3 + 2 * tier + side) * kNumThresholds;
-}
-constexpr int kNumCounters = Side(kPairTiers, 0);
-
-void ToCounters(const SupportCounts& counts, std::vector<int>* counters) {
-  counters->resize(kNumCounters);
-  const auto copy = [&](const LadderCounts& ladder, int at) {
-    std::copy(ladder.begin(), ladder.end(), counters->begin() + at);
-  };
-  copy(counts.points, kPoints);
-  copy(counts.lines, kLines);
-  copy(counts.plane_points, kPlanePoints);
-  for (int t = 0; t < kPairTiers; ++t) {
-    copy(counts.coplanar[t].first, Side(t, 0));
-    copy(counts.coplanar[t].last, Side(t, 1));
-  }
-}
-
-void FromCounters(const std::vector<int>& counters, SupportCounts* counts) {
-  const auto copy = [&](int at, LadderCounts* ladder) {
-    std::copy_n(counters.begin() + at, kNumThresholds, ladder->begin());
-  };
-  copy(kPoints, &counts->points);
-  copy(kLines, &counts->lines);
-  copy(kPlanePoints, &counts->plane_points);
-  for (int t = 0; t < kPairTiers; ++t) {
-    copy(Side(t, 0), &counts->coplanar[t].first);
-    copy(Side(t, 1), &counts->coplanar[t].last);
-  }
-}
 
 struct Window {
   double low = 0;
   double high = 0;
   RatioNfaBound bounds;
 
-  // For a queue that hands out the least bound first.
+  // For a heap that hands out the least bound first.
   bool operator<(const Window& other) const {
     return bounds.log10_nfa != other.bounds.log10_nfa
                ? bounds.log10_nfa > other.bounds.log10_nfa
@@ -65,7 +29,10 @@ struct Window {
 class RatioSweeper {
  public:
   RatioSweeper(const RatioSupport& support, const RatioNfaCriterion& criterion)
-      : support_(support), criterion_(criterion), sweep_(kNumCounters) {}
+      : support_(support),
+        criterion_(criterion),
+        sweep_(support.num_counters() * kNumThresholds),
+        is_useful_(support.num_tiers()) {}
 
   RatioOptimum Run(double low, double high) {
     for (const double seed : Seeds(low, high)) Try(seed);
@@ -73,8 +40,9 @@ class RatioSweeper {
     const int few =
         std::max<int>(32, static_cast<int>(support_.hypotheses().size()) / 20);
     while (!windows_.empty()) {
-      const Window window = windows_.top();
-      windows_.pop();
+      std::pop_heap(windows_.begin(), windows_.end());
+      const Window window = std::move(windows_.back());
+      windows_.pop_back();
       if (!CanBeat(window.bounds.log10_nfa)) break;
       FindUsefulSteps(window.bounds);
       constexpr double kNarrow = 1e-7;
@@ -101,41 +69,29 @@ class RatioSweeper {
   // The steps of the ladder that can decide in a window for a better ratio than
   // the best one. The others need no ends of intervals.
   void FindUsefulSteps(const RatioNfaBound& bounds) {
-    const auto find = [&](const LadderValues& values, int first_counter) {
+    for (int t = 0; t < support_.num_tiers(); ++t) {
       for (int step = 0; step < kNumThresholds; ++step) {
-        is_useful_[first_counter + step] = CanBeat(values[step]);
+        is_useful_[t][step] = CanBeat(bounds.tiers[t][step]);
       }
-    };
-    find(bounds.points, kPoints);
-    find(bounds.lines, kLines);
-    find(bounds.plane_points, kPlanePoints);
-    for (int t = 0; t < kPairTiers; ++t) {
-      find(bounds.coplanar[t], Side(t, 0));
-      find(bounds.coplanar[t], Side(t, 1));
     }
   }
 
-  // Whether the step says something for the features of a kind.
-  bool IsUseful(FeatureKind kind, int step) const {
-    if (kind == FeatureKind::kPoint) return is_useful_[kPoints + step];
-    if (kind == FeatureKind::kLine) return is_useful_[kLines + step];
-    if (kind == FeatureKind::kPlanePoint) {
-      return is_useful_[kPlanePoints + step];
+  // Whether the step says something for the candidates of a kind.
+  bool IsUseful(int kind, int step) const {
+    const int first = support_.FirstTier(kind);
+    const int end = first + support_.kind(kind).units().num_tiers();
+    for (int t = first; t < end; ++t) {
+      if (is_useful_[t][step]) return true;
     }
-    bool is_useful = false;
-    for (int t = 0; t < kPairTiers; ++t) {
-      is_useful = is_useful || is_useful_[Side(t, 0) + step];
-    }
-    return is_useful;
+    return false;
   }
 
   // Where the ratios of each kind, and all of them, lie closest.
   std::vector<double> Seeds(double low, double high) const {
-    std::array<std::vector<double>, kFeatureKinds.size() + 1> ratios;
+    std::vector<std::vector<double>> ratios(support_.num_kinds() + 1);
     for (const Hypothesis& hypothesis : support_.hypotheses()) {
       if (hypothesis.log_ratio < low || hypothesis.log_ratio > high) continue;
-      ratios[static_cast<std::size_t>(hypothesis.kind)].push_back(
-          hypothesis.log_ratio);
+      ratios[hypothesis.kind].push_back(hypothesis.log_ratio);
       ratios.back().push_back(hypothesis.log_ratio);
     }
     std::vector<double> seeds;
@@ -151,14 +107,17 @@ class RatioSweeper {
   }
 
   void Try(double log_ratio) {
-    const RatioNfa nfa = criterion_.EvaluateAt(
+    RatioOptimum optimum = criterion_.EvaluateAt(
         log_ratio, support_.Count(log_ratio, &workspace_));
-    if (!has_best_ || nfa.BetterThan(best_.nfa)) best_ = {log_ratio, nfa};
+    if (!has_best_ || optimum.nfa.BetterThan(best_.nfa)) {
+      best_ = std::move(optimum);
+    }
     has_best_ = true;
   }
 
-  // The ratios of features beside the best one: within its segment they differ
-  // by the densities alone, which rounding may bring beyond the ends tried.
+  // The ratios of candidates beside the best one: within its segment they
+  // differ by the densities alone, which rounding may bring beyond the ends
+  // tried.
   void TryNeighbors(double low, double high) {
     constexpr std::ptrdiff_t kNeighbors = 4;
     const std::vector<Hypothesis>& all = support_.hypotheses();
@@ -176,10 +135,12 @@ class RatioSweeper {
 
   void Push(double low, double high) {
     if (!(low < high)) return;
-    support_.Bound(low, high, &least_px_, nullptr);
-    const RatioNfaBound bounds =
-        criterion_.Bound(low, high, support_.Count(least_px_, &workspace_));
-    if (CanBeat(bounds.log10_nfa)) windows_.push({low, high, bounds});
+    support_.Bound(low, high, &least_, nullptr);
+    RatioNfaBound bounds =
+        criterion_.Bound(low, high, support_.Count(least_, &workspace_));
+    if (!CanBeat(bounds.log10_nfa)) return;
+    windows_.push_back({low, high, std::move(bounds)});
+    std::push_heap(windows_.begin(), windows_.end());
   }
 
   // Windows that grow with their distance from the best ratio so far.
@@ -201,17 +162,16 @@ class RatioSweeper {
   // Fills the bounds of the window and counts the thresholds that errors may
   // cross in it.
   int NumCrossings(const Window& window) {
-    support_.Bound(window.low, window.high, &least_px_, &most_px_);
+    support_.Bound(window.low, window.high, &least_, &most_);
     int crossings = 0;
-    for (const FeatureKind kind : kFeatureKinds) {
-      const std::size_t k = static_cast<std::size_t>(kind);
+    for (int k = 0; k < support_.num_kinds(); ++k) {
       std::array<int, kNumThresholds + 1> useful_before{};
       for (int step = 0; step < kNumThresholds; ++step) {
-        useful_before[step + 1] = useful_before[step] + IsUseful(kind, step);
+        useful_before[step + 1] = useful_before[step] + IsUseful(k, step);
       }
-      for (std::size_t n = 0; n < least_px_[k].size(); ++n) {
-        crossings += useful_before[LadderStep(most_px_[k][n])] -
-                     useful_before[LadderStep(least_px_[k][n])];
+      for (std::size_t n = 0; n < least_[k].size(); ++n) {
+        crossings += useful_before[LadderStep(most_[k][n])] -
+                     useful_before[LadderStep(least_[k][n])];
       }
     }
     return crossings;
@@ -219,88 +179,99 @@ class RatioSweeper {
 
   // Needs the bounds that NumCrossings leaves.
   void Sweep(const Window& window) {
-    ToCounters(support_.Count(most_px_, &workspace_), &counters_);
+    counters_.clear();
+    for (const LadderCounts& counts : support_.Count(most_, &workspace_)) {
+      counters_.insert(counters_.end(), counts.begin(), counts.end());
+    }
     sweep_.Reset(counters_);
-    AddFeatures(window, FeatureKind::kPoint, kPoints);
-    AddFeatures(window, FeatureKind::kLine, kLines);
-    AddFeatures(window, FeatureKind::kPlanePoint, kPlanePoints);
-    AddPairs(window);
-    SupportCounts counts;
+    for (int k = 0; k < support_.num_kinds(); ++k) {
+      support_.kind(k).units().num_sides == 1 ? AddCandidates(window, k)
+                                              : AddPairs(window, k);
+    }
+    SupportCounts counts(support_.num_counters());
     const auto score = [&](double log_ratio) {
-      if (CanBeat(criterion_.EvaluateAt(log_ratio, counts).log10_nfa)) {
+      if (CanBeat(criterion_.EvaluateAt(log_ratio, counts).nfa.log10_nfa)) {
         Try(log_ratio);
       }
     };
     sweep_.Run(window.low, window.high,
                [&](double begin, double end, const std::vector<int>& counters) {
                  constexpr double kInside = 1e-3;
-                 FromCounters(counters, &counts);
+                 auto from = counters.begin();
+                 for (LadderCounts& ladder : counts) {
+                   std::copy_n(from, kNumThresholds, ladder.begin());
+                   from += kNumThresholds;
+                 }
                  score(begin + kInside * (end - begin));
                  score(end - kInside * (end - begin));
                });
   }
 
-  void AddFeatures(const Window& window, FeatureKind kind, int first_counter) {
-    const std::size_t k = static_cast<std::size_t>(kind);
-    for (std::size_t n = 0; n < least_px_[k].size(); ++n) {
-      VisitInlierIntervals(
-          support_, kind, static_cast<int>(n), window.low, window.high,
-          LadderStep(least_px_[k][n]), LadderStep(most_px_[k][n]),
-          [&](int step) { return IsUseful(kind, step); },
-          [&](int step, double begin, double end) {
-            sweep_.Add(begin, end, first_counter + step);
-          });
+  // Calls visit(step, begin, end) for the intervals of the window in which a
+  // candidate is an inlier.
+  template <class Visit>
+  void VisitIntervals(const Window& window, int kind, int candidate,
+                      const Visit& visit) const {
+    VisitInlierIntervals(
+        support_.kind(kind), candidate, window.low, window.high,
+        LadderStep(least_[kind][candidate]), LadderStep(most_[kind][candidate]),
+        [&](int step) { return IsUseful(kind, step); }, visit);
+  }
+
+  void AddCandidates(const Window& window, int kind) {
+    const EvidenceUnits& units = support_.kind(kind).units();
+    const int first_counter = support_.FirstCounter(kind);
+    for (int n = 0; n < support_.kind(kind).size(); ++n) {
+      VisitIntervals(window, kind, n, [&](int step, double begin, double end) {
+        for (int t = support_.TierOf(kind, n); t < units.num_tiers(); ++t) {
+          sweep_.Add(begin, end, (first_counter + t) * kNumThresholds + step);
+        }
+      });
     }
   }
 
-  void AddPairs(const Window& window) {
-    const std::size_t k = static_cast<std::size_t>(FeatureKind::kCoplanar);
-    const std::vector<float>& most = most_px_[k];
-    // From which step on a line is an inlier in the whole window.
-    std::array<std::array<std::vector<int>, 2>, kPairTiers> sure;
-    for (int t = 0; t < kPairTiers; ++t) {
-      sure[t][0].assign(support_.Tier(t).num_first, kNumThresholds);
-      sure[t][1].assign(support_.Tier(t).num_last, kNumThresholds);
-      for (int pair = 0; pair < support_.Tier(t).num_pairs; ++pair) {
-        for (const int side : {0, 1}) {
-          int& step = sure[t][side][LineOf(pair, side)];
-          step = std::min(step, LadderStep(most[pair]));
+  void AddPairs(const Window& window, int kind) {
+    const EvidenceUnits& units = support_.kind(kind).units();
+    // From which step on a unit is an inlier in the whole window.
+    std::vector<std::array<std::vector<int>, 2>> sure(units.num_tiers());
+    for (int t = 0; t < units.num_tiers(); ++t) {
+      for (const int side : {0, 1}) {
+        sure[t][side].assign(units.tiers[t].num_units[side], kNumThresholds);
+        for (int pair = 0; pair < units.tiers[t].num_candidates; ++pair) {
+          int& step = sure[t][side][units.of_pair[side][pair]];
+          step = std::min(step, LadderStep(most_[kind][pair]));
         }
       }
     }
-    for (int pair = 0; pair < support_.num_pairs(); ++pair) {
-      VisitInlierIntervals(
-          support_, FeatureKind::kCoplanar, pair, window.low, window.high,
-          LadderStep(least_px_[k][pair]), LadderStep(most[pair]),
-          [&](int step) { return IsUseful(FeatureKind::kCoplanar, step); },
-          [&](int step, double begin, double end) {
-            for (int t = support_.TierOfPair(pair); t < kPairTiers; ++t) {
-              if (!is_useful_[Side(t, 0) + step]) continue;
+    for (int pair = 0; pair < support_.kind(kind).size(); ++pair) {
+      VisitIntervals(
+          window, kind, pair, [&](int step, double begin, double end) {
+            for (int t = support_.TierOf(kind, pair); t < units.num_tiers();
+                 ++t) {
+              if (!is_useful_[support_.FirstTier(kind) + t][step]) continue;
               for (const int side : {0, 1}) {
-                const int line = LineOf(pair, side);
-                if (step >= sure[t][side][line]) continue;
-                sweep_.AddMember(begin, end, Side(t, side) + step, line);
+                const int unit = units.of_pair[side][pair];
+                if (step >= sure[t][side][unit]) continue;
+                const int counter = support_.FirstCounter(kind) + 2 * t + side;
+                sweep_.AddMember(begin, end, counter * kNumThresholds + step,
+                                 unit);
               }
             }
           });
     }
   }
 
-  int LineOf(int pair, int side) const {
-    return side == 0 ? support_.FirstLineOf(pair) : support_.LastLineOf(pair);
-  }
-
   const RatioSupport& support_;
   const RatioNfaCriterion& criterion_;
   RatioOptimum best_;
   bool has_best_ = false;
-  std::priority_queue<Window> windows_;
+  std::vector<Window> windows_;  // a heap
   IntervalSweep sweep_;
   SupportWorkspace workspace_;
-  KindErrors least_px_;
-  KindErrors most_px_;
+  KindErrors least_;
+  KindErrors most_;
   std::vector<int> counters_;
-  std::array<bool, kNumCounters> is_useful_{};
+  std::vector<std::array<bool, kNumThresholds>> is_useful_;  // by tier
 };
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "lowlap/scale/internal/search/ratio_sweep.h"
+#include "lowlap/scale/internal/criterion/ratio_nfa.h"
 
 namespace lowlap {
 
@@ -11,7 +11,7 @@ namespace lowlap {
 /// as possible (Robertson and Cryer 1974). There must be one.
 double HalfSampleMode(const std::vector<double>& sorted);
 
-/// The ratio that the features which disagree with `mode` by more than 6
+/// The ratio that the candidates which disagree with `mode` by more than 6
 /// standard deviations would choose: where their own ratios lie closest. None
 /// unless it is meaningful (log10 NFA < 0), and parted from the mode by a ratio
 /// between the two whose log10 NFA is higher by a tenth of the mode's, and by 1

@@ -5,50 +5,37 @@
 #include <cmath>
 
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/evidence/internal/coplanar_ratio.h"
-#include "lowlap/scale/evidence/internal/trifocal_line.h"
-#include "lowlap/scale/evidence/internal/trifocal_point.h"
 
 namespace lowlap {
 namespace {
 
-// At most 24 of a kind, evenly spaced, with their weights made up for.
-std::vector<WeightedFeature> Sample(
-    const std::vector<WeightedFeature>& features) {
+// The candidates of one kind: at most 24, evenly spaced, with their weights
+// made up for.
+struct Sample {
+  std::vector<int> candidates;
+  std::vector<double> weights;
+};
+
+std::vector<Sample> SampleKinds(
+    const RatioSupport& support,
+    const std::vector<WeightedCandidate>& candidates) {
   constexpr std::size_t kMaxOfKind = 24;
-  std::vector<WeightedFeature> sample;
-  for (const FeatureKind kind : kFeatureKinds) {
-    std::vector<WeightedFeature> of_kind;
-    for (const WeightedFeature& feature : features) {
-      if (feature.kind == kind) of_kind.push_back(feature);
+  std::vector<Sample> samples(support.num_kinds());
+  for (int k = 0; k < support.num_kinds(); ++k) {
+    std::vector<WeightedCandidate> of_kind;
+    for (const WeightedCandidate& candidate : candidates) {
+      if (candidate.kind == k) of_kind.push_back(candidate);
     }
     const std::size_t num = std::min(kMaxOfKind, of_kind.size());
     for (std::size_t n = 0; n < num; ++n) {
-      sample.push_back(of_kind[(2 * n + 1) * of_kind.size() / (2 * num)]);
-      sample.back().weight *= static_cast<double>(of_kind.size()) / num;
+      const WeightedCandidate& taken =
+          of_kind[(2 * n + 1) * of_kind.size() / (2 * num)];
+      samples[k].candidates.push_back(taken.index);
+      samples[k].weights.push_back(taken.weight *
+                                   (static_cast<double>(of_kind.size()) / num));
     }
   }
-  return sample;
-}
-
-RatioCandidate RatioIn(const TripletGeometry& geometry,
-                       const TrifocalPointSolver& of_points,
-                       const TripletView& triplet, const RatioSupport& support,
-                       const WeightedFeature& feature) {
-  switch (feature.kind) {
-    case FeatureKind::kPoint:
-      return of_points.Ratio(triplet.points[support.PointOf(feature.index)]);
-    case FeatureKind::kLine:
-      return TrifocalLineRatio(geometry,
-                               triplet.lines[support.LineOf(feature.index)]);
-    case FeatureKind::kPlanePoint:
-      return of_points.Ratio(triplet.plane_points[feature.index].point);
-    case FeatureKind::kCoplanar:
-      break;
-  }
-  const CoplanarPairCandidate& pair = support.Pair(feature.index);
-  return CoplanarRatio(geometry, triplet.lines_ij[pair.first],
-                       triplet.lines_jk[pair.last]);
+  return samples;
 }
 
 }  // namespace
@@ -88,22 +75,24 @@ std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
 }
 
 double PoseVariance(const TripletView& triplet, const RatioSupport& support,
-                    const std::vector<WeightedFeature>& features) {
+                    const std::vector<WeightedCandidate>& candidates) {
   double variance = 0;
   if (triplet.pose_perturbations.empty()) return variance;
-  const std::vector<WeightedFeature> sample = Sample(features);
+  const std::vector<Sample> samples = SampleKinds(support, candidates);
   for (const TripletGeometry& geometry : triplet.pose_perturbations) {
-    const TrifocalPointSolver of_points(geometry);
     double sum = 0, weights = 0;
-    for (const WeightedFeature& feature : sample) {
-      const RatioCandidate ratio =
-          RatioIn(geometry, of_points, triplet, support, feature);
-      if (ratio.status != CandidateStatus::kValid) continue;
-      const double change =
-          ratio.log_ratio -
-          support.Ratios(feature.kind)[feature.index].log_ratio;
-      sum += feature.weight * change;
-      weights += feature.weight;
+    for (int k = 0; k < support.num_kinds(); ++k) {
+      const Sample& sample = samples[k];
+      const std::vector<RatioCandidate> moved =
+          support.kind(k).RatiosIn(triplet, geometry, sample.candidates);
+      for (std::size_t n = 0; n < moved.size(); ++n) {
+        if (moved[n].status != CandidateStatus::kValid) continue;
+        const double change =
+            moved[n].log_ratio -
+            support.kind(k).ratios()[sample.candidates[n]].log_ratio;
+        sum += sample.weights[n] * change;
+        weights += sample.weights[n];
+      }
     }
     if (weights > 0) variance += (sum / weights) * (sum / weights);
   }

@@ -8,10 +8,10 @@
 
 namespace lowlap {
 
-/// A feature that takes part in a mean, with its weight there.
-struct WeightedFeature {
-  FeatureKind kind = FeatureKind::kPoint;
-  int index = 0;  // as in RatioSupport
+/// A candidate that takes part in a mean, with its weight there.
+struct WeightedCandidate {
+  int kind = 0;   // as in RatioSupport
+  int index = 0;  // within its kind
   double weight = 1;
 };
 
@@ -24,12 +24,12 @@ std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
                                          const RelativePose& edge,
                                          const ViewTriplet& views);
 
-/// The variance of a weighted mean of the features' log ratios that comes from
-/// the errors of the two relative poses: all features move together with them,
-/// so that it does not fall with their number. The sum over
+/// The variance of a weighted mean of the candidates' log ratios that comes
+/// from the errors of the two relative poses: all candidates move together with
+/// them, so that it does not fall with their number. The sum over
 /// `triplet.pose_perturbations` of the squared change of the mean, which is
-/// taken over an even sample of at most 24 features of each kind.
+/// taken over an even sample of at most 24 candidates of each kind.
 double PoseVariance(const TripletView& triplet, const RatioSupport& support,
-                    const std::vector<WeightedFeature>& features);
+                    const std::vector<WeightedCandidate>& candidates);
 
 }  // namespace lowlap

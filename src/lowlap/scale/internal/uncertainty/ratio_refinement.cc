@@ -42,8 +42,8 @@ class MixtureFit {
       const RatioFeature& feature = features[n];
       log_ratio_[n] = feature.log_ratio;
       stddev_[n] = feature.log_ratio_stddev;
-      num_first = std::max(num_first, feature.first_line + 1);
-      num_last = std::max(num_last, feature.last_line + 1);
+      num_first = std::max(num_first, feature.first_unit + 1);
+      num_last = std::max(num_last, feature.last_unit + 1);
       if (runs_.empty() || runs_.back().group != feature.group) {
         runs_.push_back({feature.group, n, 0});
       }
@@ -116,14 +116,14 @@ class MixtureFit {
     std::fill(of_last_.begin(), of_last_.end(), 0.0);
     for (std::size_t n = 0; n < features_.size(); ++n) {
       if (!features_[n].IsPair()) continue;
-      of_first_[features_[n].first_line] += fit_.probability[n];
-      of_last_[features_[n].last_line] += fit_.probability[n];
+      of_first_[features_[n].first_unit] += fit_.probability[n];
+      of_last_[features_[n].last_unit] += fit_.probability[n];
     }
     for (std::size_t n = 0; n < features_.size(); ++n) {
       if (!features_[n].IsPair()) continue;
       fit_.multiplicity[n] =
-          std::max(1.0, 0.5 * (of_first_[features_[n].first_line] +
-                               of_last_[features_[n].last_line]));
+          std::max(1.0, 0.5 * (of_first_[features_[n].first_unit] +
+                               of_last_[features_[n].last_unit]));
     }
   }
 

@@ -14,14 +14,14 @@ struct RatioFeature {
   int group = 0;
   /// Where in the image it is; features of one cell may err together.
   int cell = 0;
-  /// Of a pair of lines: which ones (counted from 0 on either side), and how
-  /// their noise moves the log ratio, see CoplanarNoise.
-  int first_line = -1;
-  int last_line = -1;
+  /// Of a pair: which units it joins (counted from 0 on either side), and how
+  /// their noise moves the log ratio, see CandidateDetail.
+  int first_unit = -1;
+  int last_unit = -1;
   std::array<double, 4> by_first{};
   std::array<double, 4> by_last{};
 
-  bool IsPair() const { return first_line >= 0; }
+  bool IsPair() const { return first_unit >= 0; }
 };
 
 /// What is known of a group beforehand.
@@ -62,8 +62,8 @@ inline constexpr double kRefinementReach = 6.0;
 /// cut off, so that nothing makes the noise look smaller than it is.
 ///
 /// A right feature has the weight p / (phi_g^2 s^2 m) in the mean, p its
-/// probability; m = 1 but for pairs, which share the noise of their lines: the
-/// mean of the numbers of right pairs of the two lines, so that n_a lines all
+/// probability; m = 1 but for pairs, which share the noise of their units: the
+/// mean of the numbers of right pairs of the two units, so that n_a units all
 /// paired with n_b others count as the harmonic mean of n_a and n_b.
 /// The standard deviation is that of ratio_variance.h.
 /// Without features: `initial`, with an infinite standard deviation.

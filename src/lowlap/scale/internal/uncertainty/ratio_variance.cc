@@ -109,16 +109,16 @@ using Moves = std::array<double, 4>;
 // Calls visit(begin, end) for the pairs of every line of one side, `pairs`
 // being sorted by it.
 template <class Visit>
-void VisitLines(const std::vector<RatioFeature>& features, bool is_first,
+void VisitUnits(const std::vector<RatioFeature>& features, bool is_first,
                 std::vector<int>* pairs, const Visit& visit) {
-  const auto line_of = [&](int n) {
-    return is_first ? features[n].first_line : features[n].last_line;
+  const auto unit_of = [&](int n) {
+    return is_first ? features[n].first_unit : features[n].last_unit;
   };
   std::stable_sort(pairs->begin(), pairs->end(),
-                   [&](int a, int b) { return line_of(a) < line_of(b); });
+                   [&](int a, int b) { return unit_of(a) < unit_of(b); });
   for (auto begin = pairs->begin(), end = begin; begin != pairs->end();
        begin = end) {
-    while (end != pairs->end() && line_of(*end) == line_of(*begin)) ++end;
+    while (end != pairs->end() && unit_of(*end) == unit_of(*begin)) ++end;
     visit(begin, end);
   }
 }
@@ -137,7 +137,7 @@ double PairVariance(const std::vector<RatioFeature>& features,
                     mixture.noise2[features[n].group];
   }
   for (const bool is_first : {true, false}) {
-    VisitLines(features, is_first, &pairs, [&](auto begin, auto end) {
+    VisitUnits(features, is_first, &pairs, [&](auto begin, auto end) {
       Moves sum{};
       for (; begin != end; ++begin) {
         const RatioFeature& pair = features[*begin];
@@ -158,7 +158,7 @@ double SharedSquares(const std::vector<RatioFeature>& features,
                      std::vector<int> pairs, const RatioMixture& mixture) {
   double shared = 0;
   for (const bool is_first : {true, false}) {
-    VisitLines(features, is_first, &pairs, [&](auto begin, auto end) {
+    VisitUnits(features, is_first, &pairs, [&](auto begin, auto end) {
       // The squared norm of the sum of p a a^T, a the moves in standard
       // deviations of the pair, without what every pair has with itself.
       std::array<Moves, 4> sum{};

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lowlap/scale/evidence/internal/trifocal_point.h"
+#include "lowlap/scale/evidence/internal/triplet_points.h"
 #include "scale/synthetic_planes.h"
 
 namespace lowlap {
@@ -50,7 +50,7 @@ TEST(FindPlanePoints, AreTrifocalPointsOfTheSameRatio) {
   ASSERT_FALSE(points.empty());
   for (const PlanePoint& point : points) {
     const RatioCandidate ratio =
-        TrifocalPointSolver(scene.geometry).Ratio(point.point);
+        TripletPointSolver(scene.geometry).Ratio(point.point);
     ASSERT_EQ(ratio.status, CandidateStatus::kValid);
     EXPECT_NEAR(ratio.log_ratio, point.ratio.log_ratio, 1e-6);
   }

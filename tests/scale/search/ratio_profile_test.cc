@@ -10,12 +10,13 @@
 namespace lowlap {
 namespace {
 
+using testing::Gather;
 using testing::MakeSyntheticTriplet;
 using testing::SyntheticTriplet;
 using testing::SyntheticTripletOptions;
 
 RatioProfile Profile(const TripletView& view) {
-  const Result<RatioProfile> profile = ProfileRatio(view, {});
+  const Result<RatioProfile> profile = ProfileRatio(view, Gather(view));
   EXPECT_TRUE(profile.has_value());
   return *profile;
 }
@@ -60,18 +61,17 @@ TEST(RatioProfile, TheModeIsTheLeastOfTheNodes) {
 TEST(RatioProfile, SharesOfInformationAreThoseOfTheKindsThatThereAre) {
   const SyntheticTriplet triplet = MakeSyntheticTriplet(Mixed(), 1);
   const ScaleRatio ratio = Profile(triplet.view).ratio;
-  EXPECT_NEAR(ratio.points.information_share + ratio.lines.information_share +
-                  ratio.coplanar.information_share,
-              1, 1e-12);
-  for (const KindSupport* kind :
-       {&ratio.points, &ratio.lines, &ratio.coplanar}) {
-    EXPECT_GT(kind->information_share, 0);
+  double sum = 0;
+  for (const KindSupport& kind : ratio.kinds) {
+    EXPECT_EQ(kind.information_share > 0, kind.candidates > 0) << kind.kind;
+    sum += kind.information_share;
   }
+  EXPECT_NEAR(sum, 1, 1e-12);
   SyntheticTripletOptions points;
   points.num_points = 20;
   points.noise_px = 0.5;
   const RatioProfile only = Profile(MakeSyntheticTriplet(points, 1).view);
-  EXPECT_EQ(only.ratio.points.information_share, 1);
+  EXPECT_EQ(only.ratio.FindKind("points")->information_share, 1);
 }
 
 // Two groups of points, each right about a ratio of its own.
@@ -86,7 +86,7 @@ TEST(RatioProfile, TheSecondModeIsTheRatioOfTheSmallerGroup) {
   const RigidTransform& k_from_j = view.geometry.camk_from_camj;
   for (int n = 0; n < 15; ++n) {
     // Seen in i and j as it is, in k as if its baseline were longer.
-    TrifocalPoint& point = view.points[n];
+    TripletPoint& point = view.points[n];
     const double depth = 3 + 0.05 * n;
     const Vec3 x = depth * point.in_j;
     const Vec3 in_i = i_from_j * x;
