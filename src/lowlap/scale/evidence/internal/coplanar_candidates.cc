@@ -1,6 +1,5 @@
 #include "lowlap/scale/evidence/internal/coplanar_candidates.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -8,7 +7,7 @@
 #include <utility>
 
 #include "lowlap/scale/evidence/internal/coplanar_ratio.h"
-#include "lowlap/scale/evidence/internal/least_first.h"
+#include "lowlap/scale/evidence/internal/disc_index.h"
 #include "lowlap/scale/evidence/internal/line_in_middle.h"
 
 namespace lowlap {
@@ -43,7 +42,7 @@ double Cross2(const Vec2& a, const Vec2& b) {
 struct UsableLines {
   std::vector<int> indices;
   std::vector<CoplanarLine> lines;
-  Eigen::ArrayXd x, y, radius;
+  std::vector<Disc> discs;
 
   int size() const { return static_cast<int>(indices.size()); }
 };
@@ -54,22 +53,17 @@ UsableLines FindUsable(const RigidTransform& camn_from_camj, double focal_n_px,
   UsableLines usable;
   for (std::size_t n = 0; n < lines.size(); ++n) {
     CandidateStatus status;
-    if (!LineInMiddle(camn_from_camj, lines[n].in_middle.segment,
-                      lines[n].in_neighbor.segment, &status)) {
+    const NormalizedSegment& in_j = lines[n].in_middle.segment;
+    if (!LineInMiddle(camn_from_camj, in_j, lines[n].in_neighbor.segment,
+                      &status)) {
       *num_negative += status == CandidateStatus::kNegativeDepth;
       continue;
     }
     usable.indices.push_back(static_cast<int>(n));
     usable.lines.emplace_back(camn_from_camj, focal_n_px, focal_j_px, lines[n]);
-  }
-  usable.x.resize(usable.size());
-  usable.y.resize(usable.size());
-  usable.radius.resize(usable.size());
-  for (int n = 0; n < usable.size(); ++n) {
-    const NormalizedSegment& in_j = lines[usable.indices[n]].in_middle.segment;
-    usable.x(n) = 0.5 * (in_j.start.x() + in_j.end.x());
-    usable.y(n) = 0.5 * (in_j.start.y() + in_j.end.y());
-    usable.radius(n) = 0.5 * (in_j.end - in_j.start).head<2>().norm();
+    usable.discs.push_back({0.5 * (in_j.start.x() + in_j.end.x()),
+                            0.5 * (in_j.start.y() + in_j.end.y()),
+                            0.5 * (in_j.end - in_j.start).head<2>().norm()});
   }
   return usable;
 }
@@ -88,12 +82,14 @@ class NeighborSearch {
 
   // For each line of `first` the nearest ones of `last`, and the other way.
   void Run(const UsableLines& first, const UsableLines& last) {
+    DiscIndex of_last(last.discs);
     for (int n = 0; n < first.size(); ++n) {
-      Visit(first, n, last,
+      Visit(first.discs[n], &of_last,
             [&](int other) { Consider(first, n, last, other); });
     }
+    DiscIndex of_first(first.discs);
     for (int n = 0; n < last.size(); ++n) {
-      Visit(last, n, first,
+      Visit(last.discs[n], &of_first,
             [&](int other) { Consider(first, other, last, n); });
     }
   }
@@ -102,17 +98,12 @@ class NeighborSearch {
   std::vector<PairIndex> TakeNegative() { return std::move(negative_); }
 
  private:
-  // The nearest lines of `others` for line `n` of `lines`; look(other)
-  // considers one of them.
+  // The nearest of `others` for a line; look(other) considers one of them.
   template <class Look>
-  void Visit(const UsableLines& lines, int n, const UsableLines& others,
-             const Look& look) {
-    bounds_.Reset(
-        ((others.x - lines.x(n)).square() + (others.y - lines.y(n)).square())
-            .sqrt() -
-        others.radius - lines.radius(n));
+  void Visit(const Disc& line, DiscIndex* others, const Look& look) {
     nearest_.clear();
-    for (; const auto* least = bounds_.Front(); bounds_.Pop()) {
+    others->Start(line);
+    for (; const auto* least = others->Front(); others->Pop()) {
       const auto& [bound, other] = *least;
       if (static_cast<int>(nearest_.size()) == num_neighbors_ &&
           bound > nearest_.back().distance_px) {
@@ -166,7 +157,6 @@ class NeighborSearch {
   const std::vector<MatchedLine>& lines_ij_;
   const std::vector<MatchedLine>& lines_jk_;
   const int num_neighbors_;
-  LeastFirst bounds_;
   std::vector<CoplanarPairCandidate> nearest_;
   std::vector<CoplanarPairCandidate> result_;
   std::vector<PairIndex> negative_;

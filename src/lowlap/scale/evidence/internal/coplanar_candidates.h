@@ -32,8 +32,8 @@ struct CoplanarPairCandidates {
 /// A pair takes one of the N places only if it can say something: two segments
 /// of one index, pairs without a crossing or with a hopeless one
 /// (kMaxPlaneLogRatioStddev) and pairs with a negative depth are passed
-/// over. The distances are bounded by those of the mid-points first, so that
-/// exact ones are computed for few.
+/// over. Exact ones are computed for few: segments are looked at in the order
+/// of the gaps between the discs around them (DiscIndex).
 CoplanarPairCandidates FindCoplanarCandidates(
     const TripletGeometry& geometry, const std::vector<MatchedLine>& lines_ij,
     const std::vector<MatchedLine>& lines_jk, int num_neighbors);
