@@ -67,8 +67,8 @@ TEST(Crc32, AgreesWithThePublishedCheckValues) {
 TEST(SceneBinary, LayoutOfTheHeader) {
   const std::string bytes = FullSceneBytes();
   EXPECT_EQ(bytes.substr(0, 8), "\x89LOWLAP\n");
-  EXPECT_EQ(LittleEndian(bytes, 8, 4), 3u);
-  EXPECT_EQ(LittleEndian(bytes, 12, 4), 14u);
+  EXPECT_EQ(LittleEndian(bytes, 8, 4), 4u);
+  EXPECT_EQ(LittleEndian(bytes, 12, 4), 13u);
   EXPECT_EQ(bytes.substr(16, 4), "ROOT");
   const std::string root = Payload(bytes, "ROOT");
   EXPECT_EQ(LittleEndian(root, 0, 8), FullScene().root_path.size());
