@@ -52,9 +52,10 @@ int main() {
     const double true_ratio =
         (center(views.last) - center(views.middle)).norm() /
         (center(views.middle) - center(views.first)).norm();
+    const lowlap::KindSupport* coplanar = ratio.FindKind("coplanar");
     std::printf("%u-%u-%u  %6.4f  %6.4f  %d of %d\n", views.first, views.middle,
                 views.last, std::exp(ratio.log_ratio), true_ratio,
-                ratio.coplanar.inliers, ratio.coplanar.candidates);
+                coplanar->inliers, coplanar->candidates);
   }
 
   // The same and everything after it: poses, structure, bundle adjustment.

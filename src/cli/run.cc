@@ -134,8 +134,8 @@ int Run(const RunFlags& flags) {
   front_end.relative_poses.pair.use_points = IsNamed("points", flags.two_view);
   front_end.relative_poses.pair.use_lines = IsNamed("lines", flags.two_view);
   const bool needs_lines = front_end.relative_poses.pair.use_lines ||
-                           options->scale.use_lines ||
-                           options->scale.use_coplanar;
+                           options->scale.Asks("lines") ||
+                           options->scale.Asks("coplanar");
   front_end.features.detect_lines = needs_lines;
   front_end.matching.match_lines = needs_lines;
 

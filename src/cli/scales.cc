@@ -13,7 +13,7 @@
 #include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/pipeline/internal/ratio_table.h"
 #include "lowlap/pipeline/summary_json.h"
-#include "lowlap/scale/ratio_profile.h"
+#include "lowlap/scale/internal/search/ratio_profile.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -31,49 +31,65 @@ struct Flags {
 
 // One line per ratio of the grid, mode, second mode and end of the interval.
 std::string ProfileCsv(const std::vector<RatioProfile>& profiles) {
+  std::vector<ScaleRatio> ratios;
+  for (const RatioProfile& profile : profiles) ratios.push_back(profile.ratio);
+  const std::vector<std::string> kinds = KindNames(ratios);
   std::ostringstream out;
   out.precision(9);
-  out << "first,middle,last,what,log_ratio,log10_nfa,points,lines,coplanar\n";
+  out << "first,middle,last,what,log_ratio,log10_nfa";
+  for (const std::string& kind : kinds) out << ',' << kind;
+  out << '\n';
   for (const RatioProfile& profile : profiles) {
     const auto start = [&](const char* what, double log_ratio) {
       const ViewTriplet& views = profile.ratio.views;
       out << views.first << ',' << views.middle << ',' << views.last << ','
-          << what << ',' << log_ratio;
+          << what << ',' << log_ratio << ',';
     };
     const auto write = [&](const char* what, const RatioOptimum& optimum) {
       start(what, optimum.log_ratio);
-      const RatioNfa& nfa = optimum.nfa;
-      out << ',' << nfa.log10_nfa << ',' << nfa.points.log10_nfa << ','
-          << nfa.lines.log10_nfa << ','
-          << nfa.coplanar.log10_nfa + nfa.plane_points.log10_nfa << '\n';
+      out << optimum.nfa.log10_nfa;
+      for (const std::string& kind : kinds) {
+        double log10_nfa = 0;
+        for (std::size_t k = 0; k < profile.kinds.size(); ++k) {
+          if (profile.kinds[k] == kind) {
+            log10_nfa = optimum.nfa.kinds[k].log10_nfa;
+          }
+        }
+        out << ',' << log10_nfa;
+      }
+      out << '\n';
     };
     if (profile.nodes.empty()) continue;
+    const ScaleRatio& ratio = profile.ratio;
     write("mode", profile.mode);
     if (profile.second_mode) write("second mode", *profile.second_mode);
-    start("interval low", profile.ratio.IntervalLow());
-    out << ",,,,\n";
-    start("interval high", profile.ratio.IntervalHigh());
-    out << ",,,,\n";
+    const std::string empty(kinds.size(), ',');
+    start("interval low", ratio.IntervalLow());
+    out << empty << '\n';
+    start("interval high", ratio.IntervalHigh());
+    out << empty << '\n';
     // Shares of the information in the columns of the kinds.
-    const ScaleRatio& ratio = profile.ratio;
     start("information", ratio.log_ratio);
-    out << ",," << ratio.points.information_share << ','
-        << ratio.lines.information_share << ','
-        << ratio.coplanar.information_share << '\n';
+    for (const std::string& kind : kinds) {
+      const KindSupport* support = ratio.FindKind(kind);
+      out << ',' << (support == nullptr ? 0 : support->information_share);
+    }
+    out << '\n';
     for (const RatioOptimum& node : profile.nodes) write("node", node);
   }
   return out.str();
 }
 
 void PrintTable(const std::vector<ScaleRatio>& ratios) {
-  std::vector<std::vector<std::string>> rows = {RatioColumns()};
+  const RatioTable table = MakeRatioTable(ratios);
+  std::vector<std::vector<std::string>> rows = {table.columns};
   rows.front().insert(rows.front().begin(), "views");
-  for (const ScaleRatio& ratio : ratios) {
-    rows.push_back(RatioRow(ratio));
+  for (std::size_t n = 0; n < ratios.size(); ++n) {
+    rows.push_back(table.rows[n]);
     rows.back().insert(rows.back().begin(),
-                       std::to_string(ratio.views.first) + "-" +
-                           std::to_string(ratio.views.middle) + "-" +
-                           std::to_string(ratio.views.last));
+                       std::to_string(ratios[n].views.first) + "-" +
+                           std::to_string(ratios[n].views.middle) + "-" +
+                           std::to_string(ratios[n].views.last));
   }
   std::vector<int> widths(rows.front().size(), 0);
   for (const auto& row : rows) {
@@ -108,8 +124,8 @@ int Scales(const Flags& flags) {
   }
   if (written && !flags.profile.empty()) {
     const auto profiles = ProfileScaleRatios(
-        loaded->scene, FindTriplets(ViewGraph(loaded->scene)), *options,
-        context);
+        loaded->scene, FindTriplets(ViewGraph(loaded->scene)),
+        MakeScaleEstimator(*options)->kinds(), context);
     if (!profiles) return Fail(profiles.error());
     written = files.Add(flags.profile, ProfileCsv(*profiles));
   }

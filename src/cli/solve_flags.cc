@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 #include <system_error>
 #include <utility>
 
@@ -100,17 +101,28 @@ void PrintCost(const std::vector<StageCost>& stages) {
 }  // namespace
 
 void AddScaleFlags(CLI::App* command, ScaleFlags* flags) {
+  std::map<std::string, std::string> help_of;
+  const EvidenceRegistry& registry = EvidenceRegistry::BuiltIn();
+  for (const EvidenceRegistry::Entry& entry : registry.entries()) {
+    if (entry.flag.empty()) {
+      help_of[entry.feature] = entry.help;
+      continue;
+    }
+    command->add_flag("--" + entry.flag + ",!--no-" + entry.flag,
+                      flags->asked.emplace(entry.name, true).first->second,
+                      "Whether " + entry.feature + " includes " + entry.help);
+  }
+  std::string known;
+  for (const std::string& word : registry.Features()) {
+    known += (known.empty() ? "" : ", ") + word + " (" + help_of[word] + ")";
+  }
   command
       ->add_option("--features", flags->features,
                    "Kinds that determine the scale ratios, separated by "
-                   "commas: points, lines (both seen in three views), coplanar "
-                   "(pairs of lines seen in two views each)")
+                   "commas: " +
+                       known)
       ->delimiter(',')
       ->capture_default_str();
-  command->add_flag(
-      "--coplanar-points,!--no-coplanar-points", flags->coplanar_points,
-      "Whether coplanar includes points and lines of one pair that lie on a "
-      "plane of the other");
   command
       ->add_option("--criterion", flags->criterion,
                    "How a ratio is chosen: ac (a contrario, no threshold) or "
@@ -130,13 +142,11 @@ void AddScaleFlags(CLI::App* command, ScaleFlags* flags) {
 }
 
 Result<ScaleOptions> MakeScaleOptions(const ScaleFlags& flags) {
-  const auto kinds = ParseKinds(flags.features);
-  if (!kinds) return tl::unexpected<Error>(kinds.error());
   ScaleOptions options;
-  options.use_points = kinds->points;
-  options.use_lines = kinds->lines;
-  options.use_coplanar = kinds->coplanar;
-  options.use_coplanar_points = flags.coplanar_points;
+  options.features = flags.features;
+  for (const auto& [kind, asked] : flags.asked) {
+    if (!asked) options.without.push_back(kind);
+  }
   options.criterion = flags.criterion == "ac" ? ScaleCriterion::kAContrario
                                               : ScaleCriterion::kFixedThreshold;
   options.nfa_form =

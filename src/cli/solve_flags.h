@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,13 +11,15 @@
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/pipeline/summary_json.h"
+#include "lowlap/scale/evidence/evidence_registry.h"
 
 namespace lowlap::cli {
 
 /// Flags of the scale step, shared by run, solve and scales.
 struct ScaleFlags {
-  std::vector<std::string> features = {"points", "lines", "coplanar"};
-  bool coplanar_points = ScaleOptions().use_coplanar_points;
+  std::vector<std::string> features = EvidenceRegistry::BuiltIn().Features();
+  /// By name of a kind of evidence that has a flag of its own.
+  std::map<std::string, bool> asked;
   std::string criterion = "ac";
   std::string nfa = "calibrated";
   double threshold_px = 3.0;

@@ -31,7 +31,7 @@ ScaleRatio& AddRatio(ViewId first, ViewId middle, ViewId last, Scene* scene) {
   ratio.verdict = RatioVerdict::kMeaningful;
   ratio.log10_nfa = -12;
   ratio.log_ratio_stddev = 0.01;
-  ratio.points.inliers = 20;
+  ratio.kinds = {{"points", 20, 20}};
   scene->scale_ratios.push_back(ratio);
   return scene->scale_ratios.back();
 }
@@ -249,7 +249,7 @@ TEST(Diagnose, WeakRatiosAreNamed) {
   for (int reason = 0; reason < 3; ++reason) {
     Scene scene = SceneWithEdges(5, kTwoTriangles);
     ScaleRatio& weak = AddRatio(1, 2, 3, &scene);
-    if (reason == 0) weak.points.inliers = 3;
+    if (reason == 0) weak.kinds[0].inliers = 3;
     if (reason == 1) weak.log10_nfa = -1;
     if (reason == 2) weak.log_ratio_stddev = 0.3;
     Diagnosis diagnosis = DiagnosisOf(scene);

@@ -27,7 +27,7 @@ SyntheticScene SceneWithTrueRatios(const std::string& pairs) {
     ratio.verdict = RatioVerdict::kMeaningful;
     ratio.log10_nfa = -50;
     ratio.log_ratio_stddev = 0.01;
-    ratio.lines.inliers = 20;
+    ratio.kinds = {{"lines", 20, 20}};
   }
   for (auto& entry : synthetic.scene.relative_poses) {
     entry.second.log10_nfa = -100;

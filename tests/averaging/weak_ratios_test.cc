@@ -23,8 +23,7 @@ SyntheticScene ChainWithAWeakRatio(int agreeing) {
     ratio.verdict =
         weak ? RatioVerdict::kNotMeaningful : RatioVerdict::kMeaningful;
     ratio.log_ratio_stddev = 0.01;
-    ratio.points = ratio.lines = ratio.coplanar = KindSupport();
-    ratio.lines.inliers = weak ? agreeing : 10;
+    ratio.kinds = {{"lines", 10, weak ? agreeing : 10}};
   }
   return synthetic;
 }
@@ -62,7 +61,7 @@ TEST(WeakRatios, AreNotUsedWhereMeaningfulOnesDo) {
   for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
     ratio.verdict = RatioVerdict::kMeaningful;
     ratio.log_ratio_stddev = 0.01;
-    ratio.lines.inliers = 10;
+    ratio.kinds = {{"lines", 10, 10}};
   }
   synthetic.scene.scale_ratios.front().verdict = RatioVerdict::kNotMeaningful;
   const auto summary =

@@ -13,7 +13,7 @@
 #include "benchmarks/processor_time.h"
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/ratio_sweep.h"
+#include "lowlap/scale/internal/search/ratio_sweep.h"
 #include "lowlap/scale/scale_estimator.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "scale/synthetic_triplet.h"
@@ -27,23 +27,12 @@ TripletView MixedTriplet(int num_features) {
   testing::SyntheticTripletOptions options;
   options.num_points = num_features * 4 / 10;
   options.num_lines = num_features * 2 / 10;
-  // Every line has a few pairs near enough; the rest is cut off.
+  // Every line has a few pairs near enough.
   const int num_pairs = num_features - options.num_points - options.num_lines;
   options.num_lines_ij = options.num_lines_jk = 20 + num_pairs / 8;
   options.noise_px = 0.7;
   options.wrong_share = 0.3;
-  // Pairs of lines that are far apart are not used: what counts is the number
-  // that the estimator uses.
-  TripletView view = testing::MakeSyntheticTriplet(options, 1).view;
-  const double reach_px = kTierOfDiagonal.back() * view.image_diagonal_px;
-  std::vector<CoplanarPairCandidate>& pairs = view.coplanar.pairs;
-  pairs.erase(std::remove_if(pairs.begin(), pairs.end(),
-                             [&](const CoplanarPairCandidate& pair) {
-                               return pair.crossing_px > reach_px;
-                             }),
-              pairs.end());
-  if (static_cast<int>(pairs.size()) > num_pairs) pairs.resize(num_pairs);
-  return view;
+  return testing::MakeSyntheticTriplet(options, 1).view;
 }
 
 void SweepTriplet(benchmark::State& state) {
@@ -52,8 +41,8 @@ void SweepTriplet(benchmark::State& state) {
   for (auto _ : state) {
     benchmark::DoNotOptimize(estimator->Estimate(view));
   }
-  const RatioSupport support(view, {});
-  const RatioNfaCriterion criterion(support, view, {});
+  const RatioSupport support(testing::Gather(view));
+  const RatioNfaCriterion criterion(support, view, NfaForm::kCalibrated);
   state.counters["features"] = static_cast<double>(support.hypotheses().size());
   state.counters["sweep_ms"] =
       1e3 * ProcessorSeconds([&] { SweepRatios(support, criterion); });

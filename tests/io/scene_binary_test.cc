@@ -158,32 +158,6 @@ TEST(SceneBinary, ForeignAndNewerFiles) {
                       "new.lowlap: byte 8: version 5 is not 2 to 4"));
 }
 
-// Version 3 ends before the calibrations as given, version 2 before the details
-// of the scale ratios.
-TEST(SceneBinary, OlderFilesEndEarlier) {
-  std::string bytes = FullSceneBytes();
-  bytes.resize(SectionOffset(bytes, "GIVN"));
-  bytes[8] = 3;
-  bytes[12] = 14;
-  Scene expected = FullScene();
-  expected.given_intrinsics.clear();
-  ASSERT_THAT(ParseSceneBinary(bytes), IsOk());
-  EXPECT_EQ(*ParseSceneBinary(bytes), expected);
-
-  bytes.resize(SectionOffset(bytes, "RATD"));
-  bytes[8] = 2;
-  bytes[12] = 13;
-  const Result<Scene> scene = ParseSceneBinary(bytes);
-  ASSERT_THAT(scene, IsOk());
-  for (ScaleRatio& ratio : expected.scale_ratios) {
-    ratio.second_mode.reset();
-    for (KindSupport* kind : {&ratio.points, &ratio.lines, &ratio.coplanar}) {
-      kind->information_share = 0;
-    }
-  }
-  EXPECT_EQ(*scene, expected);
-}
-
 TEST(SceneBinary, DamageIsLocated) {
   std::string bytes = FullSceneBytes();
   const std::size_t offset = SectionOffset(bytes, "FEAT");

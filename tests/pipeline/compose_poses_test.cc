@@ -80,7 +80,7 @@ MadeScene RingWithATriangle() {
     ratio.verdict = RatioVerdict::kMeaningful;
     ratio.log10_nfa = -50;
     ratio.log_ratio_stddev = across ? 0.04 : 0.01;
-    ratio.lines.inliers = 20;
+    ratio.kinds = {{"lines", 20, 20}};
     scene.scale_ratios.push_back(ratio);
   }
   return made;

@@ -32,8 +32,7 @@ SyntheticScene Corridor() {
 Result<SolveResult> SolveByCoplanarPairs(const std::string& strategy,
                                          Scene* scene) {
   SolveOptions options;
-  options.scale.use_points = false;
-  options.scale.use_lines = false;
+  options.scale.features = {"coplanar"};
   options.poses.averager = *AveragerRegistry::WithBuiltIns().Make(strategy);
   options.adjust = false;
   StageLog stages;

@@ -17,19 +17,39 @@ TEST(RatioTable, GivesIntervalSupportAndSecondMode) {
   ratio.log_ratio_stddev = std::log(1.1) / 1.96;
   ratio.log10_nfa = -12.34;
   ratio.second_mode = RatioMode{std::log(0.5), -3.0};
-  ratio.points.inliers = 3;
-  ratio.points.candidates = 4;
-  ratio.points.information_share = 0.6;
-  ratio.coplanar.candidates = 7;
-  ratio.coplanar.information_share = 0.4;
-  EXPECT_THAT(RatioRow(ratio),
-              ElementsAre("2.0000", "1.8182", "2.2000", "-12.3", "3/4", "0/0",
-                          "0/7", "60/0/40", "0.5000 (-3.0)", "meaningful"));
+  ratio.kinds = {
+      {"points", 4, 3, -10, 1, 0.6}, {"lines"}, {"odometry", 7, 0, 0, 0, 0.4}};
+  const RatioTable table = MakeRatioTable({ratio});
+  EXPECT_THAT(
+      table.columns,
+      ElementsAre("ratio", "95 % from", "to", "log10 NFA", "points", "lines",
+                  "odometry", "info %", "second mode", "verdict"));
+  EXPECT_THAT(table.rows,
+              ElementsAre(ElementsAre("2.0000", "1.8182", "2.2000", "-12.3",
+                                      "3/4", "0/0", "0/7", "60/0/40",
+                                      "0.5000 (-3.0)", "meaningful")));
+}
+
+TEST(RatioTable, KindsThatWereNotAskedShowADash) {
+  ScaleRatio first, second;
+  first.verdict = second.verdict = RatioVerdict::kMeaningful;
+  first.kinds = {{"points", 4, 3}};
+  second.kinds = {{"points", 5, 2}, {"odometry", 1, 1}};
+  const RatioTable table = MakeRatioTable({first, second});
+  EXPECT_THAT(KindNames({first, second}), ElementsAre("points", "odometry"));
+  ASSERT_EQ(table.columns.size(), 9u);
+  EXPECT_EQ(table.rows[0][4], "3/4");
+  EXPECT_EQ(table.rows[0][5], "-");
+  EXPECT_EQ(table.rows[0][6], "0/-");
+  EXPECT_EQ(table.rows[1][5], "1/1");
 }
 
 TEST(RatioTable, NoCandidatesShowNoRatio) {
-  const std::vector<std::string> row = RatioRow(ScaleRatio{});
-  ASSERT_EQ(row.size(), RatioColumns().size());
+  ScaleRatio other;
+  other.kinds = {{"points"}};
+  const RatioTable table = MakeRatioTable({ScaleRatio{}, other});
+  const std::vector<std::string>& row = table.rows[0];
+  ASSERT_EQ(row.size(), table.columns.size());
   EXPECT_EQ(row.back(), "no_candidates");
   for (std::size_t n = 0; n + 1 < row.size(); ++n) EXPECT_EQ(row[n], "-");
 }

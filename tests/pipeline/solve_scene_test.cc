@@ -37,8 +37,8 @@ TEST_P(TrifocalFreeRoom, EveryCameraIsPlacedAndRatiosAreRight) {
   ASSERT_TRUE(result) << result.error().ToString();
   EXPECT_EQ(result->poses.num_placed, 12);
   for (const ScaleRatio& ratio : room.scene.scale_ratios) {
-    EXPECT_EQ(ratio.points.candidates, 0);
-    EXPECT_EQ(ratio.lines.candidates, 0);
+    EXPECT_EQ(ratio.FindKind("points")->candidates, 0);
+    EXPECT_EQ(ratio.FindKind("lines")->candidates, 0);
   }
   const ScaleRatioEvaluation ratios =
       EvaluateScaleRatios(room.scene, room.true_poses);
@@ -72,11 +72,9 @@ TEST(SolveScene, EachKindAloneDeterminesTheScale) {
   options.pairs = "window:2";
   options.noise_px = 0.5;
   const SyntheticScene synthetic = *Simulate(options);
-  for (int kind = 0; kind < 3; ++kind) {
+  for (const std::string kind : {"points", "lines", "coplanar"}) {
     SolveOptions solve;
-    solve.scale.use_points = kind == 0;
-    solve.scale.use_lines = kind == 1;
-    solve.scale.use_coplanar = kind == 2;
+    solve.scale.features = {kind};
     solve.adjust = false;
     Scene scene = synthetic.scene;
     StageLog stages;
@@ -134,8 +132,7 @@ TEST(SolveScene, InvalidOptionsAreRefusedBeforeAnythingChanges) {
   SyntheticScene synthetic = *Simulate(SyntheticOptions());
   const Scene original = synthetic.scene;
   SolveOptions options;
-  options.scale.use_points = options.scale.use_lines = false;
-  options.scale.use_coplanar = false;
+  options.scale.features = {"colour"};
   StageLog stages;
   const auto result =
       SolveScene(&synthetic.scene, options, RunContext(), &stages);

@@ -8,7 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/scale/ratio_inliers.h"
+#include "lowlap/scale/evidence/internal/coplanar_candidates.h"
+#include "lowlap/scale/internal/uncertainty/ratio_inliers.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap {
@@ -52,9 +53,8 @@ double Median(std::vector<double> values) {
 
 struct KindCase {
   std::string name;
-  bool points, lines, coplanar;
+  std::vector<std::string> features;  // empty: all
   ScaleCriterion criterion = ScaleCriterion::kAContrario;
-  CoplanarResidual residual = CoplanarResidual::kTransfer;
   NfaForm form = NfaForm::kCalibrated;
 };
 
@@ -62,11 +62,8 @@ class EveryKind : public ::testing::TestWithParam<KindCase> {
  protected:
   static ScaleOptions Options() {
     ScaleOptions options;
-    options.use_points = GetParam().points;
-    options.use_lines = GetParam().lines;
-    options.use_coplanar = GetParam().coplanar;
+    options.features = GetParam().features;
     options.criterion = GetParam().criterion;
-    options.coplanar_residual = GetParam().residual;
     options.nfa_form = GetParam().form;
     return options;
   }
@@ -78,11 +75,15 @@ TEST_P(EveryKind, IsExactWithoutNoise) {
     const ScaleRatio ratio = Estimate(triplet.view, Options());
     EXPECT_EQ(ratio.verdict, RatioVerdict::kMeaningful);
     EXPECT_NEAR(ratio.log_ratio, triplet.true_log_ratio, 1e-4);
-    EXPECT_EQ(ratio.points.candidates > 0, GetParam().points);
-    EXPECT_EQ(ratio.lines.candidates > 0, GetParam().lines);
-    EXPECT_EQ(ratio.coplanar.candidates > 0, GetParam().coplanar);
-    EXPECT_EQ(ratio.coplanar.inliers,
-              static_cast<int>(ratio.coplanar_inliers.size()));
+    for (const std::string feature : {"points", "lines", "coplanar"}) {
+      const KindSupport* kind = ratio.FindKind(feature);
+      EXPECT_EQ(kind != nullptr && kind->candidates > 0,
+                Options().Asks(feature));
+    }
+    if (const KindSupport* pairs = ratio.FindKind("coplanar")) {
+      EXPECT_EQ(pairs->inliers,
+                static_cast<int>(ratio.coplanar_inliers.size()));
+    }
   }
 }
 
@@ -113,18 +114,14 @@ TEST_P(EveryKind, NegatesTheLogRatioWhenTheEndsAreSwapped) {
 
 INSTANTIATE_TEST_SUITE_P(
     Kinds, EveryKind,
-    ::testing::Values(KindCase{"Points", true, false, false},
-                      KindCase{"Lines", false, true, false},
-                      KindCase{"Coplanar", false, false, true},
-                      KindCase{"All", true, true, true},
-                      KindCase{"CoplanarInTheMiddleView", false, false, true,
-                               ScaleCriterion::kAContrario,
-                               CoplanarResidual::kPlane},
-                      KindCase{"AllInTheFormOfThePaper", true, true, true,
-                               ScaleCriterion::kAContrario,
-                               CoplanarResidual::kTransfer, NfaForm::kPaper},
-                      KindCase{"AllByFixedThreshold", true, true, true,
-                               ScaleCriterion::kFixedThreshold}),
+    ::testing::Values(
+        KindCase{"Points", {"points"}}, KindCase{"Lines", {"lines"}},
+        KindCase{"Coplanar", {"coplanar"}}, KindCase{"All", {}},
+        KindCase{"AllInTheFormOfThePaper",
+                 {},
+                 ScaleCriterion::kAContrario,
+                 NfaForm::kPaper},
+        KindCase{"AllByFixedThreshold", {}, ScaleCriterion::kFixedThreshold}),
     [](const auto& kind) { return kind.param.name; });
 
 TEST(ScaleEstimator, ErrorGrowsInProportionToTheNoise) {
@@ -144,6 +141,19 @@ TEST(ScaleEstimator, ErrorGrowsInProportionToTheNoise) {
   EXPECT_LT(medians[1] / medians[0], 8);
 }
 
+double WrongPairShare(const SyntheticTriplet& triplet) {
+  const auto pairs =
+      FindCoplanarCandidates(triplet.view.geometry, triplet.view.lines_ij,
+                             triplet.view.lines_jk, 10)
+          .pairs;
+  int wrong = 0;
+  for (const CoplanarPairCandidate& pair : pairs) {
+    const int a = triplet.wall_ij[pair.first], b = triplet.wall_jk[pair.last];
+    wrong += a < 0 || a != b;
+  }
+  return static_cast<double>(wrong) / static_cast<double>(pairs.size());
+}
+
 TEST(ScaleEstimator, SurvivesSeventyPercentWrongCoplanarPairs) {
   std::vector<double> errors;
   double wrong_share = 0;
@@ -152,7 +162,7 @@ TEST(ScaleEstimator, SurvivesSeventyPercentWrongCoplanarPairs) {
   for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
     const SyntheticTriplet triplet =
         MakeSyntheticTriplet(Pairs(80, 1.0, 0.45), seed);
-    wrong_share += triplet.WrongPairShare() / kTriplets;
+    wrong_share += WrongPairShare(triplet) / kTriplets;
     const ScaleRatio ratio = Estimate(triplet.view);
     meaningful += ratio.verdict == RatioVerdict::kMeaningful;
     errors.push_back(std::abs(ratio.log_ratio - triplet.true_log_ratio));
@@ -236,18 +246,18 @@ TEST(ScaleEstimator, TheOrderOfTheFeaturesChangesNothing) {
   std::reverse(view.lines.begin(), view.lines.end());
   std::reverse(view.lines_ij.begin(), view.lines_ij.end());
   std::reverse(view.lines_jk.begin(), view.lines_jk.end());
-  view.coplanar =
-      FindCoplanarCandidates(view.geometry, view.lines_ij, view.lines_jk, 10);
-  ScaleRatio after = Estimate(view);
+  const ScaleRatio after = Estimate(view);
   EXPECT_NEAR(before.log_ratio, after.log_ratio, 1e-9);
   EXPECT_NEAR(before.log_ratio_stddev, after.log_ratio_stddev, 1e-9);
   EXPECT_NEAR(before.log10_nfa, after.log10_nfa, 1e-9);
   // A sum in another order.
-  EXPECT_NEAR(before.points.information_share, after.points.information_share,
-              1e-12);
-  after.points.information_share = before.points.information_share;
-  EXPECT_EQ(before.points, after.points);
-  EXPECT_EQ(before.coplanar.inliers, after.coplanar.inliers);
+  ASSERT_EQ(before.kinds.size(), after.kinds.size());
+  for (std::size_t n = 0; n < before.kinds.size(); ++n) {
+    EXPECT_NEAR(before.kinds[n].information_share,
+                after.kinds[n].information_share, 1e-9);
+    EXPECT_EQ(before.kinds[n].inliers, after.kinds[n].inliers);
+    EXPECT_EQ(before.kinds[n].candidates, after.kinds[n].candidates);
+  }
 }
 
 // Large triplets try a subset; it must be as good as trying all.
@@ -293,8 +303,6 @@ TEST(ScaleEstimator, ReversedDirectionsAreRejectedAndCounted) {
   SyntheticTriplet triplet = MakeSyntheticTriplet(Mixed(0, 0), 2);
   TripletView& view = triplet.view;
   view.geometry.cami_from_camj.translation *= -1;
-  view.coplanar =
-      FindCoplanarCandidates(view.geometry, view.lines_ij, view.lines_jk, 10);
   const ScaleRatio ratio = Estimate(view);
   EXPECT_EQ(ratio.verdict, RatioVerdict::kNoCandidates);
   EXPECT_GE(ratio.num_rejected_negative, 100);
@@ -321,21 +329,25 @@ TEST(ScaleEstimator, BadInputIsAnError) {
 TEST(ScaleOptions, AreValidated) {
   EXPECT_TRUE(ScaleOptions().Validate());
   ScaleOptions options;
-  options.use_points = options.use_lines = options.use_coplanar = false;
+  options.features = {"points", "colours"};
+  EXPECT_FALSE(options.Validate());
+  options = {};
+  options.without = {"colours"};
+  EXPECT_FALSE(options.Validate());
+  options = {};
+  options.features = options.without = {"points"};
   EXPECT_FALSE(options.Validate());
   options = {};
   options.threshold_px = 0;
-  EXPECT_FALSE(options.Validate());
-  options = {};
-  options.num_neighbors = 0;
   EXPECT_FALSE(options.Validate());
 }
 
 // Such a ratio is written to scenes, which hold finite numbers only.
 TEST(ScaleEstimator, ARatioThatNoFeatureBearsOutHasAFiniteDeviation) {
   const SyntheticTriplet triplet = MakeSyntheticTriplet({}, 1);
-  const RatioSupport support(triplet.view, {});
-  ScaleRatio ratio = EmptyRatio(triplet.view, support);
+  const TripletEvidence evidence = testing::Gather(triplet.view);
+  const RatioSupport support(evidence);
+  ScaleRatio ratio = EmptyRatio(triplet.view, evidence);
   RefineOnInliers(triplet.view, support, {}, 0.5, &ratio);
   EXPECT_EQ(ratio.log_ratio, 0.5);
   EXPECT_EQ(ratio.log_ratio_stddev, kMaxLogRatioStddev);

@@ -7,90 +7,18 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/planes_by_pair.h"
-#include "lowlap/scale/ratio_profile.h"
+#include "lowlap/scale/evidence/internal/coplanar_lines.h"
+#include "lowlap/scale/evidence/internal/plane_points.h"
+#include "lowlap/scale/internal/planes/planes_by_pair.h"
+#include "lowlap/scale/internal/search/ratio_profile.h"
 #include "lowlap/scale/triplet_view.h"
 #include "lowlap/scene/view_graph.h"
+#include "scale/row_of_views.h"
 
 namespace lowlap {
 namespace {
 
-// Four views in a row before a tilted wall of points and lines, all pairs.
-// The scene is placed in a world that is turned and scaled as told.
-struct RowOfViews {
-  Scene scene;
-  std::map<ViewPair, double> baselines;
-
-  explicit RowOfViews(const Mat3& world_turn = Mat3::Identity(),
-                      double world_scale = 1.0) {
-    constexpr int kViews = 4, kPoints = 60, kLines = 40;
-    Intrinsic intrinsic;
-    intrinsic.width_px = 1200;
-    intrinsic.height_px = 800;
-    intrinsic.fx_px = intrinsic.fy_px = 900;
-    intrinsic.principal_point_px = {600, 400};
-    scene.intrinsics[0] = intrinsic;
-    Random random(5);
-    std::vector<RigidTransform> cams;
-    for (ViewId view = 0; view < kViews; ++view) {
-      scene.views[view].intrinsic_id = 0;
-      scene.views[view].pose_id = view;
-      const double x = 0.5 * view + 0.1 * view * view;
-      cams.push_back(RigidTransform::FromRotationAndCenter(
-          RotationFromAngleAxis({0, 0.02 * view, 0.01}) *
-              world_turn.transpose(),
-          world_scale * (world_turn * Vec3(x, 0.05 * view, 0))));
-    }
-    const auto on_wall = [&] {
-      const double x = random.Uniform(-0.8, 3.2);
-      const Vec3 point(x, random.Uniform(-1.3, 1.3), 4 + 0.4 * x);
-      return Vec3(world_scale * (world_turn * point));
-    };
-    const auto project = [&](const RigidTransform& cam, const Vec3& x) {
-      const double u = random.Gaussian(0.3);
-      return Vec2(intrinsic.Project(cam * x) + Vec2(u, random.Gaussian(0.3)));
-    };
-    for (int n = 0; n < kPoints; ++n) {
-      const Vec3 x = on_wall();
-      for (ViewId view = 0; view < kViews; ++view) {
-        scene.features[view].points_px.push_back(project(cams[view], x));
-      }
-    }
-    for (int n = 0; n < kLines; ++n) {
-      const Vec3 a = on_wall(), b = on_wall();
-      for (ViewId view = 0; view < kViews; ++view) {
-        const Vec2 start_px = project(cams[view], a);
-        scene.features[view].segments.push_back(
-            {start_px, project(cams[view], b), 0.3});
-      }
-    }
-    for (ViewId i = 0; i < kViews; ++i) {
-      for (ViewId j = i + 1; j < kViews; ++j) {
-        const RigidTransform j_from_i = cams[j] * cams[i].Inverse();
-        RelativePose pose;
-        pose.views = {i, j};
-        pose.rotation = j_from_i.rotation;
-        pose.direction = j_from_i.translation.normalized();
-        baselines[pose.views] = j_from_i.translation.norm();
-        for (FeatureIndex n = 0; n < kPoints; ++n) {
-          pose.point_inliers.push_back({n, n});
-        }
-        for (FeatureIndex n = 0; n < kLines; ++n) {
-          pose.line_inliers.push_back({n, n});
-        }
-        scene.relative_poses[pose.views] = pose;
-      }
-    }
-  }
-
-  double TrueLogRatio(const ViewTriplet& views) const {
-    const auto baseline = [&](ViewId a, ViewId b) {
-      return baselines.at({std::min(a, b), std::max(a, b)});
-    };
-    return std::log(baseline(views.middle, views.last) /
-                    baseline(views.first, views.middle));
-  }
-};
+using testing::RowOfViews;
 
 TEST(EstimateScaleRatios, FindsTheRatioOfEveryTriplet) {
   const RowOfViews row;
@@ -103,8 +31,8 @@ TEST(EstimateScaleRatios, FindsTheRatioOfEveryTriplet) {
     EXPECT_NEAR(ratio.log_ratio, row.TrueLogRatio(ratio.views),
                 4 * ratio.log_ratio_stddev);
     EXPECT_LT(ratio.log_ratio_stddev, 0.01);
-    EXPECT_GT(ratio.points.inliers, 20);
-    EXPECT_GT(ratio.coplanar.inliers, 20);
+    EXPECT_GT(ratio.FindKind("points")->inliers, 20);
+    EXPECT_GT(ratio.FindKind("coplanar")->inliers, 20);
   }
 }
 
@@ -122,7 +50,7 @@ TEST(EstimateScaleRatios, AreTheSameForAnyNumberOfThreads) {
 TEST(EstimateScaleRatios, PlanePointsHaveNoSayWhereOthersDecide) {
   const RowOfViews row;
   ScaleOptions without;
-  without.use_coplanar_points = false;
+  without.without = {"plane_points"};
   const auto a = EstimateScaleRatios(row.scene, {}, {});
   const auto b = EstimateScaleRatios(row.scene, without, {});
   ASSERT_TRUE(a.has_value() && b.has_value());
@@ -153,13 +81,15 @@ TEST(PairsOverlap, WhereverThereArePlanePoints) {
   int num_apart = 0, num_with_plane_points = 0;
   for (const double begin_px : {-100.0, 200.0, 400.0, 600.0, 700.0}) {
     const Scene scene = TwoPairs(begin_px);
-    const NormalizedFeaturesByView features = NormalizeAllFeatures(scene);
+    const SceneFeatures features(scene);
     const ViewTriplet views{0, 1, 2};
-    const bool overlap = PairsOverlap(scene, features, views);
+    const bool overlap = PairsOverlap(features, views);
     EXPECT_EQ(overlap, begin_px < 600);
-    const auto triplet = MakeTripletView(scene, features, views, {});
+    const auto triplet = MakeTripletView(features, views);
     ASSERT_TRUE(triplet.has_value());
-    const bool has_plane_points = !triplet->plane_points.empty();
+    const auto kind = PlanePointsKind().Prepare(features, {views}, {});
+    ASSERT_TRUE(kind.has_value());
+    const bool has_plane_points = (*kind)->Gather(*triplet)->size() > 0;
     EXPECT_TRUE(overlap || !has_plane_points);
     num_with_plane_points += has_plane_points;
     num_apart += !overlap;
@@ -171,7 +101,7 @@ TEST(PairsOverlap, WhereverThereArePlanePoints) {
 TEST(EstimateScaleRatios, PairsThatDoNotOverlapPayForNoSecondTest) {
   const Scene scene = TwoPairs(600);
   ScaleOptions without;
-  without.use_coplanar_points = false;
+  without.without = {"plane_points"};
   const auto a = EstimateScaleRatios(scene, {}, {});
   const auto b = EstimateScaleRatios(scene, without, {});
   ASSERT_TRUE(a.has_value() && b.has_value());
@@ -194,8 +124,9 @@ TEST(ProfileScaleRatios, AreThoseOfTheEstimatedRatios) {
                    points.end());
     }
     const auto ratios = EstimateScaleRatios(row.scene, {}, {});
-    const auto profiles = ProfileScaleRatios(
-        row.scene, FindTriplets(ViewGraph(row.scene)), {}, {});
+    const auto profiles =
+        ProfileScaleRatios(row.scene, FindTriplets(ViewGraph(row.scene)),
+                           MakeScaleEstimator({})->kinds(), {});
     ASSERT_TRUE(ratios.has_value() && profiles.has_value());
     ASSERT_EQ(profiles->size(), ratios->size());
     int with_nodes = 0;
@@ -220,8 +151,7 @@ TEST(EstimateScaleRatios, DoNotDependOnTheWorldFrame) {
   for (std::size_t n = 0; n < a->size(); ++n) {
     EXPECT_NEAR((*a)[n].log_ratio, (*b)[n].log_ratio, 1e-6);
     EXPECT_NEAR((*a)[n].log10_nfa, (*b)[n].log10_nfa, 1e-6);
-    EXPECT_EQ((*a)[n].points.inliers, (*b)[n].points.inliers);
-    EXPECT_EQ((*a)[n].coplanar.inliers, (*b)[n].coplanar.inliers);
+    EXPECT_EQ((*a)[n].NumInliers(), (*b)[n].NumInliers());
   }
 }
 
@@ -241,77 +171,16 @@ TEST(EstimateScaleRatios, WorkWhenNoFeatureIsSeenThrice) {
                 lines.end());
   }
   // 0-1 and 1-2 use slots 1 and 0.
-  const NormalizedFeaturesByView features = NormalizeAllFeatures(row.scene);
-  const auto triplet = MakeTripletView(row.scene, features, {0, 1, 2}, {});
+  const auto triplet = MakeTripletView(SceneFeatures(row.scene), {0, 1, 2});
   ASSERT_TRUE(triplet.has_value());
   EXPECT_TRUE(triplet->points.empty());
   EXPECT_TRUE(triplet->lines.empty());
-  EXPECT_GT(triplet->coplanar.pairs.size(), 30u);
+  EXPECT_GT(CoplanarLinesKind().Gather(*triplet)->size(), 30);
   const auto ratios = EstimateScaleRatios(row.scene, {}, {});
   ASSERT_TRUE(ratios.has_value());
   EXPECT_EQ((*ratios)[0].verdict, RatioVerdict::kMeaningful);
   EXPECT_NEAR((*ratios)[0].log_ratio, row.TrueLogRatio((*ratios)[0].views),
               0.02);
-}
-
-TEST(MakeTripletView, ChainsThroughTheFeaturesOfTheMiddleView) {
-  const RowOfViews row;
-  Scene scene = row.scene;
-  scene.relative_poses.at({0, 2}).point_inliers = {{4, 7}, {5, 8}, {6, 9}};
-  scene.relative_poses.at({2, 3}).point_inliers = {{9, 1}, {7, 2}, {7, 3}};
-  const NormalizedFeaturesByView features = NormalizeAllFeatures(scene);
-  const auto triplet = MakeTripletView(scene, features, {0, 2, 3}, {});
-  ASSERT_TRUE(triplet.has_value());
-  ASSERT_EQ(triplet->points.size(), 3u);
-  EXPECT_EQ(triplet->points[0].point_in_middle, 7u);
-  EXPECT_EQ(triplet->points[0].in_i, features.at(0).points[4]);
-  EXPECT_EQ(triplet->points[0].in_k, features.at(3).points[2]);
-  EXPECT_EQ(triplet->points[1].in_k, features.at(3).points[3]);
-  EXPECT_EQ(triplet->points[2].point_in_middle, 9u);
-  EXPECT_EQ(triplet->points[2].in_k, features.at(3).points[1]);
-  // The middle view may be the first of an edge.
-  const auto reversed = MakeTripletView(scene, features, {2, 0, 1}, {});
-  ASSERT_TRUE(reversed.has_value());
-  EXPECT_EQ(reversed->points.size(), 3u);
-  EXPECT_EQ(reversed->points[0].in_i, features.at(2).points[7]);
-}
-
-TEST(MakeTripletView, PerturbsThePosesByTheirCovariances) {
-  RowOfViews row;
-  const NormalizedFeaturesByView features = NormalizeAllFeatures(row.scene);
-  EXPECT_TRUE(MakeTripletView(row.scene, features, {0, 1, 2}, {})
-                  ->pose_perturbations.empty());
-  row.scene.relative_poses.at({1, 2}).covariance =
-      1e-6 * Eigen::Matrix<double, 5, 5>::Identity();
-  const auto triplet = MakeTripletView(row.scene, features, {0, 1, 2}, {});
-  ASSERT_EQ(triplet->pose_perturbations.size(), 5u);
-  for (const TripletGeometry& moved : triplet->pose_perturbations) {
-    EXPECT_EQ(moved.cami_from_camj.rotation,
-              triplet->geometry.cami_from_camj.rotation);
-    const double turned =
-        RotationAngleBetween(moved.camk_from_camj.rotation,
-                             triplet->geometry.camk_from_camj.rotation);
-    const double tilted =
-        AngleBetween(moved.camk_from_camj.translation,
-                     triplet->geometry.camk_from_camj.translation);
-    EXPECT_NEAR(std::hypot(turned, tilted), 1e-3, 1e-6);
-  }
-}
-
-TEST(MakeTripletView, MissingPartsAreErrors) {
-  const RowOfViews row;
-  NormalizedFeaturesByView features = NormalizeAllFeatures(row.scene);
-  EXPECT_EQ(MakeTripletView(row.scene, features, {0, 1, 9}, {}).error().code,
-            ErrorCode::kInvalidArgument);
-  Scene scene = row.scene;
-  scene.relative_poses.at({0, 1}).point_inliers.push_back({0, 1000});
-  EXPECT_EQ(MakeTripletView(scene, features, {0, 1, 2}, {}).error().code,
-            ErrorCode::kInvalidScene);
-  EXPECT_FALSE(EstimateScaleRatios(scene, {}, {}).has_value());
-  scene = row.scene;
-  scene.views[1].intrinsic_id = kInvalidId;
-  EXPECT_EQ(MakeTripletView(scene, features, {0, 1, 2}, {}).error().code,
-            ErrorCode::kInvalidArgument);
 }
 
 TEST(EstimateScaleRatios, CanBeCancelled) {

@@ -4,7 +4,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/plane_points.h"
+#include "lowlap/scale/evidence/internal/plane_points.h"
 #include "lowlap/scale/triplet_view.h"
 #include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
@@ -42,15 +42,18 @@ struct SyntheticPlanes {
     return FindPlanes(DepthSamples(geometry.camk_from_camj, kFocalPx, kFocalPx,
                                    points_jk, lines_jk));
   }
-  /// With the plane points alone.
+  /// Without features: its evidence is that of Kinds().
   TripletView View() const {
     TripletView view;
     view.views = {0, 1, 2};
     view.geometry = geometry;
     view.image_area_px2 = 1080 * 720;
     view.image_diagonal_px = kDiagonalPx;
-    view.plane_points = Points();
     return view;
+  }
+  EvidenceKinds Kinds() const {
+    return {std::make_shared<PlanePointsKind>(
+        PlanesByPair{{{1, 0}, PlanesIj()}, {{1, 2}, PlanesJk()}})};
   }
   std::vector<PlanePoint> Points() const {
     return FindPlanePoints(geometry, PlanesIj(), PlanesJk());

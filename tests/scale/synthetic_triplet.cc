@@ -6,7 +6,7 @@
 
 #include "lowlap/core/random.h"
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/pose_uncertainty.h"
+#include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
 #include "scale/synthetic_room.h"
 
 namespace lowlap::testing {
@@ -36,10 +36,6 @@ class SyntheticTripletMaker {
                     &triplet.wall_ij);
     AddMatchedLines(k_from_j_, options_.num_lines_jk, &segment, &view.lines_jk,
                     &triplet.wall_jk);
-    if (options_.want_coplanar) {
-      view.coplanar = FindCoplanarCandidates(view.geometry, view.lines_ij,
-                                             view.lines_jk, 10);
-    }
     return triplet;
   }
 
@@ -136,7 +132,7 @@ class SyntheticTripletMaker {
       };
       const Segment3 in_i = options_.pure_noise ? moved(i_from_j_) : segment;
       const Segment3 in_k = wrong ? moved(k_from_j_) : segment;
-      TrifocalLine line;
+      TripletLine line;
       line.segment_in_middle = static_cast<FeatureIndex>(n);
       line.in_i = Observe(i_from_j_, in_i);
       line.in_j = Observe(RigidTransform(), segment);
@@ -180,14 +176,12 @@ TripletView SwapEnds(const TripletView& view) {
   TripletView swapped = view;
   swapped.views = {view.views.last, view.views.middle, view.views.first};
   swapped.geometry = view.geometry.Swapped();
-  for (TrifocalPoint& point : swapped.points) std::swap(point.in_i, point.in_k);
-  for (TrifocalLine& line : swapped.lines) std::swap(line.in_i, line.in_k);
+  for (TripletPoint& point : swapped.points) std::swap(point.in_i, point.in_k);
+  for (TripletLine& line : swapped.lines) std::swap(line.in_i, line.in_k);
   for (TripletGeometry& geometry : swapped.pose_perturbations) {
     geometry = geometry.Swapped();
   }
   std::swap(swapped.lines_ij, swapped.lines_jk);
-  swapped.coplanar = FindCoplanarCandidates(swapped.geometry, swapped.lines_ij,
-                                            swapped.lines_jk, 10);
   return swapped;
 }
 

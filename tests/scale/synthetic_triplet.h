@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "lowlap/scale/evidence/evidence_registry.h"
+#include "lowlap/scale/internal/criterion/ratio_support.h"
 #include "lowlap/scale/triplet_view.h"
 
 namespace lowlap::testing {
@@ -20,7 +23,6 @@ struct SyntheticTripletOptions {
   bool pure_noise = false;
   double rotation_error_deg = 0;
   double direction_error_deg = 0;
-  bool want_coplanar = true;
 };
 
 struct SyntheticTriplet {
@@ -29,21 +31,18 @@ struct SyntheticTriplet {
   /// Wall of each line of view.lines_ij and lines_jk; -1: on none.
   std::vector<int> wall_ij;
   std::vector<int> wall_jk;
-
-  double WrongPairShare() const {
-    int wrong = 0;
-    for (const CoplanarPairCandidate& pair : view.coplanar.pairs) {
-      const int a = wall_ij[pair.first], b = wall_jk[pair.last];
-      wrong += a < 0 || a != b;
-    }
-    return static_cast<double>(wrong) / view.coplanar.pairs.size();
-  }
 };
 
 /// What three cameras in a SyntheticRoom see of it, with noise, wrong matches
 /// and errors of the relative poses.
 SyntheticTriplet MakeSyntheticTriplet(const SyntheticTripletOptions& options,
                                       std::uint64_t seed);
+
+/// What the built-in kinds of these words say; all kinds without words.
+inline TripletEvidence Gather(const TripletView& view,
+                              const std::vector<std::string>& features = {}) {
+  return GatherEvidence(*EvidenceRegistry::BuiltIn().Make(features, {}), view);
+}
 
 /// The same triplet read from the other end.
 TripletView SwapEnds(const TripletView& view);

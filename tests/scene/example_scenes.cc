@@ -113,9 +113,9 @@ Scene FullScene() {
   ratio.log_ratio_stddev = 1e-3;
   ratio.log10_nfa = -20.5;
   ratio.second_mode = RatioMode{0.1 + 0.2, -3.5};
-  ratio.points = {10, 8, -12.25, 0.5, 0.7};
-  ratio.lines = {4, 3, -8.25, 1.5, 0.3};
-  ratio.coplanar = {20, 5, 0, 2};
+  ratio.kinds = {{"points", 10, 8, -12.25, 0.5, 0.7},
+                 {"lines", 4, 3, -8.25, 1.5, 0.3},
+                 {"coplanar", 20, 5, 0, 2, 0, 3}};
   ratio.num_rejected_negative = 3;
   ratio.coplanar_inliers = {{0, 1}, {5, 2}};
   scene.scale_ratios = {ratio};

@@ -101,7 +101,7 @@ TEST(Scene, EqualityNoticesEveryMember) {
   }));
   EXPECT_TRUE(differs([](Scene& s) { s.point_tracks.erase(0); }));
   EXPECT_TRUE(differs([](Scene& s) { s.line_tracks.erase(2); }));
-  EXPECT_TRUE(differs([](Scene& s) { s.scale_ratios[0].lines.inliers++; }));
+  EXPECT_TRUE(differs([](Scene& s) { s.scale_ratios[0].kinds[1].inliers++; }));
   EXPECT_TRUE(
       differs([](Scene& s) { s.structure[0].observations[0].feature++; }));
   EXPECT_TRUE(differs([](Scene& s) { s.line_structure[2].line.moment *= 2; }));

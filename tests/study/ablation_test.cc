@@ -71,7 +71,7 @@ TEST(Ablation, HasTheCasesOfThePaper) {
             Find(ablation->criteria, "a contrario").errors.position.mean);
   EXPECT_NE(all.errors.position.mean,
             Find(ablation->criteria, "9 px").errors.position.mean);
-  EXPECT_FALSE(Find(ablation->features, "coplanar").scale.use_points);
+  EXPECT_FALSE(Find(ablation->features, "coplanar").scale.Asks("points"));
   const AblationCase& adjusted = Find(ablation->features, "all + adjustment");
   EXPECT_TRUE(adjusted.adjusted);
   EXPECT_LT(adjusted.errors.position.mean, all.errors.position.mean);

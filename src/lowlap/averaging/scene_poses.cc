@@ -73,9 +73,7 @@ std::set<ViewTriplet> WeakRatios(const Scene& scene,
   std::set<ViewTriplet> weak;
   for (const ScaleRatio& ratio : scene.scale_ratios) {
     const ViewTriplet& views = ratio.views;
-    const bool is_supported = ratio.points.inliers + ratio.lines.inliers >= 2 ||
-                              ratio.coplanar.inliers >= 3;
-    if (ratio.verdict == RatioVerdict::kNotMeaningful && is_supported &&
+    if (ratio.verdict == RatioVerdict::kNotMeaningful && ratio.HasAgreement() &&
         unplaced.count(views.first) + unplaced.count(views.middle) +
                 unplaced.count(views.last) >
             0) {

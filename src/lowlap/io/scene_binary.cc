@@ -4,9 +4,11 @@
 
 #include <array>
 #include <string_view>
+#include <vector>
 
 #include "lowlap/core/atomic_file.h"
 #include "lowlap/io/internal/byte_archive.h"
+#include "lowlap/io/internal/old_scale_ratios.h"
 #include "lowlap/io/internal/scale_ratio_records.h"
 #include "lowlap/io/internal/scene_records.h"
 #include "lowlap/io/internal/transfer.h"
@@ -20,12 +22,21 @@ namespace {
 constexpr std::string_view kMagic("\x89LOWLAP\n", 8);
 constexpr std::uint32_t kVersion = 4;
 constexpr std::uint32_t kOldestVersion = 2;
+// Scale ratios had kinds of evidence of their own before this version.
+constexpr std::uint32_t kFirstWithKinds = 4;
 
-// In the order of the file; all are always there. Versions 3 and 4 added the
-// last two, one each.
-constexpr std::array<std::string_view, 15> kSections = {
-    "ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT", "RELP",
-    "PTRK", "LTRK", "RATI", "LINE", "COPL", "RATD", "GIVN"};
+// In the order of the file; all are always there, and then a last one.
+constexpr std::array<std::string_view, 13> kSections = {
+    "ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT",
+    "RELP", "PTRK", "LTRK", "RATI", "LINE", "COPL"};
+
+// The sections of a version, in their order.
+std::vector<std::string_view> SectionsOf(std::uint32_t version) {
+  std::vector<std::string_view> sections(kSections.begin(), kSections.end());
+  if (version == 3) sections.push_back("RATD");
+  if (version == 4) sections.push_back("GIVN");
+  return sections;
+}
 
 std::uint32_t Crc32(std::string_view bytes) {
   return static_cast<std::uint32_t>(
@@ -61,15 +72,24 @@ void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
     TransferMap(archive, scene.line_structure, kTransferLine);
   } else if (tag == "COPL") {
     TransferVector(archive, scene.coplanar_pairs, 8, kTransferMatch);
-  } else if (tag == "RATD") {
-    TransferRatioDetails(archive, scene.scale_ratios);
   } else if (tag == "GIVN") {
     TransferMap(archive, scene.given_intrinsics, kTransferIntrinsic);
   }
 }
 
-void ReadSection(std::string_view tag, ByteReader& file, std::size_t size,
-                 Scene& scene) {
+void ReadPayload(std::string_view tag, std::uint32_t version,
+                 ByteReader& section, Scene& scene) {
+  if (tag == "RATD") {
+    ReadOldRatioDetails(section, scene.scale_ratios);
+  } else if (tag == "RATI" && version < kFirstWithKinds) {
+    ReadOldScaleRatios(section, scene.scale_ratios);
+  } else {
+    TransferSection(tag, section, scene);
+  }
+}
+
+void ReadSection(std::string_view tag, std::uint32_t version, ByteReader& file,
+                 std::size_t size, Scene& scene) {
   const std::string_view stored_tag = file.Take(tag.size());
   const std::string name(tag);
   if (stored_tag != tag) file.Fail("section " + name + " is missing");
@@ -86,7 +106,7 @@ void ReadSection(std::string_view tag, ByteReader& file, std::size_t size,
     file.Fail("section " + name + " is damaged: its checksum is wrong");
   }
   ByteReader section(payload, "section " + name + ", ", offset);
-  TransferSection(tag, section, scene);
+  ReadPayload(tag, version, section, scene);
   if (section.BytesLeft() > 0) section.Fail("the section is too long");
 }
 
@@ -106,13 +126,13 @@ Scene ReadSections(const std::string& bytes) {
                         "byte " + std::to_string(kMagic.size())}};
   }
   file.Integer(section_count);
-  const std::size_t num_sections = kSections.size() - (kVersion - version);
-  if (section_count != num_sections) {
+  const std::vector<std::string_view> sections = SectionsOf(version);
+  if (section_count != sections.size()) {
     file.Fail("the number of sections is wrong");
   }
   Scene scene;
-  for (std::size_t n = 0; n < num_sections; ++n) {
-    ReadSection(kSections[n], file, bytes.size(), scene);
+  for (const std::string_view tag : sections) {
+    ReadSection(tag, version, file, bytes.size(), scene);
   }
   if (file.BytesLeft() > 0) file.Fail("something follows the last section");
   return scene;
@@ -156,9 +176,10 @@ Result<std::string> FormatSceneBinary(const Scene& scene) {
   }
   std::string bytes(kMagic);
   bytes += Encoded(kVersion);
-  bytes += Encoded(static_cast<std::uint32_t>(kSections.size()));
+  const std::vector<std::string_view> sections = SectionsOf(kVersion);
+  bytes += Encoded(static_cast<std::uint32_t>(sections.size()));
   std::string payload;
-  for (const std::string_view tag : kSections) {
+  for (const std::string_view tag : sections) {
     payload.clear();
     ByteWriter writer(payload);
     TransferSection(tag, writer, scene);

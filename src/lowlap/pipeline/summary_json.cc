@@ -32,11 +32,9 @@ Json RatioJson(const ScaleRatio& ratio) {
       {"ratio", std::exp(ratio.log_ratio)},
       {"log_ratio_stddev", ratio.log_ratio_stddev},
       {"log_ratio_interval_95", {ratio.IntervalLow(), ratio.IntervalHigh()}},
-      {"log10_nfa", ratio.log10_nfa},
-      {"points", KindJson(ratio.points)},
-      {"lines", KindJson(ratio.lines)},
-      {"coplanar", KindJson(ratio.coplanar)},
-      {"rejected_negative", ratio.num_rejected_negative}};
+      {"log10_nfa", ratio.log10_nfa}};
+  for (const KindSupport& kind : ratio.kinds) json[kind.kind] = KindJson(kind);
+  json["rejected_negative"] = ratio.num_rejected_negative;
   json["second_mode"] = nullptr;
   if (ratio.second_mode) {
     json["second_mode"] = {{"log_ratio", ratio.second_mode->log_ratio},

@@ -1,11 +1,11 @@
 #include "lowlap/scale/scale_estimator.h"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include "lowlap/geometry/rotation.h"
-#include "lowlap/scale/a_contrario_scale.h"
-#include "lowlap/scale/fixed_threshold_scale.h"
+#include "lowlap/scale/evidence/evidence_registry.h"
 
 namespace lowlap {
 namespace {
@@ -15,24 +15,6 @@ bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
 bool IsUnitTransform(const RigidTransform& transform) {
   return RotationDefect(transform.rotation) < 1e-6 &&
          std::abs(transform.translation.norm() - 1.0) < 1e-6;
-}
-
-}  // namespace
-
-Status ScaleOptions::Validate() const {
-  if (!use_points && !use_lines && !use_coplanar) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "no kind of feature is enabled for the scale ratios");
-  }
-  if (!IsPositive(threshold_px)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "the inlier threshold must be positive");
-  }
-  if (num_neighbors < 1) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "the number of neighbours must be at least 1");
-  }
-  return {};
 }
 
 Status CheckTriplet(const TripletView& triplet) {
@@ -53,12 +35,52 @@ Status CheckTriplet(const TripletView& triplet) {
   return {};
 }
 
+}  // namespace
+
+bool ScaleOptions::Asks(const std::string& feature) const {
+  return features.empty() ||
+         std::find(features.begin(), features.end(), feature) != features.end();
+}
+
+Status ScaleOptions::Validate() const {
+  const auto kinds = EvidenceRegistry::BuiltIn().Make(features, without);
+  if (!kinds) return tl::unexpected<Error>(kinds.error());
+  if (!IsPositive(threshold_px)) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "the inlier threshold must be positive");
+  }
+  return {};
+}
+
+ScaleEstimator::ScaleEstimator(EvidenceKinds kinds)
+    : kinds_(std::move(kinds)) {}
+
+Result<ScaleRatio> ScaleEstimator::Estimate(const TripletView& triplet) const {
+  if (const Status status = CheckTriplet(triplet); !status) {
+    return tl::unexpected<Error>(status.error());
+  }
+  return Estimate(triplet, GatherEvidence(kinds_, triplet));
+}
+
+Result<ScaleRatio> ScaleEstimator::Estimate(
+    const TripletView& triplet, const TripletEvidence& evidence) const {
+  if (const Status status = CheckTriplet(triplet); !status) {
+    return tl::unexpected<Error>(status.error());
+  }
+  return Judge(triplet, evidence);
+}
+
 std::unique_ptr<ScaleEstimator> MakeScaleEstimator(
     const ScaleOptions& options) {
+  auto kinds =
+      EvidenceRegistry::BuiltIn().Make(options.features, options.without);
   if (options.criterion == ScaleCriterion::kFixedThreshold) {
-    return std::make_unique<FixedThresholdScaleEstimator>(options);
+    return std::make_unique<FixedThresholdScaleEstimator>(
+        std::move(*kinds), options.threshold_px, options.nfa_form,
+        options.search);
   }
-  return std::make_unique<AContrarioScaleEstimator>(options);
+  return std::make_unique<AContrarioScaleEstimator>(
+      std::move(*kinds), options.nfa_form, options.search);
 }
 
 }  // namespace lowlap

@@ -1,26 +1,35 @@
 #include "lowlap/scale/scale_ratios.h"
 
-#include "lowlap/scale/scale_estimator.h"
-#include "lowlap/scale/triplet_tests.h"
+#include "lowlap/scale/internal/triplet_rounds.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
+
+Result<std::vector<ScaleRatio>> EstimateScaleRatios(
+    const Scene& scene, const std::vector<ViewTriplet>& triplets,
+    const ScaleEstimator& estimator, const RunContext& context) {
+  return TestTriplets<ScaleRatio>(
+      scene, triplets, estimator.kinds(), context, "scale ratios",
+      [&](const TripletView& triplet, const TripletEvidence& evidence) {
+        return estimator.Estimate(triplet, evidence);
+      });
+}
+
+Result<std::vector<ScaleRatio>> EstimateScaleRatios(
+    const Scene& scene, const std::vector<ViewTriplet>& triplets,
+    const ScaleOptions& options, const RunContext& context) {
+  if (const Status status = options.Validate(); !status) {
+    return tl::unexpected<Error>(status.error());
+  }
+  return EstimateScaleRatios(scene, triplets, *MakeScaleEstimator(options),
+                             context);
+}
 
 Result<std::vector<ScaleRatio>> EstimateScaleRatios(const Scene& scene,
                                                     const ScaleOptions& options,
                                                     const RunContext& context) {
   return EstimateScaleRatios(scene, FindTriplets(ViewGraph(scene)), options,
                              context);
-}
-
-Result<std::vector<ScaleRatio>> EstimateScaleRatios(
-    const Scene& scene, const std::vector<ViewTriplet>& triplets,
-    const ScaleOptions& options, const RunContext& context) {
-  return TestTriplets<ScaleRatio>(
-      scene, triplets, options, context, "scale ratios",
-      [](const TripletView& triplet, const ScaleOptions& of_test) {
-        return MakeScaleEstimator(of_test)->Estimate(triplet);
-      });
 }
 
 }  // namespace lowlap

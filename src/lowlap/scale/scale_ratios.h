@@ -4,28 +4,31 @@
 
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
+#include "lowlap/scale/scale_estimator.h"
 #include "lowlap/scale/scale_options.h"
 #include "lowlap/scene/scale_ratio.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
 
-/// The ratio of every triplet of the scene, in the order of FindTriplets
-/// (scene/view_graph.h), including those that are not meaningful or have no
-/// candidates (see their verdict). Triplets that are not meaningful by points,
-/// lines and pairs are tested a second time with plane points
-/// (ScaleOptions::use_coplanar_points). Triplets with a view without an
-/// intrinsic or features have no candidates. The same for any number of
-/// threads.
+/// The ratios of the triplets, in their order, including those that are not
+/// meaningful or have no candidates (see their verdict). Kinds of evidence of
+/// EvidenceRound::kUndecided are asked in a second test of those that are not
+/// meaningful without. Triplets with a view without an intrinsic or features
+/// have no candidates. The same for any number of threads.
 ///
-/// Errors: invalid options, those of MakeTripletView, kCancelled.
-Result<std::vector<ScaleRatio>> EstimateScaleRatios(const Scene& scene,
-                                                    const ScaleOptions& options,
-                                                    const RunContext& context);
+/// Errors: those of MakeTripletView and the estimator, kCancelled.
+Result<std::vector<ScaleRatio>> EstimateScaleRatios(
+    const Scene& scene, const std::vector<ViewTriplet>& triplets,
+    const ScaleEstimator& estimator, const RunContext& context);
 
-/// The same for the given triplets only, in their order.
+/// The same with the estimator that the options name, of the given triplets or
+/// of all (FindTriplets of scene/view_graph.h). Errors: invalid options too.
 Result<std::vector<ScaleRatio>> EstimateScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
     const ScaleOptions& options, const RunContext& context);
+Result<std::vector<ScaleRatio>> EstimateScaleRatios(const Scene& scene,
+                                                    const ScaleOptions& options,
+                                                    const RunContext& context);
 
 }  // namespace lowlap

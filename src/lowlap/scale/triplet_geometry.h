@@ -27,7 +27,7 @@ struct TripletGeometry {
 };
 
 /// A point matched in (i, j) and in (j, k); normalised coordinates, z = 1.
-struct TrifocalPoint {
+struct TripletPoint {
   FeatureIndex point_in_middle = 0;
   Vec3 in_i = Vec3::UnitZ();
   Vec3 in_j = Vec3::UnitZ();
@@ -42,7 +42,7 @@ struct ObservedSegment {
 };
 
 /// A line matched in (i, j) and in (j, k).
-struct TrifocalLine {
+struct TripletLine {
   FeatureIndex segment_in_middle = 0;
   ObservedSegment in_i;
   ObservedSegment in_j;
@@ -77,6 +77,6 @@ inline constexpr double kMaxLogRatioStddev = 1.0;
 /// The same for a coplanar pair. Most pairs are not coplanar, and those that
 /// say little agree with any ratio, so that they drown the others: on simulated
 /// rooms the NFA falls as this limit is lowered from 1 to 0.05.
-inline constexpr double kMaxCoplanarLogRatioStddev = 0.05;
+inline constexpr double kMaxPlaneLogRatioStddev = 0.05;
 
 }  // namespace lowlap

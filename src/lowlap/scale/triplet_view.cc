@@ -4,9 +4,8 @@
 #include <string>
 #include <utility>
 
-#include "lowlap/scale/broken_lines.h"
-#include "lowlap/scale/planes_by_pair.h"
-#include "lowlap/scale/pose_uncertainty.h"
+#include "lowlap/scale/internal/fragmented_segments.h"
+#include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
 
 namespace lowlap {
 namespace {
@@ -70,27 +69,6 @@ void Chain(const std::vector<MiddleMatch>& ij,
   }
 }
 
-std::vector<PlanePoint> PlanePointsOf(const Scene& scene,
-                                      const NormalizedFeaturesByView& features,
-                                      const TripletView& triplet,
-                                      const PlanesByPair* planes) {
-  const ViewTriplet& views = triplet.views;
-  PairPlanes found[2];
-  const PairPlanes* used[2];
-  for (const int n : {0, 1}) {
-    const ViewId neighbor = n == 0 ? views.first : views.last;
-    const auto it = planes == nullptr ? PlanesByPair::const_iterator()
-                                      : planes->find({views.middle, neighbor});
-    used[n] = &found[n];
-    if (planes != nullptr && it != planes->end()) {
-      used[n] = &it->second;
-    } else {
-      found[n] = PlanesOfPair(scene, features, views.middle, neighbor);
-    }
-  }
-  return FindPlanePoints(triplet.geometry, *used[0], *used[1]);
-}
-
 ObservedSegment Observe(const NormalizedFeatures& features,
                         const ViewFeatures& raw,
                         const std::vector<FeatureIndex>& pieces) {
@@ -104,21 +82,22 @@ ObservedSegment Observe(const NormalizedFeatures& features,
 
 }  // namespace
 
-NormalizedFeaturesByView NormalizeAllFeatures(const Scene& scene) {
-  NormalizedFeaturesByView normalized;
+SceneFeatures::SceneFeatures(const Scene& of_scene) : scene(of_scene) {
   for (const auto& [view, features] : scene.features) {
     const Intrinsic* intrinsic = scene.FindIntrinsic(view);
     if (intrinsic == nullptr) continue;
     normalized.emplace(view, NormalizeFeatures(features, *intrinsic));
   }
-  return normalized;
 }
 
-Result<TripletView> MakeTripletView(const Scene& scene,
-                                    const NormalizedFeaturesByView& features,
-                                    const ViewTriplet& views,
-                                    const ScaleOptions& options,
-                                    const PlanesByPair* planes) {
+bool SceneFeatures::HasAll(const ViewTriplet& views) const {
+  return normalized.count(views.first) > 0 &&
+         normalized.count(views.middle) > 0 && normalized.count(views.last) > 0;
+}
+
+Result<TripletView> MakeTripletView(const SceneFeatures& features,
+                                    const ViewTriplet& views) {
+  const Scene& scene = features.scene;
   const std::string name = "triplet (" + std::to_string(views.first) + ", " +
                            std::to_string(views.middle) + ", " +
                            std::to_string(views.last) + ")";
@@ -127,23 +106,13 @@ Result<TripletView> MakeTripletView(const Scene& scene,
     return MakeError(ErrorCode::kInvalidArgument,
                      name + ": the middle view has no intrinsic");
   }
-  static const NormalizedFeatures kNoFeatures;
-  static const ViewFeatures kNoRaw;
-  const auto normalized_of = [&](ViewId view) {
-    const auto it = features.find(view);
-    return it == features.end() ? &kNoFeatures : &it->second;
-  };
-  const auto raw_of = [&](ViewId view) {
-    const auto it = scene.features.find(view);
-    return it == scene.features.end() ? &kNoRaw : &it->second;
-  };
   Neighbor neighbors[2];
   for (int n = 0; n < 2; ++n) {
     const ViewId view = n == 0 ? views.first : views.last;
     Neighbor& neighbor = neighbors[n];
     neighbor.edge = scene.FindRelativePose(view, views.middle);
-    if (neighbor.edge == nullptr || features.count(view) == 0 ||
-        features.count(views.middle) == 0) {
+    if (neighbor.edge == nullptr || features.normalized.count(view) == 0 ||
+        features.normalized.count(views.middle) == 0) {
       return MakeError(ErrorCode::kInvalidArgument,
                        name +
                            ": a relative pose, or the normalised features "
@@ -156,13 +125,13 @@ Result<TripletView> MakeTripletView(const Scene& scene,
           points);
       if (!status) return tl::unexpected<Error>(status.error());
     }
-    neighbor.features = normalized_of(view);
-    neighbor.raw = raw_of(view);
+    neighbor.features = &features.normalized.at(view);
+    neighbor.raw = &scene.features.at(view);
     neighbor.middle_is_first = neighbor.edge->views.first == views.middle;
   }
   const auto& [i, k] = neighbors;
-  const NormalizedFeatures& middle = *normalized_of(views.middle);
-  const ViewFeatures& middle_raw = *raw_of(views.middle);
+  const NormalizedFeatures& middle = features.normalized.at(views.middle);
+  const ViewFeatures& middle_raw = scene.features.at(views.middle);
 
   TripletView triplet;
   triplet.views = views;
@@ -182,27 +151,21 @@ Result<TripletView> MakeTripletView(const Scene& scene,
   triplet.image_area_px2 = intrinsic->ImageArea();
   triplet.image_diagonal_px = intrinsic->ImageDiagonal();
 
-  if (options.use_points) {
-    triplet.points.reserve(
-        std::min(i.edge->point_inliers.size(), k.edge->point_inliers.size()));
-    const auto is_valid = [](const Vec3& point) { return point.z() > 0; };
-    Chain(FromMiddle(i.edge->point_inliers, i.middle_is_first),
-          FromMiddle(k.edge->point_inliers, k.middle_is_first),
-          middle.points.size(),
-          [&](const MiddleMatch& ij, const MiddleMatch& jk) {
-            const TrifocalPoint point{
-                ij.middle, i.features->points[ij.neighbor],
-                middle.points[ij.middle], k.features->points[jk.neighbor]};
-            if (is_valid(point.in_i) && is_valid(point.in_j) &&
-                is_valid(point.in_k)) {
-              triplet.points.push_back(point);
-            }
-          });
-  }
-  if (options.use_coplanar && options.use_coplanar_points) {
-    triplet.plane_points = PlanePointsOf(scene, features, triplet, planes);
-  }
-  if (!options.use_lines && !options.use_coplanar) return triplet;
+  triplet.points.reserve(
+      std::min(i.edge->point_inliers.size(), k.edge->point_inliers.size()));
+  const auto is_valid = [](const Vec3& point) { return point.z() > 0; };
+  Chain(FromMiddle(i.edge->point_inliers, i.middle_is_first),
+        FromMiddle(k.edge->point_inliers, k.middle_is_first),
+        middle.points.size(),
+        [&](const MiddleMatch& ij, const MiddleMatch& jk) {
+          const TripletPoint point{ij.middle, i.features->points[ij.neighbor],
+                                   middle.points[ij.middle],
+                                   k.features->points[jk.neighbor]};
+          if (is_valid(point.in_i) && is_valid(point.in_j) &&
+              is_valid(point.in_k)) {
+            triplet.points.push_back(point);
+          }
+        });
   const std::vector<MiddleMatch> lines_ij =
       FromMiddle(i.edge->line_inliers, i.middle_is_first);
   const std::vector<MiddleMatch> lines_jk =
@@ -216,28 +179,21 @@ Result<TripletView> MakeTripletView(const Scene& scene,
     const MatchedPieces& edge = matched.edges[index];
     const ObservedSegment in_i = Observe(*i.features, *i.raw, edge.in_i);
     const ObservedSegment in_j = Observe(middle, middle_raw, edge.in_j);
-    if (options.use_lines && !edge.in_k.empty()) {
+    if (!edge.in_k.empty()) {
       triplet.lines.push_back({lines_ij[n].middle, in_i, in_j,
                                Observe(*k.features, *k.raw, edge.in_k)});
     }
-    if (options.use_coplanar) {
-      triplet.lines_ij.push_back({lines_ij[n].middle, in_j, in_i});
-    }
+    triplet.lines_ij.push_back({lines_ij[n].middle, in_j, in_i});
   }
-  if (options.use_coplanar) {
-    is_new.assign(matched.edges.size(), true);
-    for (std::size_t n = 0; n < lines_jk.size(); ++n) {
-      const int index = matched.edge_of_jk[n];
-      if (!is_new[index]) continue;
-      is_new[index] = false;
-      const MatchedPieces& edge = matched.edges[index];
-      triplet.lines_jk.push_back({lines_jk[n].middle,
-                                  Observe(middle, middle_raw, edge.in_j),
-                                  Observe(*k.features, *k.raw, edge.in_k)});
-    }
-    triplet.coplanar =
-        FindCoplanarCandidates(triplet.geometry, triplet.lines_ij,
-                               triplet.lines_jk, options.num_neighbors);
+  is_new.assign(matched.edges.size(), true);
+  for (std::size_t n = 0; n < lines_jk.size(); ++n) {
+    const int index = matched.edge_of_jk[n];
+    if (!is_new[index]) continue;
+    is_new[index] = false;
+    const MatchedPieces& edge = matched.edges[index];
+    triplet.lines_jk.push_back({lines_jk[n].middle,
+                                Observe(middle, middle_raw, edge.in_j),
+                                Observe(*k.features, *k.raw, edge.in_k)});
   }
   return triplet;
 }

@@ -1,5 +1,7 @@
 #include "lowlap/scene/scale_ratio.h"
 
+#include <algorithm>
+
 namespace lowlap {
 
 const char* RatioVerdictName(RatioVerdict verdict) {
@@ -14,13 +16,43 @@ const char* RatioVerdictName(RatioVerdict verdict) {
   return "unknown";
 }
 
+bool operator==(const KindSupport& a, const KindSupport& b) {
+  return a.kind == b.kind && a.candidates == b.candidates &&
+         a.inliers == b.inliers && a.log10_nfa == b.log10_nfa &&
+         a.threshold_px == b.threshold_px &&
+         a.information_share == b.information_share &&
+         a.min_agreeing == b.min_agreeing;
+}
+
+const KindSupport* ScaleRatio::FindKind(const std::string& kind) const {
+  for (const KindSupport& support : kinds) {
+    if (support.kind == kind) return &support;
+  }
+  return nullptr;
+}
+
+int ScaleRatio::NumInliers() const {
+  int inliers = 0;
+  for (const KindSupport& support : kinds) inliers += support.inliers;
+  return inliers;
+}
+
+bool ScaleRatio::HasAgreement() const {
+  return std::any_of(kinds.begin(), kinds.end(), [&](const KindSupport& of) {
+    int inliers = 0;
+    for (const KindSupport& support : kinds) {
+      if (support.min_agreeing == of.min_agreeing) inliers += support.inliers;
+    }
+    return inliers >= of.min_agreeing;
+  });
+}
+
 bool operator==(const ScaleRatio& a, const ScaleRatio& b) {
   return a.views == b.views && a.verdict == b.verdict &&
          a.log_ratio == b.log_ratio &&
          a.log_ratio_stddev == b.log_ratio_stddev &&
          a.log10_nfa == b.log10_nfa && a.second_mode == b.second_mode &&
-         a.points == b.points && a.lines == b.lines &&
-         a.coplanar == b.coplanar &&
+         a.kinds == b.kinds &&
          a.num_rejected_negative == b.num_rejected_negative &&
          a.coplanar_inliers == b.coplanar_inliers;
 }

@@ -16,21 +16,22 @@ enum class RatioVerdict {
 
 const char* RatioVerdictName(RatioVerdict verdict);
 
-/// Counts of one kind of constraint in one triplet.
+/// What one kind of evidence says in one triplet.
 struct KindSupport {
+  std::string kind;  // its name; see EvidenceKind
   int candidates = 0;
   int inliers = 0;
-  double log10_nfa = 0;     // at the chosen ratio; 0 = nothing to say
-  double threshold_px = 0;  // the a-contrario threshold of the inliers
+  double log10_nfa = 0;  // at the chosen ratio; 0 = nothing to say
+  /// The a-contrario threshold of the inliers, in the kind's own unit (pixels
+  /// as a rule).
+  double threshold_px = 0;
   /// Of the information on the ratio (1 / variance, without what the relative
   /// poses add). The kinds' add up to 1; 0 for all: not known.
   double information_share = 0;
+  /// Inliers from which on they bear each other out.
+  int min_agreeing = 2;
 
-  friend bool operator==(const KindSupport& a, const KindSupport& b) {
-    return a.candidates == b.candidates && a.inliers == b.inliers &&
-           a.log10_nfa == b.log10_nfa && a.threshold_px == b.threshold_px &&
-           a.information_share == b.information_share;
-  }
+  friend bool operator==(const KindSupport& a, const KindSupport& b);
 };
 
 /// A ratio that could be meant instead.
@@ -64,15 +65,22 @@ struct ScaleRatio {
   double log_ratio = 0;
   double log_ratio_stddev = 0;
   double log10_nfa = 0;  // total over the kinds
-  /// The ratio that the features which disagree would choose, if it is
+  /// The ratio that the candidates which disagree would choose, if it is
   /// meaningful too; see FindSecondMode.
   std::optional<RatioMode> second_mode;
-  KindSupport points;
-  KindSupport lines;
-  KindSupport coplanar;
+  /// The kinds that were asked, each once, in the order of tables.
+  std::vector<KindSupport> kinds;
   /// Candidates dropped because they would need a negative depth.
   int num_rejected_negative = 0;
   std::vector<CoplanarInlier> coplanar_inliers;
+
+  /// Null if the kind was not asked.
+  const KindSupport* FindKind(const std::string& kind) const;
+  /// Of all kinds.
+  int NumInliers() const;
+  /// Whether the inliers of kinds alike bear each other out
+  /// (KindSupport::min_agreeing).
+  bool HasAgreement() const;
 
   /// The interval that holds the true log ratio with a probability of 95 %, if
   /// the mode is right.

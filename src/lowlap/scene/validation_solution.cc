@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <string>
 #include <tuple>
 
 #include "lowlap/scene/internal/validation_parts.h"
@@ -14,6 +15,9 @@ Status ValidateSupport(const KindSupport& support, const std::string& place) {
   }
   if (support.inliers < 0) {
     return Invalid("must not be negative", place + ".inliers");
+  }
+  if (support.min_agreeing < 1) {
+    return Invalid("must be at least 1", place + ".min_agreeing");
   }
   if (!std::isfinite(support.log10_nfa)) {
     return Invalid("must be finite", place + ".log10_nfa");
@@ -63,10 +67,17 @@ Status ValidateScaleRatio(const Scene& scene, const ViewTable& views,
                             !std::isfinite(ratio.second_mode->log10_nfa))) {
     return Invalid("must be finite", place + ".second_mode");
   }
-  for (const auto& [support, member] :
-       {std::pair(&ratio.points, ".points"), std::pair(&ratio.lines, ".lines"),
-        std::pair(&ratio.coplanar, ".coplanar")}) {
-    if (Status status = ValidateSupport(*support, place + member); !status) {
+  std::set<std::string> kinds;
+  for (std::size_t n = 0; n < ratio.kinds.size(); ++n) {
+    const KindSupport& support = ratio.kinds[n];
+    const std::string of_kind = place + ".kinds" + IndexPlace(n);
+    if (support.kind.empty()) {
+      return Invalid("must not be empty", of_kind + ".kind");
+    }
+    if (!kinds.insert(support.kind).second) {
+      return Invalid("the kind is listed twice", of_kind);
+    }
+    if (Status status = ValidateSupport(support, of_kind); !status) {
       return status;
     }
   }

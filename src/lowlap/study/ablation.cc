@@ -1,33 +1,36 @@
 #include "lowlap/study/ablation.h"
 
 #include <cstddef>
-#include <iterator>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/report/internal/table_text.h"
+#include "lowlap/scale/evidence/evidence_registry.h"
 
 namespace lowlap {
 namespace {
 
-struct Kinds {
+struct Features {
   const char* name;
-  bool points, lines, coplanar;
+  std::vector<std::string> words;
 };
 
-constexpr Kinds kKinds[] = {{"points", true, false, false},
-                            {"lines", false, true, false},
-                            {"points + lines", true, true, false},
-                            {"coplanar", false, false, true},
-                            {"all", true, true, true}};
+// The last is that of all.
+std::vector<Features> FeatureCases() {
+  return {{"points", {"points"}},
+          {"lines", {"lines"}},
+          {"points + lines", {"points", "lines"}},
+          {"coplanar", {"coplanar"}},
+          {"all", EvidenceRegistry::BuiltIn().Features()}};
+}
 
-AblationCase MakeCase(std::string name, const Kinds& kinds,
+AblationCase MakeCase(std::string name, const Features& features,
                       ScaleCriterion criterion, ScaleOptions scale) {
   AblationCase made;
   made.name = std::move(name);
-  scale.use_points = kinds.points;
-  scale.use_lines = kinds.lines;
-  scale.use_coplanar = kinds.coplanar;
+  scale.features = features.words;
   scale.criterion = criterion;
   made.scale = scale;
   return made;
@@ -137,7 +140,8 @@ Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
       StartSolution(&start_scene, options.solve, context, &stages);
   if (!start) return tl::unexpected<Error>(start.error());
 
-  const Kinds& all = kKinds[std::size(kKinds) - 1];
+  const std::vector<Features> cases = FeatureCases();
+  const Features& all = cases.back();
   Ablation ablation;
   ablation.num_views = static_cast<int>(scene.views.size());
   for (const double threshold_px : options.thresholds_px) {
@@ -146,9 +150,10 @@ Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
                                          options.solve.scale));
     ablation.criteria.back().scale.threshold_px = threshold_px;
   }
-  for (const Kinds& kinds : kKinds) {
-    ablation.features.push_back(MakeCase(
-        kinds.name, kinds, ScaleCriterion::kAContrario, options.solve.scale));
+  for (const Features& features : cases) {
+    ablation.features.push_back(MakeCase(features.name, features,
+                                         ScaleCriterion::kAContrario,
+                                         options.solve.scale));
   }
 
   const Runner runner(start_scene, *start, truth, options.solve, context);

@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "lowlap/pipeline/output_folder.h"
+#include "lowlap/scale/evidence/evidence_registry.h"
 #include "lowlap/study/ablation.h"
 #include "lowlap/study/internal/study_output.h"
 
@@ -22,10 +23,8 @@ std::optional<ErrorStatistics> PositionErrors(const AblationCase& entry) {
 
 std::string FeatureList(const ScaleOptions& scale) {
   std::string list;
-  for (const auto& [on, name] : {std::pair(scale.use_points, "points"),
-                                 std::pair(scale.use_lines, "lines"),
-                                 std::pair(scale.use_coplanar, "coplanar")}) {
-    if (on) list += (list.empty() ? "" : "+") + std::string(name);
+  for (const std::string& word : EvidenceRegistry::BuiltIn().Features()) {
+    if (scale.Asks(word)) list += (list.empty() ? "" : "+") + word;
   }
   return list;
 }

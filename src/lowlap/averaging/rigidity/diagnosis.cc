@@ -174,9 +174,7 @@ bool Diagnosis::IsFirm() const {
 }
 
 bool IsWeak(const ScaleRatio& ratio, const DiagnosisOptions& options) {
-  const int inliers =
-      ratio.points.inliers + ratio.lines.inliers + ratio.coplanar.inliers;
-  return inliers < options.min_inliers ||
+  return ratio.NumInliers() < options.min_inliers ||
          ratio.log10_nfa > options.max_log10_nfa ||
          ratio.log_ratio_stddev > options.max_stddev;
 }

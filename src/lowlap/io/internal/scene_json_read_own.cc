@@ -1,5 +1,6 @@
 #include <map>
 
+#include "lowlap/io/internal/old_scale_ratios.h"
 #include "lowlap/io/internal/scene_json_sections.h"
 
 namespace lowlap {
@@ -8,6 +9,8 @@ namespace {
 // Version 3 had no given intrinsics, version 2 no second modes and shares of
 // information either.
 constexpr std::uint32_t kVersion = 4, kOldestVersion = 2;
+// Scale ratios had members for three fixed kinds before this version.
+constexpr std::uint32_t kFirstWithKinds = 4;
 
 // Calls `add(a, b)` for the pairs of a flat array of ids.
 template <class Add>
@@ -122,15 +125,43 @@ RelativePose ReadRelativePose(const JsonValue& record) {
 }
 
 KindSupport ReadSupport(const JsonValue& record) {
-  record.AllowOnly({"candidates", "inliers", "log10_nfa", "threshold_px",
-                    "information_share"});
-  KindSupport support = {
-      record.At("candidates").Count(), record.At("inliers").Count(),
-      record.At("log10_nfa").Real(), record.At("threshold_px").Real()};
+  KindSupport support;
+  support.candidates = record.At("candidates").Count();
+  support.inliers = record.At("inliers").Count();
+  support.log10_nfa = record.At("log10_nfa").Real();
+  support.threshold_px = record.At("threshold_px").Real();
   if (const auto share = record.Find("information_share")) {
     support.information_share = share->Real();
   }
   return support;
+}
+
+void ReadKinds(const JsonValue& record, ScaleRatio* ratio) {
+  record.AllowOnly({"views", "verdict", "log_ratio", "log_ratio_stddev",
+                    "log10_nfa", "second_mode", "kinds",
+                    "num_rejected_negative", "coplanar_inliers"});
+  for (const JsonValue kind : record.At("kinds").Elements()) {
+    kind.AllowOnly({"kind", "candidates", "inliers", "log10_nfa",
+                    "threshold_px", "information_share", "min_agreeing"});
+    KindSupport& support = ratio->kinds.emplace_back(ReadSupport(kind));
+    support.kind = kind.At("kind").String();
+    support.min_agreeing = kind.At("min_agreeing").Count();
+  }
+}
+
+void ReadOldKinds(const JsonValue& record, ScaleRatio* ratio) {
+  record.AllowOnly({"views", "verdict", "log_ratio", "log_ratio_stddev",
+                    "log10_nfa", "second_mode", kOldKinds[0].name,
+                    kOldKinds[1].name, kOldKinds[2].name,
+                    "num_rejected_negative", "coplanar_inliers"});
+  for (const OldKind& old : kOldKinds) {
+    const JsonValue kind = record.At(old.name);
+    kind.AllowOnly({"candidates", "inliers", "log10_nfa", "threshold_px",
+                    "information_share"});
+    KindSupport& support = ratio->kinds.emplace_back(ReadSupport(kind));
+    support.kind = old.name;
+    support.min_agreeing = old.min_agreeing;
+  }
 }
 
 RatioVerdict ReadVerdict(const JsonValue& value) {
@@ -142,10 +173,7 @@ RatioVerdict ReadVerdict(const JsonValue& value) {
   value.Fail("verdict \"" + value.String() + "\" is not known");
 }
 
-ScaleRatio ReadScaleRatio(const JsonValue& record) {
-  record.AllowOnly({"views", "verdict", "log_ratio", "log_ratio_stddev",
-                    "log10_nfa", "second_mode", "points", "lines", "coplanar",
-                    "num_rejected_negative", "coplanar_inliers"});
+ScaleRatio ReadScaleRatio(const JsonValue& record, std::uint32_t version) {
   ScaleRatio ratio;
   const JsonValue views = record.At("views");
   if (views.FlatSize(1) != 3) views.Fail("must be three view ids");
@@ -162,9 +190,8 @@ ScaleRatio ReadScaleRatio(const JsonValue& record) {
     ratio.second_mode =
         RatioMode{mode->At("log_ratio").Real(), mode->At("log10_nfa").Real()};
   }
-  ratio.points = ReadSupport(record.At("points"));
-  ratio.lines = ReadSupport(record.At("lines"));
-  ratio.coplanar = ReadSupport(record.At("coplanar"));
+  version < kFirstWithKinds ? ReadOldKinds(record, &ratio)
+                            : ReadKinds(record, &ratio);
   ratio.num_rejected_negative = record.At("num_rejected_negative").Count();
   ReadIdPairs(record.At("coplanar_inliers"),
               [&](FeatureIndex in_first, FeatureIndex in_last) {
@@ -269,7 +296,7 @@ void ReadOwnSections(const JsonValue& own, Scene& scene) {
   }
   if (const auto list = own.Find("scale_ratios")) {
     for (const JsonValue record : list->Elements()) {
-      scene.scale_ratios.push_back(ReadScaleRatio(record));
+      scene.scale_ratios.push_back(ReadScaleRatio(record, version.Id()));
     }
   }
   if (const auto list = own.Find("line_structure")) {

@@ -118,15 +118,16 @@ void AppendTrack(std::uint32_t id, const Track& track, std::string& text) {
   text += "}";
 }
 
-void AppendSupport(std::string_view name, const KindSupport& support,
-                   std::string& text) {
-  AppendKey(name, text);
+void AppendKind(const KindSupport& support, std::string& text) {
   text += "{";
+  AppendKey("kind", text);
+  AppendString(support.kind, text);
   AppendCount("candidates", support.candidates, text);
   AppendCount("inliers", support.inliers, text);
   AppendNamedReal("log10_nfa", support.log10_nfa, text);
   AppendNamedReal("threshold_px", support.threshold_px, text);
   AppendNamedReal("information_share", support.information_share, text);
+  AppendCount("min_agreeing", support.min_agreeing, text);
   text += "}";
 }
 
@@ -148,9 +149,13 @@ void AppendScaleRatio(const ScaleRatio& ratio, std::string& text) {
     AppendNamedReal("log10_nfa", ratio.second_mode->log10_nfa, text);
     text += "}";
   }
-  AppendSupport("points", ratio.points, text);
-  AppendSupport("lines", ratio.lines, text);
-  AppendSupport("coplanar", ratio.coplanar, text);
+  AppendKey("kinds", text);
+  text += "[";
+  for (const KindSupport& support : ratio.kinds) {
+    AppendComma(text);
+    AppendKind(support, text);
+  }
+  text += "]";
   AppendCount("num_rejected_negative", ratio.num_rejected_negative, text);
   AppendKey("coplanar_inliers", text);
   text += "[";

@@ -37,8 +37,7 @@ class Writer {
 
   std::string Ratio(std::size_t index) const {
     const ScaleRatio& ratio = scene_.scale_ratios[index];
-    const int inliers =
-        ratio.points.inliers + ratio.lines.inliers + ratio.coplanar.inliers;
+    const int inliers = ratio.NumInliers();
     return Name(ratio.views.first) + " - " + Name(ratio.views.middle) + " - " +
            Name(ratio.views.last) + " (" + std::to_string(inliers) +
            (inliers == 1 ? " inlier" : " inliers") + ", +-" +
@@ -225,8 +224,7 @@ std::string ToJson(const Diagnosis& diagnosis, const Scene& scene) {
     const ScaleRatio& ratio = scene.scale_ratios[r];
     return Json{
         {"views", {ratio.views.first, ratio.views.middle, ratio.views.last}},
-        {"inliers",
-         ratio.points.inliers + ratio.lines.inliers + ratio.coplanar.inliers},
+        {"inliers", ratio.NumInliers()},
         {"log_ratio_stddev", ratio.log_ratio_stddev},
         {"log10_nfa", ratio.log10_nfa}};
   };

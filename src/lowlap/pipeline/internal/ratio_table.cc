@@ -1,5 +1,6 @@
 #include "lowlap/pipeline/internal/ratio_table.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lowlap/core/format.h"
@@ -11,44 +12,71 @@ std::string RatioText(double log_ratio) {
   return Format("%.4f", std::exp(log_ratio));
 }
 
-std::string Support(const KindSupport& kind) {
-  return std::to_string(kind.inliers) + "/" + std::to_string(kind.candidates);
+std::string Support(const KindSupport* kind) {
+  return kind == nullptr ? "-"
+                         : std::to_string(kind->inliers) + "/" +
+                               std::to_string(kind->candidates);
 }
 
-std::string Information(const ScaleRatio& ratio) {
-  const auto percent = [](const KindSupport& kind) {
-    return std::to_string(std::lround(100 * kind.information_share));
-  };
-  return percent(ratio.points) + "/" + percent(ratio.lines) + "/" +
-         percent(ratio.coplanar);
+std::string Percent(const KindSupport* kind) {
+  return kind == nullptr
+             ? "-"
+             : std::to_string(std::lround(100 * kind->information_share));
+}
+
+std::vector<std::string> Row(const ScaleRatio& ratio,
+                             const std::vector<std::string>& kinds) {
+  const std::string none = "-";
+  const std::string verdict = RatioVerdictName(ratio.verdict);
+  if (ratio.verdict == RatioVerdict::kNoCandidates) {
+    std::vector<std::string> row(kinds.size() + 6, none);
+    row.push_back(verdict);
+    return row;
+  }
+  std::vector<std::string> row = {
+      RatioText(ratio.log_ratio), RatioText(ratio.IntervalLow()),
+      RatioText(ratio.IntervalHigh()), Format("%.1f", ratio.log10_nfa)};
+  std::string information;
+  for (const std::string& name : kinds) {
+    const KindSupport* kind = ratio.FindKind(name);
+    row.push_back(Support(kind));
+    information += (information.empty() ? "" : "/") + Percent(kind);
+  }
+  row.push_back(information);
+  row.push_back(ratio.second_mode
+                    ? RatioText(ratio.second_mode->log_ratio) + " (" +
+                          Format("%.1f", ratio.second_mode->log10_nfa) + ")"
+                    : none);
+  row.push_back(verdict);
+  return row;
 }
 
 }  // namespace
 
-std::vector<std::string> RatioColumns() {
-  return {"ratio", "95 % from", "to",     "log10 NFA",   "points",
-          "lines", "coplanar",  "info %", "second mode", "verdict"};
+std::vector<std::string> KindNames(const std::vector<ScaleRatio>& ratios) {
+  std::vector<std::string> names;
+  for (const ScaleRatio& ratio : ratios) {
+    for (const KindSupport& kind : ratio.kinds) {
+      if (std::find(names.begin(), names.end(), kind.kind) == names.end()) {
+        names.push_back(kind.kind);
+      }
+    }
+  }
+  return names;
 }
 
-std::vector<std::string> RatioRow(const ScaleRatio& ratio) {
-  const std::string none = "-";
-  const std::string verdict = RatioVerdictName(ratio.verdict);
-  if (ratio.verdict == RatioVerdict::kNoCandidates) {
-    return {none, none, none, none, none, none, none, none, none, verdict};
+RatioTable MakeRatioTable(const std::vector<ScaleRatio>& ratios) {
+  const std::vector<std::string> kinds = KindNames(ratios);
+  RatioTable table;
+  table.columns = {"ratio", "95 % from", "to", "log10 NFA"};
+  table.columns.insert(table.columns.end(), kinds.begin(), kinds.end());
+  for (const char* column : {"info %", "second mode", "verdict"}) {
+    table.columns.push_back(column);
   }
-  return {RatioText(ratio.log_ratio),
-          RatioText(ratio.IntervalLow()),
-          RatioText(ratio.IntervalHigh()),
-          Format("%.1f", ratio.log10_nfa),
-          Support(ratio.points),
-          Support(ratio.lines),
-          Support(ratio.coplanar),
-          Information(ratio),
-          ratio.second_mode
-              ? RatioText(ratio.second_mode->log_ratio) + " (" +
-                    Format("%.1f", ratio.second_mode->log10_nfa) + ")"
-              : none,
-          verdict};
+  for (const ScaleRatio& ratio : ratios) {
+    table.rows.push_back(Row(ratio, kinds));
+  }
+  return table;
 }
 
 }  // namespace lowlap

@@ -26,13 +26,16 @@ ReportTable RatioTable(const Scene& scene) {
   table.note =
       "Baseline (middle, last) over baseline (first, middle), with the "
       "interval that holds it with a probability of 95 %. A ratio is used if "
-      "chance does not explain it (log10 NFA below 0). Points, lines and "
-      "coplanar pairs: inliers/candidates, and percent of the information in "
-      "that order. Second mode: what the features that disagree would choose.";
-  table.columns = RatioColumns();
+      "chance does not explain it (log10 NFA below 0). Kinds of evidence: "
+      "inliers/candidates, and percent of the information in that order. "
+      "Second "
+      "mode: what the features that disagree would choose.";
+  RatioTable ratios = MakeRatioTable(scene.scale_ratios);
+  table.columns = std::move(ratios.columns);
   table.columns.insert(table.columns.begin(), "first, middle, last");
-  for (const ScaleRatio& ratio : scene.scale_ratios) {
-    std::vector<std::string> row = RatioRow(ratio);
+  for (std::size_t n = 0; n < scene.scale_ratios.size(); ++n) {
+    const ScaleRatio& ratio = scene.scale_ratios[n];
+    std::vector<std::string> row = std::move(ratios.rows[n]);
     row.insert(row.begin(), NameOf(scene, ratio.views.first) + ", " +
                                 NameOf(scene, ratio.views.middle) + ", " +
                                 NameOf(scene, ratio.views.last));

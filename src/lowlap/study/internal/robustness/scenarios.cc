@@ -2,14 +2,14 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
 #include <utility>
+#include <vector>
 
 namespace lowlap {
 namespace {
 
 using Levels = std::vector<double>;
-
-enum class Kinds { kPoints, kLines, kCoplanar, kAll };
 
 const Levels& Shares() {
   static const Levels shares = {0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9};
@@ -17,7 +17,8 @@ const Levels& Shares() {
 }
 
 // Twelve views, each with the two before and the two after it.
-RobustnessLevel FeatureLevel(SyntheticKind world, Kinds kinds) {
+RobustnessLevel FeatureLevel(SyntheticKind world,
+                             const std::vector<std::string>& features) {
   RobustnessLevel level;
   SyntheticOptions& scene = level.scene;
   scene.kind = world;
@@ -27,10 +28,8 @@ RobustnessLevel FeatureLevel(SyntheticKind world, Kinds kinds) {
   scene.lines_per_wall = world == SyntheticKind::kRing ? 20 : 60;
   scene.noise_px = 1.0;
   scene.pose_noise_factor = 1.0;
-  level.scale.use_points = kinds == Kinds::kPoints || kinds == Kinds::kAll;
-  level.scale.use_lines = kinds == Kinds::kLines || kinds == Kinds::kAll;
-  level.scale.use_coplanar = kinds == Kinds::kCoplanar || kinds == Kinds::kAll;
-  if (kinds == Kinds::kCoplanar) {
+  level.scale.features = features;
+  if (features == std::vector<std::string>{"coplanar"}) {
     // Every feature belongs to one pair only: more are needed.
     scene.points_per_wall *= 4;
     scene.lines_per_wall *= 5;
@@ -70,21 +69,21 @@ const std::vector<Definition>& Definitions() {
       {"wrong_points", "share of wrong points", false, true,
        SyntheticKind::kRoom, Shares(),
        [](SyntheticKind world, double value) {
-         RobustnessLevel level = FeatureLevel(world, Kinds::kPoints);
+         RobustnessLevel level = FeatureLevel(world, {"points"});
          level.scene.wrong_point_share = value;
          return level;
        }},
       {"wrong_lines", "share of wrong lines", false, true, SyntheticKind::kRoom,
        Shares(),
        [](SyntheticKind world, double value) {
-         RobustnessLevel level = FeatureLevel(world, Kinds::kLines);
+         RobustnessLevel level = FeatureLevel(world, {"lines"});
          level.scene.wrong_line_share = value;
          return level;
        }},
       {"wrong_coplanar", "share of wrong candidate line pairs", false, true,
        SyntheticKind::kRoom, Shares(),
        [](SyntheticKind world, double value) {
-         RobustnessLevel level = FeatureLevel(world, Kinds::kCoplanar);
+         RobustnessLevel level = FeatureLevel(world, {"coplanar"});
          level.scene.wrong_candidate_share = value;
          return level;
        }},
@@ -95,7 +94,7 @@ const std::vector<Definition>& Definitions() {
        SyntheticKind::kRoom,
        {0.1, 0.2, 0.5, 1, 1.5, 2, 3, 4, 5},
        [](SyntheticKind world, double value) {
-         RobustnessLevel level = FeatureLevel(world, Kinds::kAll);
+         RobustnessLevel level = FeatureLevel(world, {});
          level.scene.noise_px = value;
          return level;
        }},
@@ -140,7 +139,7 @@ const std::vector<Definition>& Definitions() {
        SyntheticKind::kCollinear,
        {0.001, 0.003, 0.01, 0.03, 0.1, 0.2, 0.3},
        [](SyntheticKind world, double value) {
-         RobustnessLevel level = FeatureLevel(world, Kinds::kAll);
+         RobustnessLevel level = FeatureLevel(world, {});
          level.scene.off_line_m = value;
          return level;
        }},
@@ -151,7 +150,7 @@ const std::vector<Definition>& Definitions() {
        SyntheticKind::kTwins,
        {0.001, 0.003, 0.01, 0.03, 0.1, 0.3},
        [](SyntheticKind world, double value) {
-         RobustnessLevel level = FeatureLevel(world, Kinds::kAll);
+         RobustnessLevel level = FeatureLevel(world, {});
          level.scene.twin_baseline_m = value;
          return level;
        }},
@@ -162,7 +161,7 @@ const std::vector<Definition>& Definitions() {
        SyntheticKind::kCorridor,
        {3, 5, 10, 30, 100},
        [](SyntheticKind world, double value) {
-         RobustnessLevel level = FeatureLevel(world, Kinds::kCoplanar);
+         RobustnessLevel level = FeatureLevel(world, {"coplanar"});
          level.scene.num_views = static_cast<int>(value);
          level.scene.pairs = "chain";
          return level;

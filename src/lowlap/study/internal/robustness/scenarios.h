@@ -24,7 +24,7 @@ struct RobustnessLevel {
   SimulatedRatioOptions ratios;
 
   /// Strategies on point tracks get those that the ratios come from.
-  bool HasTracks() const { return has_features && scale.use_points; }
+  bool HasTracks() const { return has_features && scale.Asks("points"); }
 };
 
 /// What gets worse from level to level, in one simulated world.

@@ -1,0 +1,119 @@
+#include "lowlap/scale/evidence/internal/coplanar_lines.h"
+
+#include <array>
+#include <utility>
+#include <vector>
+
+#include "lowlap/robust/nfa.h"
+#include "lowlap/scale/evidence/internal/coplanar_candidates.h"
+#include "lowlap/scale/evidence/internal/coplanar_ratio.h"
+#include "lowlap/scale/evidence/internal/coplanar_residuals.h"
+#include "lowlap/scale/evidence/internal/residual_evidence.h"
+
+namespace lowlap {
+namespace {
+
+// How far the crossing of a tier may be, in units of the image diagonal.
+constexpr std::array<double, 2> kTierOfDiagonal = {0.01, 0.035};
+constexpr int kNumTiers = static_cast<int>(kTierOfDiagonal.size());
+
+// kNumTiers: too far to be used.
+int TierOfCrossing(double crossing_px, double image_diagonal_px) {
+  int tier = 0;
+  while (tier < kNumTiers &&
+         crossing_px > kTierOfDiagonal[tier] * image_diagonal_px) {
+    ++tier;
+  }
+  return tier;
+}
+
+template <class Residuals>
+class CoplanarLines : public ResidualEvidence<Residuals> {
+ public:
+  CoplanarLines(const TripletView& triplet, int num_neighbors)
+      : image_area_px2_(triplet.image_area_px2), num_neighbors_(num_neighbors) {
+    const CoplanarPairCandidates found = FindCoplanarCandidates(
+        triplet.geometry, triplet.lines_ij, triplet.lines_jk, num_neighbors);
+    this->RejectNegative(found.num_rejected_negative);
+    this->StartPairs(kNumTiers);
+    for (int tier = 0; tier < kNumTiers; ++tier) {
+      for (const CoplanarPairCandidate& pair : found.pairs) {
+        if (TierOfCrossing(pair.crossing_px, triplet.image_diagonal_px) !=
+            tier) {
+          continue;
+        }
+        if (!this->AddPair(pair.ratio, tier, {pair.first, pair.last})) continue;
+        this->residuals_.Add(triplet.geometry, triplet.lines_ij[pair.first],
+                             triplet.lines_jk[pair.last], pair.ratio.log_ratio);
+        pairs_.emplace_back(pair.first, pair.last);
+      }
+    }
+  }
+
+  NfaTerm PaperTerm(const LogFactorials& factorials,
+                    const LadderCounts* counts) const override {
+    LadderCounts both{};
+    for (int step = 0; step < kNumThresholds; ++step) {
+      both[step] = counts[0][step] + counts[1][step];
+    }
+    const auto& num_units = this->units().tiers.back().num_units;
+    return PaperCoplanarTerm(factorials, num_units[0] + num_units[1], both,
+                             image_area_px2_, num_neighbors_);
+  }
+  int MinAgreeing() const override { return 3; }
+  std::vector<CandidateDetail> Details(
+      const TripletView& triplet,
+      const std::vector<int>& candidates) const override {
+    std::vector<CandidateDetail> details;
+    for (const int n : candidates) {
+      const MatchedLine& a = triplet.lines_ij[pairs_[n].first];
+      const MatchedLine& b = triplet.lines_jk[pairs_[n].second];
+      const CoplanarNoise noise = NoiseOfCoplanarRatio(triplet.geometry, a, b);
+      CandidateDetail& detail = details.emplace_back();
+      detail.place = CrossingInMiddle(a.in_middle.segment, b.in_middle.segment)
+                         .value_or(Vec3(Vec3::Zero()))
+                         .template head<2>();
+      detail.moves = {noise.by_first, noise.by_last};
+    }
+    return details;
+  }
+  std::vector<RatioCandidate> RatiosIn(
+      const TripletView& triplet, const TripletGeometry& geometry,
+      const std::vector<int>& candidates) const override {
+    std::vector<RatioCandidate> ratios;
+    for (const int n : candidates) {
+      ratios.push_back(CoplanarRatio(geometry,
+                                     triplet.lines_ij[pairs_[n].first],
+                                     triplet.lines_jk[pairs_[n].second]));
+    }
+    return ratios;
+  }
+  void RecordInliers(const TripletView& triplet,
+                     const std::vector<int>& inliers,
+                     ScaleRatio* ratio) const override {
+    for (const int n : inliers) {
+      ratio->coplanar_inliers.push_back(
+          {triplet.lines_ij[pairs_[n].first].segment_in_middle,
+           triplet.lines_jk[pairs_[n].second].segment_in_middle});
+    }
+  }
+
+ private:
+  double image_area_px2_;
+  int num_neighbors_;
+  std::vector<std::pair<int, int>> pairs_;  // of lines_ij and lines_jk
+};
+
+}  // namespace
+
+std::unique_ptr<Evidence> CoplanarLinesKind::Gather(
+    const TripletView& triplet) const {
+  if (options_.residual == CoplanarResidual::kClosest) {
+    return std::make_unique<CoplanarLines<ClosestPointResiduals>>(
+        triplet, options_.num_neighbors);
+  }
+  return std::make_unique<CoplanarLines<TransferResiduals>>(
+      triplet, options_.num_neighbors);
+}
+
+}  // namespace lowlap

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "lowlap/scale/evidence/evidence.h"
+
+namespace lowlap {
+
+/// The error of a coplanar pair; see coplanar_residuals.h.
+enum class CoplanarResidual {
+  kTransfer,  // crossing carried over to the outer views; the default
+  kClosest,   // d_co of the paper, in the middle view; blind to frontal planes
+};
+
+struct CoplanarLinesOptions {
+  CoplanarResidual residual = CoplanarResidual::kTransfer;
+  /// Nearest lines that each line is paired with; at least 1.
+  int num_neighbors = 10;
+};
+
+/// Pairs of a line of (i, j) and a line of (j, k) that may lie in one plane
+/// (CoplanarRatio, FindCoplanarCandidates). Lines count once.
+///
+/// Pairs are tried in nested tiers of proximity: those whose crossing is within
+/// 1 % and within 3.5 % of the image diagonal of both segments. Lines that meet
+/// in the image are far more often coplanar than others (in the rendered rooms
+/// 80 to 90 % of the pairs that nearly touch give the right ratio, 20 % of
+/// those more than 100 px apart); pairs that meet farther off are not used:
+/// what they agree on by chance, since whole families of them are parallel, is
+/// wrong too often.
+class CoplanarLinesKind : public EvidenceKind {
+ public:
+  explicit CoplanarLinesKind(const CoplanarLinesOptions& options = {})
+      : options_(options) {}
+  std::string Name() const override { return "coplanar"; }
+  std::unique_ptr<Evidence> Gather(const TripletView& triplet) const override;
+
+ private:
+  CoplanarLinesOptions options_;
+};
+
+}  // namespace lowlap

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "lowlap/scale/evidence/evidence.h"
+
+namespace lowlap {
+
+/// Evidence whose errors are those of an array of residuals, one for each
+/// candidate. Residuals has ErrorOf, Evaluate, Bound and StationaryPoints, as
+/// in Evidence.
+template <class Residuals>
+class ResidualEvidence : public Evidence {
+ public:
+  float ErrorOf(double tau, int candidate) const final {
+    return residuals_.ErrorOf(tau, candidate);
+  }
+  void Errors(double tau, int count, float* errors_px) const final {
+    residuals_.Evaluate(tau, count, errors_px);
+  }
+  void Bound(double tau_low, double tau_high, float* least_px,
+             float* most_px) const final {
+    residuals_.Bound(tau_low, tau_high, least_px, most_px);
+  }
+  int StationaryPoints(int candidate, double* taus) const final {
+    return residuals_.StationaryPoints(candidate, taus);
+  }
+
+ protected:
+  Residuals residuals_;
+};
+
+}  // namespace lowlap

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "lowlap/core/parallel.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/scale/evidence/evidence.h"
+#include "lowlap/scale/triplet_view.h"
+#include "lowlap/scene/scale_ratio.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// The order that leaves no thread with a large triplet at the end: many
+/// matches first.
+std::vector<std::size_t> LargestFirst(const Scene& scene,
+                                      const std::vector<ViewTriplet>& triplets);
+
+/// The kinds of one round, prepared for the triplets.
+/// Errors: those of EvidenceKind::Prepare.
+Result<EvidenceKinds> PrepareRound(const EvidenceKinds& kinds,
+                                   EvidenceRound round,
+                                   const SceneFeatures& features,
+                                   const std::vector<ViewTriplet>& triplets,
+                                   const RunContext& context);
+
+/// Whether a kind of the round may say something about the triplet.
+bool MaySpeak(const EvidenceKinds& kinds, EvidenceRound round,
+              const SceneFeatures& features, const ViewTriplet& views);
+
+/// The ratio of an outcome of a test; see also RatioProfile.
+inline ScaleRatio& RatioOf(ScaleRatio& ratio) { return ratio; }
+
+/// `test` of every triplet, in parallel:
+/// Result<Outcome>(TripletView, TripletEvidence). Triplets without features
+/// have no candidates.
+/// Errors: those of MakeTripletView and of the test, kCancelled.
+template <class Outcome, class Test>
+Result<std::vector<Outcome>> TestOnce(const SceneFeatures& features,
+                                      const std::vector<ViewTriplet>& triplets,
+                                      const EvidenceKinds& kinds, int num_tests,
+                                      const RunContext& context,
+                                      const char* stage, const Test& test) {
+  const std::vector<std::size_t> order = LargestFirst(features.scene, triplets);
+  std::vector<Result<Outcome>> results(triplets.size());
+  const Status status =
+      ParallelFor(context, stage, triplets.size(), [&](std::size_t n) {
+        const ViewTriplet& views = triplets[order[n]];
+        Result<Outcome>& result = results[order[n]];
+        if (!features.HasAll(views)) {
+          Outcome nothing;
+          RatioOf(nothing).views = views;
+          RatioOf(nothing).verdict = RatioVerdict::kNoCandidates;
+          result = std::move(nothing);
+          return;
+        }
+        const Result<TripletView> triplet = MakeTripletView(features, views);
+        if (!triplet) {
+          result = tl::unexpected<Error>(triplet.error());
+          return;
+        }
+        TripletEvidence evidence = GatherEvidence(kinds, *triplet);
+        evidence.num_tests = num_tests;
+        result = test(*triplet, evidence);
+      });
+  if (!status) return tl::unexpected<Error>(status.error());
+  std::vector<Outcome> outcomes;
+  outcomes.reserve(results.size());
+  for (Result<Outcome>& result : results) {
+    if (!result) return tl::unexpected<Error>(std::move(result.error()));
+    outcomes.push_back(std::move(*result));
+  }
+  return outcomes;
+}
+
+/// The same in rounds: triplets that are not meaningful by the kinds of the
+/// first round are tested a second time, with those of kUndecided as well, if
+/// one of these may speak. Outcomes are those of the last test of each, in the
+/// order of the triplets.
+template <class Outcome, class Test>
+Result<std::vector<Outcome>> TestTriplets(
+    const Scene& scene, const std::vector<ViewTriplet>& triplets,
+    const EvidenceKinds& kinds, const RunContext& context, const char* stage,
+    const Test& test) {
+  const SceneFeatures features(scene);
+  auto asked =
+      PrepareRound(kinds, EvidenceRound::kFirst, features, triplets, context);
+  if (!asked) return tl::unexpected<Error>(asked.error());
+  auto outcomes =
+      TestOnce<Outcome>(features, triplets, *asked, 1, context, stage, test);
+  if (!outcomes) return outcomes;
+  std::vector<std::size_t> undecided;
+  std::vector<ViewTriplet> undecided_triplets;
+  for (std::size_t n = 0; n < triplets.size(); ++n) {
+    if (RatioOf((*outcomes)[n]).verdict != RatioVerdict::kMeaningful &&
+        features.HasAll(triplets[n]) &&
+        MaySpeak(kinds, EvidenceRound::kUndecided, features, triplets[n])) {
+      undecided.push_back(n);
+      undecided_triplets.push_back(triplets[n]);
+    }
+  }
+  if (undecided.empty()) return outcomes;
+  const auto more = PrepareRound(kinds, EvidenceRound::kUndecided, features,
+                                 undecided_triplets, context);
+  if (!more) return tl::unexpected<Error>(more.error());
+  asked->insert(asked->end(), more->begin(), more->end());
+  auto again = TestOnce<Outcome>(features, undecided_triplets, *asked, 2,
+                                 context, stage, test);
+  if (!again) return again;
+  for (std::size_t n = 0; n < undecided.size(); ++n) {
+    (*outcomes)[undecided[n]] = std::move((*again)[n]);
+  }
+  return outcomes;
+}
+
+}  // namespace lowlap

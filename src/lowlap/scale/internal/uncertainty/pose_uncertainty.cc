@@ -1,0 +1,102 @@
+#include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "lowlap/geometry/rotation.h"
+
+namespace lowlap {
+namespace {
+
+// The candidates of one kind: at most 24, evenly spaced, with their weights
+// made up for.
+struct Sample {
+  std::vector<int> candidates;
+  std::vector<double> weights;
+};
+
+std::vector<Sample> SampleKinds(
+    const RatioSupport& support,
+    const std::vector<WeightedCandidate>& candidates) {
+  constexpr std::size_t kMaxOfKind = 24;
+  std::vector<Sample> samples(support.num_kinds());
+  for (int k = 0; k < support.num_kinds(); ++k) {
+    std::vector<WeightedCandidate> of_kind;
+    for (const WeightedCandidate& candidate : candidates) {
+      if (candidate.kind == k) of_kind.push_back(candidate);
+    }
+    const std::size_t num = std::min(kMaxOfKind, of_kind.size());
+    for (std::size_t n = 0; n < num; ++n) {
+      const WeightedCandidate& taken =
+          of_kind[(2 * n + 1) * of_kind.size() / (2 * num)];
+      samples[k].candidates.push_back(taken.index);
+      samples[k].weights.push_back(taken.weight *
+                                   (static_cast<double>(of_kind.size()) / num));
+    }
+  }
+  return samples;
+}
+
+}  // namespace
+
+std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
+                                         const RelativePose& edge,
+                                         const ViewTriplet& views) {
+  std::vector<TripletGeometry> perturbed;
+  if (!edge.covariance || !edge.covariance->allFinite()) return perturbed;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 5, 5>> eigen(
+      *edge.covariance);
+  const double largest = eigen.eigenvalues()(4);
+  if (!(eigen.eigenvalues()(0) >= -1e-9 * largest)) return perturbed;
+  const bool is_ij =
+      edge.views.first == views.first || edge.views.second == views.first;
+  for (int axis = 0; axis < 5; ++axis) {
+    const Eigen::Matrix<double, 5, 1> error =
+        std::sqrt(std::max(0.0, eigen.eigenvalues()(axis))) *
+        eigen.eigenvectors().col(axis);
+    RelativePose moved;
+    moved.views = edge.views;
+    moved.rotation = RotationFromAngleAxis(error.head<3>()) * edge.rotation;
+    moved.direction =
+        (edge.direction + TangentBasis(edge.direction) * error.tail<2>())
+            .normalized();
+    TripletGeometry moved_geometry = geometry;
+    if (is_ij) {
+      moved_geometry.cami_from_camj =
+          UnitTransform(moved, views.middle, views.first);
+    } else {
+      moved_geometry.camk_from_camj =
+          UnitTransform(moved, views.middle, views.last);
+    }
+    perturbed.push_back(moved_geometry);
+  }
+  return perturbed;
+}
+
+double PoseVariance(const TripletView& triplet, const RatioSupport& support,
+                    const std::vector<WeightedCandidate>& candidates) {
+  double variance = 0;
+  if (triplet.pose_perturbations.empty()) return variance;
+  const std::vector<Sample> samples = SampleKinds(support, candidates);
+  for (const TripletGeometry& geometry : triplet.pose_perturbations) {
+    double sum = 0, weights = 0;
+    for (int k = 0; k < support.num_kinds(); ++k) {
+      const Sample& sample = samples[k];
+      const std::vector<RatioCandidate> moved =
+          support.kind(k).RatiosIn(triplet, geometry, sample.candidates);
+      for (std::size_t n = 0; n < moved.size(); ++n) {
+        if (moved[n].status != CandidateStatus::kValid) continue;
+        const double change =
+            moved[n].log_ratio -
+            support.kind(k).ratios()[sample.candidates[n]].log_ratio;
+        sum += sample.weights[n] * change;
+        weights += sample.weights[n];
+      }
+    }
+    if (weights > 0) variance += (sum / weights) * (sum / weights);
+  }
+  return variance;
+}
+
+}  // namespace lowlap

@@ -1,0 +1,177 @@
+#include "lowlap/scale/internal/fragmented_segments.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "lowlap/core/random.h"
+#include "lowlap/geometry/rotation.h"
+#include "lowlap/scale/scale_ratios.h"
+#include "scale/synthetic_room.h"
+#include "scale/synthetic_triplet.h"
+
+namespace lowlap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using testing::MakeSegment;
+
+ObservedSegment Piece(const Vec3& a, const Vec3& b, double stddev_px = 0.2) {
+  return {MakeSegment(a, b), stddev_px};
+}
+
+TEST(GroupMatches, EveryMatchIsAnEdgeIfNoneSharesASegment) {
+  const MatchedEdges matched = GroupMatches({{4, 1}, {2, 3}}, {{2, 7}, {9, 8}});
+  ASSERT_EQ(matched.edges.size(), 3u);
+  EXPECT_THAT(matched.edge_of_ij, ElementsAre(0, 1));
+  EXPECT_THAT(matched.edge_of_jk, ElementsAre(1, 2));
+  EXPECT_THAT(matched.edges[0].in_i, ElementsAre(1));
+  EXPECT_THAT(matched.edges[0].in_k, IsEmpty());
+  EXPECT_THAT(matched.edges[1].in_i, ElementsAre(3));
+  EXPECT_THAT(matched.edges[1].in_j, ElementsAre(2));
+  EXPECT_THAT(matched.edges[1].in_k, ElementsAre(7));
+  EXPECT_THAT(matched.edges[2].in_i, IsEmpty());
+}
+
+TEST(GroupMatches, PiecesOfAnyViewAreOneEdge) {
+  // Segment 1 of i is fragmented into 4 and 5 in j, and these are whole again
+  // in k; segment 6 of j is fragmented in i alone.
+  const MatchedEdges matched =
+      GroupMatches({{5, 1}, {6, 8}, {4, 1}, {6, 7}}, {{4, 2}, {6, 3}, {5, 2}});
+  ASSERT_EQ(matched.edges.size(), 2u);
+  EXPECT_THAT(matched.edge_of_ij, ElementsAre(0, 1, 0, 1));
+  EXPECT_THAT(matched.edge_of_jk, ElementsAre(0, 1, 0));
+  EXPECT_THAT(matched.edges[0].in_j, ElementsAre(4, 5));
+  EXPECT_THAT(matched.edges[0].in_k, ElementsAre(2));
+  EXPECT_THAT(matched.edges[1].in_i, ElementsAre(7, 8));
+  EXPECT_THAT(matched.edges[1].in_j, ElementsAre(6));
+}
+
+TEST(LongestPiece, IsOneOfThem) {
+  const ObservedSegment longest = Piece({0, 0, 1}, {0.5, 0, 1}, 0.3);
+  EXPECT_EQ(LongestPiece({Piece({0.6, 0.01, 1}, {0.8, 0.02, 1}),
+                          longest,
+                          {NormalizedSegment{}, 0.5}})
+                .stddev_px,
+            0.3);
+}
+
+// Three views before two walls that carry lines; all lines are in every view.
+class FragmentedSegments : public ::testing::TestWithParam<ViewId> {
+ protected:
+  static constexpr FeatureIndex kLines = 40;
+
+  FragmentedSegments() {
+    Intrinsic camera;
+    camera.width_px = 1200;
+    camera.height_px = 800;
+    camera.fx_px = camera.fy_px = 900;
+    camera.principal_point_px = {600, 400};
+    scene_.intrinsics[0] = camera;
+    std::vector<RigidTransform> cams;
+    for (ViewId view = 0; view < 3; ++view) {
+      scene_.views[view].intrinsic_id = 0;
+      cams.push_back(RigidTransform::FromRotationAndCenter(
+          RotationFromAngleAxis({0.01, 0.03 * view, 0}),
+          {0.5 * view + 0.15 * view * view, 0.05 * view, 0}));
+    }
+    Random random(3);
+    const auto on_wall = [&] {
+      const double x = random.Uniform(-0.8, 2);
+      const double y = random.Uniform(-1.2, 1.2);
+      return Vec3(x, y, x < 0.6 ? 4 + 0.5 * x : 4.6 - 0.5 * x);
+    };
+    for (FeatureIndex n = 0; n < kLines; ++n) {
+      const Vec3 a = on_wall(), b = on_wall();
+      for (ViewId view = 0; view < 3; ++view) {
+        const auto seen = [&](const Vec3& x) -> Vec2 {
+          const double u = random.Gaussian(0.2), v = random.Gaussian(0.2);
+          return camera.Project(cams[view] * x) + Vec2(u, v);
+        };
+        const Vec2 start_px = seen(a);
+        scene_.features[view].segments.push_back({start_px, seen(b), 0.2});
+      }
+    }
+    for (ViewId view = 0; view < 2; ++view) {
+      const RigidTransform next_from_view =
+          cams[view + 1] * cams[view].Inverse();
+      RelativePose pose;
+      pose.views = {view, view + 1};
+      pose.rotation = next_from_view.rotation;
+      pose.direction = next_from_view.translation.normalized();
+      for (FeatureIndex n = 0; n < kLines; ++n) {
+        pose.line_inliers.push_back({n, n});
+      }
+      scene_.relative_poses[pose.views] = pose;
+    }
+  }
+
+  // Cuts every segment of a view in two, with a gap of a tenth; matches of one
+  // become matches of both.
+  Scene Fragmented(ViewId view) const {
+    Scene scene = scene_;
+    std::vector<LineSegment>& segments = scene.features[view].segments;
+    for (FeatureIndex n = 0; n < kLines; ++n) {
+      LineSegment second = segments[n];
+      const Vec2 run = second.end_px - second.start_px;
+      second.start_px += 0.55 * run;
+      segments[n].end_px -= 0.55 * run;
+      segments.push_back(second);
+    }
+    for (auto& [views, pose] : scene.relative_poses) {
+      for (FeatureIndex n = 0; n < kLines; ++n) {
+        if (views.first == view) pose.line_inliers.push_back({n + kLines, n});
+        if (views.second == view) pose.line_inliers.push_back({n, n + kLines});
+      }
+      std::sort(pose.line_inliers.begin(), pose.line_inliers.end());
+    }
+    return scene;
+  }
+
+  static ScaleRatio Ratio(const Scene& scene, const ScaleOptions& options) {
+    const auto ratios = EstimateScaleRatios(scene, options, {});
+    EXPECT_TRUE(ratios.has_value()) << ratios.error().ToString();
+    EXPECT_EQ(ratios->size(), 1u);
+    return ratios->front();
+  }
+
+  Scene scene_;
+};
+
+TEST_P(FragmentedSegments, AreOneLineEach) {
+  const Scene fragmented = Fragmented(GetParam());
+  const auto triplet = MakeTripletView(SceneFeatures(fragmented), {0, 1, 2});
+  ASSERT_TRUE(triplet.has_value());
+  EXPECT_EQ(triplet->lines.size(), kLines);
+  EXPECT_EQ(triplet->lines_ij.size(), kLines);
+  EXPECT_EQ(triplet->lines_jk.size(), kLines);
+}
+
+TEST_P(FragmentedSegments, SayNoMoreThanTheWholeOnes) {
+  for (const bool coplanar : {false, true}) {
+    ScaleOptions options;
+    const std::string word = coplanar ? "coplanar" : "lines";
+    options.features = {word};
+    const ScaleRatio whole = Ratio(scene_, options);
+    const ScaleRatio fragmented = Ratio(Fragmented(GetParam()), options);
+    EXPECT_EQ(whole.verdict, RatioVerdict::kMeaningful);
+    EXPECT_EQ(fragmented.verdict, RatioVerdict::kMeaningful);
+    EXPECT_NEAR(fragmented.log_ratio, whole.log_ratio,
+                3 * fragmented.log_ratio_stddev);
+    // Counted twice they would say almost twice as much.
+    EXPECT_GE(fragmented.log10_nfa, 1.2 * whole.log10_nfa);
+    if (coplanar) continue;
+    EXPECT_LE(fragmented.FindKind(word)->candidates,
+              whole.FindKind(word)->candidates);
+    EXPECT_LE(fragmented.FindKind(word)->inliers, kLines);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryView, FragmentedSegments,
+                         ::testing::Values(0u, 1u, 2u));
+
+}  // namespace
+}  // namespace lowlap

@@ -1,0 +1,74 @@
+#include "lowlap/scale/triplet_view.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lowlap/scale/scale_ratios.h"
+#include "scale/row_of_views.h"
+
+namespace lowlap {
+namespace {
+
+using testing::RowOfViews;
+
+TEST(MakeTripletView, ChainsThroughTheFeaturesOfTheMiddleView) {
+  const RowOfViews row;
+  Scene scene = row.scene;
+  scene.relative_poses.at({0, 2}).point_inliers = {{4, 7}, {5, 8}, {6, 9}};
+  scene.relative_poses.at({2, 3}).point_inliers = {{9, 1}, {7, 2}, {7, 3}};
+  const SceneFeatures features(scene);
+  const auto triplet = MakeTripletView(features, {0, 2, 3});
+  ASSERT_TRUE(triplet.has_value());
+  ASSERT_EQ(triplet->points.size(), 3u);
+  EXPECT_EQ(triplet->points[0].point_in_middle, 7u);
+  EXPECT_EQ(triplet->points[0].in_i, features.normalized.at(0).points[4]);
+  EXPECT_EQ(triplet->points[0].in_k, features.normalized.at(3).points[2]);
+  EXPECT_EQ(triplet->points[1].in_k, features.normalized.at(3).points[3]);
+  EXPECT_EQ(triplet->points[2].point_in_middle, 9u);
+  EXPECT_EQ(triplet->points[2].in_k, features.normalized.at(3).points[1]);
+  // The middle view may be the first of an edge.
+  const auto reversed = MakeTripletView(features, {2, 0, 1});
+  ASSERT_TRUE(reversed.has_value());
+  EXPECT_EQ(reversed->points.size(), 3u);
+  EXPECT_EQ(reversed->points[0].in_i, features.normalized.at(2).points[7]);
+}
+
+TEST(MakeTripletView, PerturbsThePosesByTheirCovariances) {
+  RowOfViews row;
+  const SceneFeatures features(row.scene);
+  EXPECT_TRUE(MakeTripletView(features, {0, 1, 2})->pose_perturbations.empty());
+  row.scene.relative_poses.at({1, 2}).covariance =
+      1e-6 * Eigen::Matrix<double, 5, 5>::Identity();
+  const auto triplet = MakeTripletView(features, {0, 1, 2});
+  ASSERT_EQ(triplet->pose_perturbations.size(), 5u);
+  for (const TripletGeometry& moved : triplet->pose_perturbations) {
+    EXPECT_EQ(moved.cami_from_camj.rotation,
+              triplet->geometry.cami_from_camj.rotation);
+    const double turned =
+        RotationAngleBetween(moved.camk_from_camj.rotation,
+                             triplet->geometry.camk_from_camj.rotation);
+    const double tilted =
+        AngleBetween(moved.camk_from_camj.translation,
+                     triplet->geometry.camk_from_camj.translation);
+    EXPECT_NEAR(std::hypot(turned, tilted), 1e-3, 1e-6);
+  }
+}
+
+TEST(MakeTripletView, MissingPartsAreErrors) {
+  const RowOfViews row;
+  const auto error_of = [](const Scene& scene, const ViewTriplet& views) {
+    return MakeTripletView(SceneFeatures(scene), views).error().code;
+  };
+  EXPECT_EQ(error_of(row.scene, {0, 1, 9}), ErrorCode::kInvalidArgument);
+  Scene scene = row.scene;
+  scene.relative_poses.at({0, 1}).point_inliers.push_back({0, 1000});
+  EXPECT_EQ(error_of(scene, {0, 1, 2}), ErrorCode::kInvalidScene);
+  EXPECT_FALSE(EstimateScaleRatios(scene, {}, {}).has_value());
+  scene = row.scene;
+  scene.views[1].intrinsic_id = kInvalidId;
+  EXPECT_EQ(error_of(scene, {0, 1, 2}), ErrorCode::kInvalidArgument);
+}
+
+}  // namespace
+}  // namespace lowlap
