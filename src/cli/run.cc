@@ -100,6 +100,8 @@ int Run(const RunFlags& flags) {
   // Everything that can be refused is refused before the long work.
   const auto options = MakeSolveOptions(flags.solve);
   if (!options) return Fail(options.error());
+  const auto scale = MakeScaleOptions(flags.solve.scale);
+  if (!scale) return Fail(scale.error());
   if (const Status usable = CheckOutputFolder(flags.output); !usable) {
     return Fail(usable.error());
   }
@@ -134,8 +136,7 @@ int Run(const RunFlags& flags) {
   front_end.relative_poses.pair.use_points = IsNamed("points", flags.two_view);
   front_end.relative_poses.pair.use_lines = IsNamed("lines", flags.two_view);
   const bool needs_lines = front_end.relative_poses.pair.use_lines ||
-                           options->scale.Asks("lines") ||
-                           options->scale.Asks("coplanar");
+                           scale->Asks("lines") || scale->Asks("coplanar");
   front_end.features.detect_lines = needs_lines;
   front_end.matching.match_lines = needs_lines;
 

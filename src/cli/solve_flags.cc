@@ -314,7 +314,7 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
   SolveOptions options;
   const auto scale = MakeScaleOptions(flags.scale);
   if (!scale) return tl::unexpected<Error>(scale.error());
-  options.scale = *scale;
+  options.scale_estimator = MakeScaleEstimator(*scale);
   const auto averager = AveragerRegistry::WithBuiltIns().Make(flags.strategy);
   if (!averager) return tl::unexpected<Error>(averager.error());
   options.poses.averager = *averager;

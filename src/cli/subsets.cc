@@ -55,7 +55,9 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
   for (const std::string& kind : flags.solve.scale.features) {
     text += " " + kind;
   }
-  text += flags.solve.scale.coplanar_points ? " plane-points" : "";
+  for (const auto& [kind, asked] : flags.solve.scale.asked) {
+    if (asked) text += " " + kind;
+  }
   text += flags.solve.no_adjust ? "\nno adjustment" : "\nadjustment";
   for (const std::string& kind : flags.solve.adjust_features) {
     text += " " + kind;

@@ -59,8 +59,8 @@ void PutWrongMotionFirst(const ViewPair& views, SyntheticScene* synthetic) {
 std::vector<MotionDecision> Decide(Scene* scene, int num_threads = 0) {
   RunContext context;
   context.num_threads = num_threads;
-  const auto decisions =
-      DecideMotions(scene, ScaleOptions(), PoseOptions(), context);
+  const auto decisions = DecideMotions(
+      scene, *MakeScaleEstimator(ScaleOptions()), PoseOptions(), context);
   EXPECT_TRUE(decisions) << decisions.error().ToString();
   return decisions ? *decisions : std::vector<MotionDecision>();
 }
@@ -113,8 +113,8 @@ TEST(DecideMotions, WithoutCyclesAndTripletsBothMotionsStay) {
   std::string logged;
   RunContext context;
   context.log = [&](LogLevel, const std::string& text) { logged += text; };
-  const auto decisions =
-      DecideMotions(&scene, ScaleOptions(), PoseOptions(), context);
+  const auto decisions = DecideMotions(
+      &scene, *MakeScaleEstimator(ScaleOptions()), PoseOptions(), context);
   ASSERT_TRUE(decisions);
   ASSERT_EQ(decisions->size(), 1u);
   EXPECT_EQ((*decisions)[0].views, (ViewPair{0, 1}));

@@ -32,7 +32,9 @@ SyntheticScene Corridor() {
 Result<SolveResult> SolveByCoplanarPairs(const std::string& strategy,
                                          Scene* scene) {
   SolveOptions options;
-  options.scale.features = {"coplanar"};
+  ScaleOptions coplanar;
+  coplanar.features = {"coplanar"};
+  options.scale_estimator = MakeScaleEstimator(coplanar);
   options.poses.averager = *AveragerRegistry::WithBuiltIns().Make(strategy);
   options.adjust = false;
   StageLog stages;

@@ -49,8 +49,7 @@ TEST(RefinePoints, BringsMatchesNearerToTheTrueGeometry) {
   IntrinsicSource source;
   source.calibration =
       *strecha::ReadCalibrationMatrix(Room() + "/images/K.txt");
-  const auto scene =
-      SceneFromImages(Room() + "/images", source, {});
+  const auto scene = SceneFromImages(Room() + "/images", source, {});
   ASSERT_THAT(scene, IsOk());
   FrontEndOptions options;
   options.pairs = "chain";

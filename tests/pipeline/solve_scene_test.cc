@@ -74,7 +74,9 @@ TEST(SolveScene, EachKindAloneDeterminesTheScale) {
   const SyntheticScene synthetic = *Simulate(options);
   for (const std::string kind : {"points", "lines", "coplanar"}) {
     SolveOptions solve;
-    solve.scale.features = {kind};
+    ScaleOptions of_kind;
+    of_kind.features = {kind};
+    solve.scale_estimator = MakeScaleEstimator(of_kind);
     solve.adjust = false;
     Scene scene = synthetic.scene;
     StageLog stages;
@@ -132,7 +134,7 @@ TEST(SolveScene, InvalidOptionsAreRefusedBeforeAnythingChanges) {
   SyntheticScene synthetic = *Simulate(SyntheticOptions());
   const Scene original = synthetic.scene;
   SolveOptions options;
-  options.scale.features = {"colour"};
+  options.scale_estimator = nullptr;
   StageLog stages;
   const auto result =
       SolveScene(&synthetic.scene, options, RunContext(), &stages);

@@ -80,11 +80,11 @@ Scene SceneOf(const Scene& scene, const Trial& trial) {
 
 // log10 NFA of the trial's ratio; 0 if there is none.
 Result<double> CostOf(const Scene& scene, const Trial& trial,
-                      const ScaleOptions& options) {
+                      const ScaleEstimator& estimator) {
   RunContext serial;
   serial.num_threads = 1;
   const auto ratios = EstimateScaleRatios(SceneOf(scene, trial), {trial.views},
-                                          options, serial);
+                                          estimator, serial);
   if (!ratios) return tl::unexpected<Error>(ratios.error());
   const ScaleRatio& ratio = ratios->front();
   if (ratio.verdict != RatioVerdict::kMeaningful) return 0.0;
@@ -113,7 +113,7 @@ void LogDecision(const MotionDecision& decision, const Scene& scene,
 }  // namespace
 
 Result<std::vector<MotionDecision>> DecideMotionsByTriplets(
-    Scene* scene, const ScaleOptions& options, const RunContext& context) {
+    Scene* scene, const ScaleEstimator& estimator, const RunContext& context) {
   const auto triplets = TripletsToAsk(*scene);
   std::set<ViewTriplet> distinct;
   for (const auto& entry : triplets) {
@@ -133,7 +133,7 @@ Result<std::vector<MotionDecision>> DecideMotionsByTriplets(
   std::vector<Result<double>> costs(trials.size());
   const Status done = ParallelFor(
       context, "ambiguous planes", trials.size(),
-      [&](std::size_t n) { costs[n] = CostOf(*scene, trials[n], options); });
+      [&](std::size_t n) { costs[n] = CostOf(*scene, trials[n], estimator); });
   if (!done) return tl::unexpected<Error>(done.error());
 
   // Least cost of every triplet under each motion of each of its edges.
@@ -166,7 +166,7 @@ Result<std::vector<MotionDecision>> DecideMotionsByTriplets(
 }
 
 Result<std::vector<MotionDecision>> DecideMotions(Scene* scene,
-                                                  const ScaleOptions& scale,
+                                                  const ScaleEstimator& scale,
                                                   const PoseOptions& poses,
                                                   const RunContext& context) {
   std::map<ViewPair, MotionDecision> decisions;

@@ -5,7 +5,7 @@
 #include "lowlap/averaging/rotations/pose_hypotheses.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
-#include "lowlap/scale/scale_options.h"
+#include "lowlap/scale/scale_estimator.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -25,7 +25,7 @@ namespace lowlap {
 ///
 /// Errors: those of EstimateScaleRatios.
 Result<std::vector<MotionDecision>> DecideMotionsByTriplets(
-    Scene* scene, const ScaleOptions& options, const RunContext& context);
+    Scene* scene, const ScaleEstimator& estimator, const RunContext& context);
 
 /// Settles the alternatives of the scene's relative poses by cycles
 /// (DecideMotionsByCycles) and, where these do not decide, by triplets, in
@@ -33,7 +33,7 @@ Result<std::vector<MotionDecision>> DecideMotionsByTriplets(
 /// own; where nothing decides, the pose and its alternatives stay. One entry
 /// per pair that had alternatives, by views.
 Result<std::vector<MotionDecision>> DecideMotions(Scene* scene,
-                                                  const ScaleOptions& scale,
+                                                  const ScaleEstimator& scale,
                                                   const PoseOptions& poses,
                                                   const RunContext& context);
 

@@ -14,8 +14,12 @@
 namespace lowlap {
 
 Status SolveOptions::Validate() const {
-  for (const Status& valid : {scale.Validate(), poses.Validate(),
-                              structure.Validate(), adjustment.Validate()}) {
+  if (scale_estimator == nullptr) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "there is no scale estimator");
+  }
+  for (const Status& valid :
+       {poses.Validate(), structure.Validate(), adjustment.Validate()}) {
     if (!valid) return valid;
   }
   return {};
@@ -57,7 +61,7 @@ std::vector<ViewTriplet> BelievedTriplets(const Scene& scene,
 Result<std::vector<ScaleRatio>> CompleteRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
     std::vector<ScaleRatio> known, const std::vector<MotionDecision>& motions,
-    const ScaleOptions& options, const RunContext& context) {
+    const ScaleEstimator& estimator, const RunContext& context) {
   std::set<ViewPair> replaced;
   for (const MotionDecision& motion : motions) {
     if (motion.replaced) replaced.insert(motion.views);
@@ -77,7 +81,7 @@ Result<std::vector<ScaleRatio>> CompleteRatios(
   for (const ViewTriplet& views : triplets) {
     if (ratios.count(views) == 0) missing.push_back(views);
   }
-  auto estimated = EstimateScaleRatios(scene, missing, options, context);
+  auto estimated = EstimateScaleRatios(scene, missing, estimator, context);
   if (!estimated) return estimated;
   for (ScaleRatio& ratio : *estimated) ratios[ratio.views] = std::move(ratio);
   std::vector<ScaleRatio> complete;
@@ -103,7 +107,8 @@ Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
                                  const RunContext& context, StageLog* stages) {
   const StageLog::Scope scope(stages, "rotations");
   SolveStart start;
-  auto motions = DecideMotions(scene, options.scale, options.poses, context);
+  auto motions =
+      DecideMotions(scene, *options.scale_estimator, options.poses, context);
   if (!motions) return tl::unexpected<Error>(motions.error());
   start.motions = std::move(*motions);
   auto averaged = AverageSceneRotations(*scene, options.poses, context);
@@ -120,9 +125,9 @@ Result<RatioSummary> EstimateBelievedRatios(Scene* scene,
   const StageLog::Scope scope(stages, "scale ratios");
   std::vector<ScaleRatio> known;
   if (options.reuse_ratios) known = std::move(scene->scale_ratios);
-  auto ratios =
-      CompleteRatios(*scene, BelievedTriplets(*scene, start.rotations),
-                     std::move(known), start.motions, options.scale, context);
+  auto ratios = CompleteRatios(
+      *scene, BelievedTriplets(*scene, start.rotations), std::move(known),
+      start.motions, *options.scale_estimator, context);
   if (!ratios) return tl::unexpected<Error>(ratios.error());
   scene->scale_ratios = std::move(*ratios);
   return SummarizeRatios(scene->scale_ratios);

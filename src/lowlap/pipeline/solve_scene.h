@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -12,20 +13,22 @@
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/pipeline/stage_log.h"
-#include "lowlap/scale/scale_options.h"
+#include "lowlap/scale/scale_estimator.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
 
 struct SolveOptions {
-  ScaleOptions scale;
+  /// Never null; MakeScaleEstimator makes the built-in ones.
+  std::shared_ptr<const ScaleEstimator> scale_estimator =
+      MakeScaleEstimator(ScaleOptions());
   PoseOptions poses;
   StructureOptions structure;
   AdjustmentOptions adjustment;
   bool adjust = true;
   /// Ratios that the scene holds already are taken as they are, unless the
   /// choice of a motion changes one of their relative poses. For solving parts
-  /// of one scene, with the same scale options.
+  /// of one scene, with the same estimator.
   bool reuse_ratios = false;
 
   Status Validate() const;

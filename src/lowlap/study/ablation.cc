@@ -52,7 +52,7 @@ class Runner {
     Scene scene = scene_;
     StageLog stages;
     SolveOptions options = options_;
-    options.scale = entry->scale;
+    options.scale_estimator = MakeScaleEstimator(entry->scale);
     const Status status = Solve(options, &scene, entry, &stages);
     if (!status) entry->failure = status.error();
     entry->costs = stages.stages();
@@ -111,6 +111,7 @@ bool IsCancelled(const AblationCase& entry) {
 
 Status AblationOptions::Validate() const {
   if (const Status valid = solve.Validate(); !valid) return valid;
+  if (const Status valid = scale.Validate(); !valid) return valid;
   for (const double threshold_px : thresholds_px) {
     if (!(threshold_px > 0)) {
       return MakeError(ErrorCode::kInvalidArgument,
@@ -147,13 +148,12 @@ Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
   for (const double threshold_px : options.thresholds_px) {
     ablation.criteria.push_back(MakeCase(NumberText(threshold_px, 6) + " px",
                                          all, ScaleCriterion::kFixedThreshold,
-                                         options.solve.scale));
+                                         options.scale));
     ablation.criteria.back().scale.threshold_px = threshold_px;
   }
   for (const Features& features : cases) {
-    ablation.features.push_back(MakeCase(features.name, features,
-                                         ScaleCriterion::kAContrario,
-                                         options.solve.scale));
+    ablation.features.push_back(MakeCase(
+        features.name, features, ScaleCriterion::kAContrario, options.scale));
   }
 
   const Runner runner(start_scene, *start, truth, options.solve, context);

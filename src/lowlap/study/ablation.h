@@ -17,9 +17,10 @@
 namespace lowlap {
 
 struct AblationOptions {
-  /// What is not varied: strategy, adjustment, and the scale options but for
-  /// criterion, threshold and kinds of features.
+  /// What is not varied: strategy and adjustment, and of the scale options all
+  /// but criterion, threshold and kinds of features.
   SolveOptions solve;
+  ScaleOptions scale;
   /// Inlier thresholds to set against the a-contrario criterion, pixels.
   std::vector<double> thresholds_px = {0.5, 1, 3, 6, 9};
 

@@ -11,6 +11,7 @@
 #include "lowlap/core/random.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/scale/scale_ratios.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -117,9 +118,11 @@ std::vector<std::string> DoubtCodes(const PoseSummary& summary) {
   for (const WarningReason reason :
        {WarningReason::kContradictedPoses, WarningReason::kWeakScale,
         WarningReason::kContradictedRatios, WarningReason::kLostFeatures}) {
-    const bool present = std::any_of(
-        summary.reliability_warnings.begin(), summary.reliability_warnings.end(),
-        [&](const ReliabilityWarning& doubt) { return doubt.reason == reason; });
+    const bool present = std::any_of(summary.reliability_warnings.begin(),
+                                     summary.reliability_warnings.end(),
+                                     [&](const ReliabilityWarning& doubt) {
+                                       return doubt.reason == reason;
+                                     });
     if (present) codes.push_back(WarningReasonName(reason));
   }
   return codes;
@@ -163,7 +166,8 @@ Status RunSubsets(const Scene& scene, const GroundTruth& truth,
                   const std::function<Status(const SubsetOutcome&)>& done) {
   if (const Status valid = options.Validate(); !valid) return valid;
   if (dropped.empty()) return {};
-  auto ratios = EstimateScaleRatios(scene, options.scale, context);
+  auto ratios = EstimateScaleRatios(scene, FindTriplets(ViewGraph(scene)),
+                                    *options.scale_estimator, context);
   if (!ratios) return tl::unexpected<Error>(ratios.error());
   Scene measured = scene;
   measured.scale_ratios = std::move(*ratios);

@@ -26,8 +26,8 @@ std::vector<NearestTwo> FindNearestTwoApproximately(
   if (queries.empty() || database.size() < 2) {
     return FindNearestTwo(queries, database);
   }
-  flann::Index<flann::L2<std::uint8_t>> index(AsMatrix(database),
-                                              flann::KDTreeIndexParams(kTrees));
+  flann::Index<flann::L2<std::uint8_t>> index(
+      AsMatrix(database), flann::KMeansIndexParams(kBranching, kIterations));
   {
     // The first centres are drawn from the process's one stream of random
     // numbers. Its randomised trees, and other centres, have no seed.
