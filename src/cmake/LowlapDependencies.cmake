@@ -20,6 +20,7 @@ find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 # -lexif and -lClp.
 find_library(LIBEXIF_LIBRARY exif REQUIRED)
 find_library(CLP_LIBRARY Clp REQUIRED)
+find_library(COINUTILS_LIBRARY CoinUtils REQUIRED)
 # Neither has SuiteSparse: -lcholmod.
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)

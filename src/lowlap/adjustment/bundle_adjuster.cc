@@ -357,7 +357,7 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
       return MakeError(ErrorCode::kCancelled, "stopped on request");
     }
     summary.calibration_preferences = internal::FindCalibrationPreferences(
-        *scene, options, adjuster.noise(), cameras, state);
+        options, adjuster.noise(), cameras, state);
   }
   for (const auto& [id, pose] : scene->poses) {
     if (adjusted.count(id) == 0) {

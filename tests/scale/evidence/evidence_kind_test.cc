@@ -111,10 +111,10 @@ TEST(EvidenceKind, SaysNothingAboutTripletsThatItDoesNotKnow) {
   EXPECT_EQ(ratio.log10_nfa, without.log10_nfa);
 }
 
-// A few points that chance explains on their own, and lengths that agree.
+// Two points that chance explains on their own, and lengths that agree.
 TEST(EvidenceKind, MakesARatioMeaningfulTogetherWithFeatures) {
   testing::SyntheticTripletOptions options;
-  options.num_points = 4;
+  options.num_points = 2;
   options.noise_px = 0.5;
   int alone = 0, together = 0, contradicted = 0;
   constexpr int kTriplets = 40;

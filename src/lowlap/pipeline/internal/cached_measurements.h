@@ -23,7 +23,7 @@ namespace lowlap {
 struct KeyedFeatures {
   std::map<ViewId, DetectedFeatures> features;
   std::map<ViewId, Hash128::Value> keys;
-  std::map<ViewId, Error> failed;  // views whose images have no features
+  std::map<ViewId, Error> failed;  // views whose images cannot be used
 };
 
 /// Errors as in DetectFeatures, but for those of single images.

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "lowlap/core/format.h"
-#include "lowlap/pipeline/exif.h"
+#include "lowlap/pipeline/internal/exif.h"
 
 namespace lowlap {
 namespace {

@@ -20,7 +20,7 @@ std::string NameOf(const Scene& scene, ViewId view) {
   return scene.views.at(view).filename;
 }
 
-ReportTable RatioTable(const Scene& scene) {
+ReportTable ScaleRatioTable(const Scene& scene) {
   ReportTable table;
   table.title = "Scale ratios";
   table.note =
@@ -118,7 +118,8 @@ ReportContent MakeReport(const RunSummary& summary, const Scene& scene) {
                                  Number(summary.evaluation->position.mean));
     content.tables.push_back(ErrorTable(*summary.evaluation));
   }
-  if (!scene.scale_ratios.empty()) content.tables.push_back(RatioTable(scene));
+  if (!scene.scale_ratios.empty())
+    content.tables.push_back(ScaleRatioTable(scene));
   if (!summary.pairs.empty()) {
     content.tables.push_back(PairTable(summary.pairs, scene));
   }

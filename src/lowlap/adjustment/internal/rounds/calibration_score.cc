@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <optional>
-#include <set>
 
 #include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
 #include "lowlap/adjustment/internal/rounds/linearised_problem.h"
@@ -265,12 +264,12 @@ void Choose(const Score& score, std::vector<Candidate>* candidates) {
 }  // namespace
 
 std::vector<CalibrationPreference> FindCalibrationPreferences(
-    const Scene& scene, const AdjustmentOptions& options,
-    const NoiseLevels& noise, CameraSet cameras, StructureState state) {
+    const AdjustmentOptions& options, const NoiseLevels& noise,
+    CameraSet cameras, StructureState state) {
   const std::vector<Group> groups = MakeGroups(options, cameras);
   const CameraSet held = cameras;
   AdjustmentOptions freed = options;
-  freed.use_coplanar = false;
+  freed.use_lines = false;
   freed.principal_point_stddev = 0;
   for (IntrinsicState& intrinsic : cameras.intrinsics) {
     if (intrinsic.value.model == CameraModel::kPinhole) {
@@ -279,17 +278,9 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
     }
     freed.refine_intrinsics[intrinsic.id] = kAllParts;
   }
+  state.lines.clear();
+  state.pairs.clear();
   state.priors.clear();
-  // Errors of depth in two views are large and curved: their share of the score
-  // has a mean.
-  for (PointTrackState& point : state.points) {
-    std::set<int> poses;
-    for (const PointCandidate& candidate : point.candidates) {
-      if (candidate.used) poses.insert(cameras.views[candidate.view].pose);
-    }
-    if (poses.size() < 3) point.status = LandmarkStatus::kTooFewViews;
-  }
-  RefreshRays(scene, cameras, &state);
   const ProblemSelection selection = SelectForSolve(cameras, state, freed);
   if (groups.empty() || selection.IsEmpty()) return {};
   const std::vector<Component> components =

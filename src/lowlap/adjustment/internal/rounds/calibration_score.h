@@ -10,7 +10,7 @@ namespace lowlap::internal {
 
 /// Which held parts of the calibration the images contradict, at an adjusted
 /// state: a score test of every part. With the gradient g and the Hessian H of
-/// the cost of points and lines, by the held parameters t and, x, everything
+/// the cost of points, by the held parameters t and, x, everything
 /// that is free (poses, landmarks, refined parts),
 ///   u = g_t - H_tx H_xx^-1 g_x,   I = H_tt - H_tx H_xx^-1 H_xt,
 /// the calibration that the images prefer is away by -I^-1 u, and u^T I^-1 u
@@ -22,11 +22,14 @@ namespace lowlap::internal {
 ///
 /// One intrinsic at a time, or, beyond 16, all by one common change (of the
 /// focal lengths and the aspect by a factor, of the principal points by a share
-/// of the diagonal). Coplanar pairs and relative poses have no part: they
-/// depend on the points and lines; nor have landmarks of two views.
-/// Pinholes are tested for a k1.
+/// of the diagonal). Pinholes are tested for a k1.
+///
+/// Points alone are asked; without them nothing is said. The score of lines has
+/// a mean: on simulated rooms with the true calibration, of 1.7 standard
+/// deviations in the aspect, where that of points has -0.1. Coplanar pairs and
+/// relative poses depend on both.
 std::vector<CalibrationPreference> FindCalibrationPreferences(
-    const Scene& scene, const AdjustmentOptions& options,
-    const NoiseLevels& noise, CameraSet cameras, StructureState state);
+    const AdjustmentOptions& options, const NoiseLevels& noise,
+    CameraSet cameras, StructureState state);
 
 }  // namespace lowlap::internal
