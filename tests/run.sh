@@ -28,9 +28,11 @@ done
 step() { printf '\n== %s\n' "$*"; }
 build=build/ci
 jobs=$(nproc)
+# What ccache needs to know of precompiled headers.
+export CCACHE_SLOPPINESS=pch_defines,time_macros
 
 step "Packages"
-tools=(ccache clang-format)
+tools=(ccache clang-format doxygen dpkg-dev)
 if $tidy; then tools+=(clang-tidy clang-tools); fi
 bash tutorials/install_dependencies.sh "${tools[@]}"
 
@@ -47,9 +49,15 @@ cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
 step "Building with $jobs jobs"
 cmake --build "$build" --parallel "$jobs"
 
+step "Reference pages"
+cmake --build "$build" --target docs
+
 if $tidy; then
   step "clang-tidy"
-  run-clang-tidy -quiet -p "$build" -j "$jobs" -warnings-as-errors='*' \
+  # Clang cannot read GCC's precompiled headers.
+  cmake -S . -B build/tidy -G Ninja -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
+    -DLOWLAP_PRECOMPILED_HEADERS=OFF
+  run-clang-tidy -quiet -p build/tidy -j "$jobs" -warnings-as-errors='*' \
     "^$PWD/(src|third_party_adapters)/.*\.cc$"
 fi
 

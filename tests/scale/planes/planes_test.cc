@@ -167,6 +167,8 @@ TEST(FindPlanes, TakesFewOrNoSamples) {
   EXPECT_TRUE(FindPlanes({}).planes.empty());
   std::vector<DepthSample> samples(3);
   EXPECT_TRUE(FindPlanes(samples).planes.empty());
+  EXPECT_EQ(FindPlanes(samples).plane_of_sample,
+            std::vector<int>(3, PairPlanes::kNoPlane));
   // All of them at one place determine no plane.
   DepthSample sample;
   sample.inverse_depth = 0.3;

@@ -108,7 +108,6 @@ class PlaneSearch {
   explicit PlaneSearch(PairPlanes* result)
       : result_(result), samples_(result->samples) {
     const int num_samples = static_cast<int>(samples_.size());
-    result_->plane_of_sample.assign(num_samples, PairPlanes::kNoPlane);
     std::vector<double> disparities_px;
     for (int n = 0; n < num_samples; ++n) {
       neighbors_.push_back(
@@ -318,6 +317,7 @@ PairPlanes FindPlanes(std::vector<DepthSample> samples) {
   std::sort(result.matched.begin(), result.matched.end());
   result.samples = Thinned(std::move(samples));
   std::sort(result.samples.begin(), result.samples.end(), IsLeft);
+  result.plane_of_sample.assign(result.samples.size(), PairPlanes::kNoPlane);
   if (static_cast<int>(result.samples.size()) > kPlaneSize) {
     PlaneSearch(&result).Run();
   }
