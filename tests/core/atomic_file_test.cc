@@ -132,8 +132,10 @@ TEST_F(AtomicFileTest, LinksInACircleAreAnError) {
   fs::create_symlink("a", Path("b"));
   EXPECT_THAT(WriteFileAtomically(Path("a"), "x"),
               IsError(ErrorCode::kIo, Path("a")));
-  EXPECT_THAT(ReadWholeFile(Path("a")),
-              IsError(ErrorCode::kIo, "Too many levels of symbolic links"));
+  for (const char* name : {"a", "b"}) {
+    EXPECT_THAT(ReadWholeFile(Path(name)),
+                IsError(ErrorCode::kIo, "Too many levels of symbolic links"));
+  }
   EXPECT_EQ(CountFiles(), 2u);
 }
 

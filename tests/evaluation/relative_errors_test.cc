@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "evaluation/random_poses.h"
 
@@ -65,10 +64,6 @@ TEST(EvaluateRelativePoses, ErrorsAreThoseThatWereMade) {
   EXPECT_NEAR(*result.pairs[2].direction_error_deg, 7, 1e-9);
   EXPECT_NEAR(result.direction_deg.mean, 187.0 / 3, 1e-5);
 
-  const auto json = nlohmann::json::parse(ToJson(result));
-  EXPECT_EQ(json["num_without_truth"], 1);
-  EXPECT_EQ(json["pairs"][2]["views"][1], 6);
-  EXPECT_EQ(json["rotation_deg"]["max"], result.rotation_deg.max);
   EXPECT_THAT(ToText(result), ::testing::HasSubstr("2-4"));
 }
 
@@ -82,8 +77,6 @@ TEST(EvaluateRelativePoses, CoincidingCentresHaveNoDirection) {
   EXPECT_FALSE(result.pairs[0].direction_error_deg.has_value());
   EXPECT_EQ(result.direction_deg.count, 0);
   EXPECT_EQ(result.rotation_deg.count, 1);
-  EXPECT_FALSE(nlohmann::json::parse(ToJson(result))["pairs"][0].contains(
-      "direction_error_deg"));
 }
 
 ScaleRatio MakeRatio(ViewTriplet views, RatioVerdict verdict,
@@ -124,10 +117,6 @@ TEST(EvaluateScaleRatios, ErrorsAreLogarithmicAndOnlyMeaningfulOnesCount) {
   EXPECT_EQ(result.abs_log_error.count, 2);
   EXPECT_NEAR(result.abs_log_error.max, 0.1, 1e-14);
 
-  const auto json = nlohmann::json::parse(ToJson(result));
-  EXPECT_EQ(json["ratios"][1]["views"][0], 4);
-  EXPECT_EQ(json["ratios"][1]["log_error"], result.ratios[1].log_error);
-  EXPECT_EQ(json["abs_log_error"]["count"], 2);
   EXPECT_THAT(ToText(result), ::testing::HasSubstr("meaningful: 2"));
 }
 

@@ -13,7 +13,7 @@ using testing::MakeTwoViewScene;
 using testing::TwoViewScene;
 using testing::TwoViewSceneOptions;
 
-TranslationEvidence Test(const TwoViewScene& scene) {
+TranslationEvidence EvidenceOf(const TwoViewScene& scene) {
   std::vector<int> inliers(scene.num_right);
   std::iota(inliers.begin(), inliers.end(), 0);
   const PointPairs pairs = scene.Pairs();
@@ -21,7 +21,7 @@ TranslationEvidence Test(const TwoViewScene& scene) {
 }
 
 TEST(TestTranslation, ALongBaselineNeedsNoProof) {
-  const TranslationEvidence evidence = Test(MakeTwoViewScene({}, 1));
+  const TranslationEvidence evidence = EvidenceOf(MakeTwoViewScene({}, 1));
   EXPECT_LT(evidence.num_rotation_inliers, 100);
   EXPECT_FALSE(evidence.log10_nfa);
   EXPECT_TRUE(evidence.IsSeen());
@@ -31,7 +31,7 @@ TEST(TestTranslation, AShortOneProvesItself) {
   TwoViewSceneOptions options;
   options.baseline = 0.02;
   options.noise_px = 0.3;
-  const TranslationEvidence evidence = Test(MakeTwoViewScene(options, 2));
+  const TranslationEvidence evidence = EvidenceOf(MakeTwoViewScene(options, 2));
   EXPECT_GT(evidence.num_rotation_inliers, 150);
   ASSERT_TRUE(evidence.log10_nfa);
   EXPECT_LT(*evidence.log10_nfa, 0);
@@ -44,7 +44,7 @@ TEST(TestTranslation, WithoutOneTheEvidenceIsUniform) {
   options.noise_px = 0.5;
   for (int seed = 0; seed < 50; ++seed) {
     const TranslationEvidence evidence =
-        Test(MakeTwoViewScene(options, 10 + seed));
+        EvidenceOf(MakeTwoViewScene(options, 10 + seed));
     EXPECT_EQ(evidence.num_rotation_inliers, 200);
     EXPECT_EQ(evidence.log10_nfa, 0.0) << seed;
     EXPECT_FALSE(evidence.IsSeen());
@@ -55,7 +55,7 @@ TEST(TestTranslation, NothingMovesInACopy) {
   TwoViewScene scene = MakeTwoViewScene({}, 3);
   scene.features2.points = scene.features1.points;
   scene.cam2_from_cam1 = {Mat3::Identity(), Vec3::UnitX()};
-  const TranslationEvidence evidence = Test(scene);
+  const TranslationEvidence evidence = EvidenceOf(scene);
   EXPECT_EQ(evidence.num_rotation_inliers, 200);
   EXPECT_EQ(evidence.log10_nfa, 0.0);
 }

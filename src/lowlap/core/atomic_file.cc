@@ -48,22 +48,26 @@ struct Target {
   bool is_direct = false;
 };
 
-Target FollowLinks(const std::string& path) {
+Result<Target> FollowLinks(const std::string& path) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) == 0 && !S_ISREG(status.st_mode)) {
-    return {path, !S_ISDIR(status.st_mode)};
+  if (::stat(path.c_str(), &status) != 0) {
+    if (errno == ELOOP) {
+      return SystemError("cannot be opened for writing", path);
+    }
+  } else if (!S_ISREG(status.st_mode)) {
+    return Target{path, !S_ISDIR(status.st_mode)};
   }
-  constexpr int kMaxLinks = 40;  // as the system does
   fs::path target = path;
   std::error_code error;
-  for (int n = 0; n < kMaxLinks && fs::is_symlink(target, error); ++n) {
+  while (fs::is_symlink(target, error)) {
+    // /dev/stdout, say: the file that is open, which need not have the name
+    // that the link gives.
+    if (target.string().rfind("/proc/", 0) == 0) return Target{path, true};
     const fs::path link = fs::read_symlink(target, error);
     if (error) break;
     target = target.parent_path() / link;
-    // /dev/stdout, say: the file that is open, which need not have this name.
-    if (target.string().rfind("/proc/", 0) == 0) return {path, true};
   }
-  return {target.string(), false};
+  return Target{target.string(), false};
 }
 
 /// Locks a file that was opened under `name`; false if another writer has it,
@@ -135,7 +139,9 @@ FileSet::~FileSet() {
 }
 
 Status FileSet::Add(const std::string& path, std::string_view content) {
-  const Target target = FollowLinks(path);
+  const Result<Target> followed = FollowLinks(path);
+  if (!followed) return tl::unexpected<Error>(followed.error());
+  const Target& target = *followed;
   if (target.is_direct) {
     outputs_.push_back({path, target.path, {}, std::string(content), -1});
     return {};

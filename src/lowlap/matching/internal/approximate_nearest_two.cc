@@ -27,7 +27,9 @@ std::vector<NearestTwo> FindNearestTwoApproximately(
     return FindNearestTwo(queries, database);
   }
   flann::Index<flann::L2<std::uint8_t>> index(
-      AsMatrix(database), flann::KMeansIndexParams(kBranching, kIterations));
+      AsMatrix(database),
+      flann::KMeansIndexParams(kBranching, kIterations,
+                               flann::FLANN_CENTERS_GONZALES));
   {
     // The first centres are drawn from the process's one stream of random
     // numbers. Its randomised trees, and other centres, have no seed.
