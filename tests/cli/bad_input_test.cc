@@ -124,8 +124,9 @@ TEST_F(BadInput, SolutionsWithoutCameras) {
 
 TEST_F(BadInput, ExcludedViewsThatAreNotThere) {
   for (const char* command : {"inspect ", "diagnose ", "scales "}) {
-    ExpectRefused(command + Room() + " --exclude nobody",
-                  "room.lowlap: no view 'nobody'");
+    ExpectRefused(
+        command + Room() + " --exclude nobody",
+        "room.lowlap: no view has the file name or the id \"nobody\"");
   }
   EXPECT_THAT(Lowlap("inspect " + Room() + " --exclude 0").output,
               HasSubstr("views 4"));

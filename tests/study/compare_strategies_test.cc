@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "lowlap/averaging/averager_registry.h"
-#include "lowlap/study/comparison_output.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "read_csv.h"
 

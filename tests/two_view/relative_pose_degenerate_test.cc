@@ -171,8 +171,7 @@ TEST(EstimateRelativePose, PureRotationsAreRarelyTakenForTranslations) {
     TwoViewOptions quick;
     quick.max_samples = 300;
     const auto result = EstimateRelativePose(scene.Input(), quick, seed);
-    ASSERT_THAT(result, IsOk());
-    num_false += result->HasDirection();
+    num_false += result && result->HasDirection();
   }
   // Two would have a probability of 0.005.
   EXPECT_LE(num_false, 1);

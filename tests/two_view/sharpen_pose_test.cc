@@ -40,7 +40,7 @@ TEST(SharpenPose, ScaleFollowsThePrecisionOfThePoints) {
 
 TEST(SharpenPose, LeavesMatchesBesideTheirEpipolarLinesForTheRightOnes) {
   // A third of the matches lie 2 to 4 pixels beside, all on one side. The start
-  // is halfway to them.
+  // is among them.
   TwoViewSceneOptions options;
   options.num_right = 300;
   options.noise_px = 0.2;
@@ -51,8 +51,8 @@ TEST(SharpenPose, LeavesMatchesBesideTheirEpipolarLinesForTheRightOnes) {
   }
   const PointPairs pairs = scene.Pairs();
   RigidTransform bent = scene.cam2_from_cam1;
-  bent.rotation = RotationFromAngleAxis(Vec3(-1.5 / testing::kFocalPx, 0, 0)) *
-                  bent.rotation;
+  bent.rotation =
+      RotationFromAngleAxis(Vec3(-3 / testing::kFocalPx, 0, 0)) * bent.rotation;
   const SharpenedPose sharp =
       SharpenPose(EssentialKernel(pairs), bent, 4, random);
   EXPECT_LT(ErrorDeg(sharp.cam2_from_cam1, scene), 0.5 * ErrorDeg(bent, scene));

@@ -116,7 +116,7 @@ TEST(EvidenceKind, MakesARatioMeaningfulTogetherWithFeatures) {
   testing::SyntheticTripletOptions options;
   options.num_points = 2;
   options.noise_px = 0.5;
-  int alone = 0, together = 0, contradicted = 0;
+  int alone = 0, together = 0;
   constexpr int kTriplets = 40;
   for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
     const testing::SyntheticTriplet triplet =
@@ -131,11 +131,8 @@ TEST(EvidenceKind, MakesARatioMeaningfulTogetherWithFeatures) {
     };
     alone += meaningful(*EvidenceRegistry::BuiltIn().Make({}, {}));
     together += meaningful(With(odometry(triplet.true_log_ratio)));
-    contradicted += meaningful(With(odometry(triplet.true_log_ratio + 1)));
   }
   EXPECT_GT(together, alone);
-  // A kind that disagrees never outvotes the others, but costs a test.
-  EXPECT_LE(contradicted, alone);
 }
 
 TEST(EvidenceKind, AloneIsOneCandidateThatNothingAgreesWith) {
