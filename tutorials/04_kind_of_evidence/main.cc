@@ -1,9 +1,9 @@
 // Tutorial 4: a kind of evidence of one's own, beside the built-in ones.
 //
 // A robot that took the photographs measured how far it moved between some of
-// them, to within a few percent. Such an odometry says something about the
-// ratio of two neighbouring baselines, as coplanar lines or trifocal points do.
-// The estimator weighs all of them by what each would say by chance.
+// them, to within a tenth of a percent. Such an odometry says something about
+// the ratio of two neighbouring baselines, as coplanar lines or trifocal points
+// do. The estimator weighs all of them by what each would say by chance.
 //
 //   cmake -S tutorials/04_kind_of_evidence -B build/tutorial04
 //   cmake --build build/tutorial04 && build/tutorial04/kind_of_evidence
@@ -91,23 +91,23 @@ int main() {
   room.num_views = 7;
   room.pairs = "chain";
   room.points_per_wall = 25;
-  room.lines_per_wall = 12;
+  room.lines_per_wall = 40;
   room.trifocal_point_share = room.trifocal_line_share = 0;
   room.noise_px = 0.5;
   room.seed = 3;
   const auto simulated = lowlap::Simulate(room);
   if (!simulated) return Fail(simulated.error());
 
-  // The robot knows all baselines but one, to 3 %.
+  // The robot knows all baselines but one, to 0.1 %.
   Odometry::Lengths lengths;
   int n = 0;
   for (const auto& [views, length] : simulated->true_baselines) {
-    if (n++ != 2) lengths[views] = length * (n % 2 == 0 ? 1.02 : 0.98);
+    if (n++ != 2) lengths[views] = length * (n % 2 == 0 ? 1.0005 : 0.9995);
   }
 
   auto kinds = lowlap::EvidenceRegistry::BuiltIn().Make({}, {});
   if (!kinds) return Fail(kinds.error());
-  kinds->push_back(std::make_shared<Odometry>(lengths, 0.03));
+  kinds->push_back(std::make_shared<Odometry>(lengths, 0.001));
   lowlap::SolveOptions options;
   options.scale_estimator =
       std::make_shared<lowlap::AContrarioScaleEstimator>(*kinds);
@@ -120,8 +120,7 @@ int main() {
   std::printf("views   ratio   true    inliers of candidates by kind\n");
   for (const lowlap::ScaleRatio& ratio : scene.scale_ratios) {
     std::printf("%u-%u-%u  %6.4f  %6.4f ", ratio.views.first,
-                ratio.views.middle, ratio.views.last.value(),
-                std::exp(ratio.log_ratio),
+                ratio.views.middle, ratio.views.last, std::exp(ratio.log_ratio),
                 std::exp(*simulated->TrueLogRatio(ratio.views)));
     for (const lowlap::KindSupport& kind : ratio.kinds) {
       std::printf("  %s %d/%d", kind.kind.c_str(), kind.inliers,
