@@ -154,12 +154,12 @@ TEST(SolveDirectionParts, GivesEveryPartAComponentAndNamesTheRest) {
 
 TEST(SolveDirectionParts, PassesErrorsOn) {
   const RandomProblem made = Directions(3, {{0, 1}, {1, 2}, {2, 0}}, 11);
-  const auto solution = SolveDirectionParts(
-      made.problem, RunContext(),
-      [](const DirectionPart&, const RunContext&,
-         int*) -> Result<std::vector<Vec3>> {
-        return MakeError(ErrorCode::kNumerical, "no");
-      });
+  const auto solution =
+      SolveDirectionParts(made.problem, RunContext(),
+                          [](const DirectionPart&, const RunContext&,
+                             int*) -> Result<std::vector<Vec3>> {
+                            return MakeError(ErrorCode::kNumerical, "no");
+                          });
   ASSERT_FALSE(solution);
   EXPECT_EQ(solution.error().code, ErrorCode::kNumerical);
 }

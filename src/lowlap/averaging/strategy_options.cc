@@ -18,7 +18,8 @@ Status ReadNumber(const char* kind, const std::string& key,
   Number read = 0;
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, read);
-  if (error != std::errc() || rest != end || std::isnan(static_cast<double>(read))) {
+  if (error != std::errc() || rest != end ||
+      std::isnan(static_cast<double>(read))) {
     return NotA(kind, key, text);
   }
   *value = read;

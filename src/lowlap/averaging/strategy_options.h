@@ -43,9 +43,8 @@ Error UnknownOption(const std::string& key,
 
 /// The options of a struct that has
 ///   Status Validate() const;
-///   template <class Visit> void VisitOptions(const Visit& visit) {
-///     visit("key", &member, "what it is");  // once for each
-///   }
+///   void VisitOptions(const Visit& visit)   (a template of Visit)
+/// which calls visit("key", pointer to the member, "what it is") for each.
 template <class Options>
 std::vector<StrategyOption> ListOptions(Options defaults) {
   std::vector<StrategyOption> list;

@@ -10,7 +10,7 @@ namespace lowlap {
 /// Well-formed UTF-8 (RFC 3629).
 bool IsUtf8(const std::string& text);
 
-/// The text with bytes that are not ASCII, and control characters, as \xNN:
+/// The text with bytes that are not ASCII, and control characters, as codes:
 /// for messages about text that cannot be shown.
 std::string Escaped(const std::string& text);
 

@@ -61,7 +61,8 @@ struct TripletPrediction {
   /// The kept views by common scale; more than one: they are put together at
   /// an arbitrary scale, without a warning.
   std::vector<RigidGroup> groups;
-  std::vector<ArticulationView> articulation_views;  // where they meet; indices into groups
+  std::vector<ArticulationView>
+      articulation_views;  // where they meet; indices into groups
 
   bool IsGlued() const { return groups.size() > 1; }
 };

@@ -24,8 +24,8 @@ struct ArticulationView {
 };
 
 struct RigidityReport {
-  std::vector<RigidGroup> groups;  // most views first
-  std::vector<ArticulationView> articulation_views;       // by view id
+  std::vector<RigidGroup> groups;                    // most views first
+  std::vector<ArticulationView> articulation_views;  // by view id
   /// Views of one connected component of the view graph, most views first.
   std::vector<std::vector<ViewId>> connected_components;
   /// Views without any relative pose.

@@ -55,7 +55,8 @@ class TokenReader {
       is_good = is_good && std::isfinite(value);
     }
     if (!is_good) {
-      Fail("'" + Escaped(std::string(token.substr(0, 32))) + "' is not " + what);
+      Fail("'" + Escaped(std::string(token.substr(0, 32))) + "' is not " +
+           what);
       return T{};
     }
     offset_ = end;
