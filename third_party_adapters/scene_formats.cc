@@ -7,6 +7,7 @@
 #include <system_error>
 #include <utility>
 
+#include "lowlap/core/internal/atomic_file.h"
 #include "third_party_adapters/onedsfm/internal/scene_format.h"
 #include "third_party_adapters/openmvg/internal/scene_format.h"
 

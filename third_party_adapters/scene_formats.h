@@ -2,12 +2,13 @@
 
 #include <string>
 
-#include "lowlap/core/atomic_file.h"
 #include "lowlap/core/result.h"
 #include "lowlap/io/scene_format.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
+
+class FileSet;
 
 /// Every scene format there is: OwnSceneFormats and those of the adapters,
 ///   openmvg-json  -        what OpenMVG holds and nothing else

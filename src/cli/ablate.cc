@@ -5,8 +5,8 @@
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
 #include "lowlap/averaging/averager_registry.h"
-#include "lowlap/pipeline/output_folder.h"
-#include "lowlap/study/ablation.h"
+#include "lowlap/pipeline/internal/output/output_folder.h"
+#include "lowlap/study/internal/ablation.h"
 
 namespace lowlap::cli {
 namespace {

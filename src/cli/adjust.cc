@@ -5,10 +5,9 @@
 #include "cli/command.h"
 #include "cli/solve_flags.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/intrinsic_refinement.h"
-#include "lowlap/adjustment/structure_builder.h"
-#include "lowlap/pipeline/output_folder.h"
-#include "lowlap/pipeline/summary_json.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/pipeline/internal/output/output_folder.h"
+#include "lowlap/pipeline/internal/output/summary_json.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {

@@ -2,7 +2,7 @@
 #include <optional>
 
 #include "cli/command.h"
-#include "lowlap/pipeline/scene_reduction.h"
+#include "lowlap/pipeline/internal/scene_reduction.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {

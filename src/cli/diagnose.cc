@@ -5,9 +5,9 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
-#include "lowlap/averaging/rigidity/diagnosis.h"
-#include "lowlap/core/atomic_file.h"
-#include "lowlap/pipeline/internal/diagnosis_output.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/pipeline/internal/output/diagnosis_output.h"
 #include "lowlap/scale/scale_ratios.h"
 
 namespace lowlap::cli {

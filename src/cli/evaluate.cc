@@ -7,7 +7,7 @@
 #include "cli/solve_flags.h"
 #include "lowlap/evaluation/internal/line_match_errors.h"
 #include "lowlap/evaluation/internal/pair_errors.h"
-#include "lowlap/matching/pair_selection.h"
+#include "lowlap/matching/internal/pair_selection.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {

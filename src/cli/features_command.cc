@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "lowlap/features/features.h"
-#include "lowlap/features/overlay.h"
+#include "lowlap/features/internal/features.h"
+#include "lowlap/features/internal/overlay.h"
 
 namespace lowlap::cli {
 namespace {

@@ -4,9 +4,9 @@
 
 #include "cli/command.h"
 #include "cli/scene_input.h"
-#include "lowlap/averaging/rigidity/rigidity.h"
-#include "lowlap/core/atomic_file.h"
-#include "lowlap/pipeline/summary_json.h"
+#include "lowlap/averaging/rigidity/internal/rigidity.h"
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/pipeline/internal/output/summary_json.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap::cli {

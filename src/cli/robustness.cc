@@ -6,7 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/solve_flags.h"
-#include "lowlap/pipeline/output_folder.h"
+#include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/report/internal/table_text.h"
 #include "lowlap/study/internal/result_log.h"
 #include "lowlap/study/internal/robustness/output.h"

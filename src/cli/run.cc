@@ -6,12 +6,13 @@
 
 #include "cli/command.h"
 #include "cli/solve_flags.h"
-#include "lowlap/adjustment/intrinsic_refinement.h"
-#include "lowlap/pipeline/calibrate_images.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/pipeline/image_collection.h"
-#include "lowlap/pipeline/output_folder.h"
+#include "lowlap/pipeline/internal/measure/image_measurements.h"
+#include "lowlap/pipeline/internal/output/output_folder.h"
+#include "lowlap/pipeline/measure_images.h"
 #include "third_party_adapters/scene_formats.h"
-#include "third_party_adapters/strecha/strecha.h"
+#include "third_party_adapters/strecha/internal/strecha.h"
 
 namespace lowlap::cli {
 namespace {
@@ -59,7 +60,7 @@ Result<IntrinsicSource> ReadIntrinsics(const RunFlags& flags) {
 // focal length are wrong themselves. If a first solution moves the intrinsics
 // by more than a pixel, they are estimated once more with the refined ones.
 Result<std::vector<PairReport>> Measure(const RunFlags& flags,
-                                        const FrontEndOptions& front_end,
+                                        const MeasurementOptions& front_end,
                                         SolveOptions options,
                                         const RunContext& context,
                                         StageLog* stages, Scene* scene,
@@ -122,7 +123,7 @@ int Run(const RunFlags& flags) {
                 "as a rule; --refine-intrinsics adjusts them");
   }
 
-  FrontEndOptions front_end;
+  MeasurementOptions front_end;
   if (!flags.no_cache) {
     front_end.cache_folder =
         flags.cache.empty() ? flags.output + "/cache" : flags.cache;

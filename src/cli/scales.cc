@@ -9,10 +9,10 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
-#include "lowlap/core/atomic_file.h"
+#include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/evaluation/internal/relative_errors.h"
-#include "lowlap/pipeline/internal/ratio_table.h"
-#include "lowlap/pipeline/summary_json.h"
+#include "lowlap/pipeline/internal/output/ratio_table.h"
+#include "lowlap/pipeline/internal/output/summary_json.h"
 #include "lowlap/scale/internal/search/ratio_profile.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
@@ -87,9 +87,9 @@ void PrintTable(const std::vector<ScaleRatio>& ratios) {
   for (std::size_t n = 0; n < ratios.size(); ++n) {
     rows.push_back(table.rows[n]);
     rows.back().insert(rows.back().begin(),
-                       std::to_string(ratios[n].views.first) + "-" +
-                           std::to_string(ratios[n].views.middle) + "-" +
-                           std::to_string(ratios[n].views.last));
+                       std::to_string(ratios[n].views.first.value()) + "-" +
+                           std::to_string(ratios[n].views.middle.value()) +
+                           "-" + std::to_string(ratios[n].views.last.value()));
   }
   std::vector<int> widths(rows.front().size(), 0);
   for (const auto& row : rows) {

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "lowlap/pipeline/image_collection.h"
-#include "lowlap/pipeline/relative_poses.h"
-#include "third_party_adapters/openmvg/import.h"
+#include "lowlap/pipeline/internal/measure/relative_poses.h"
+#include "third_party_adapters/openmvg/internal/import.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
-#include "lowlap/pipeline/pair_report.h"
+#include "lowlap/pipeline/internal/measure/pair_report.h"
 #include "lowlap/pipeline/stage_log.h"
 #include "lowlap/scene/scene.h"
 

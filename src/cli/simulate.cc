@@ -2,7 +2,7 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "lowlap/core/atomic_file.h"
+#include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "third_party_adapters/scene_formats.h"
 

@@ -4,8 +4,8 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
-#include "lowlap/adjustment/intrinsic_refinement.h"
-#include "lowlap/pipeline/output_folder.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/pipeline/internal/output/output_folder.h"
 
 namespace lowlap::cli {
 namespace {

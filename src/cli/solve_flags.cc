@@ -8,13 +8,13 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/averager_registry.h"
-#include "lowlap/averaging/pose_warnings.h"
-#include "lowlap/pipeline/output_folder.h"
-#include "third_party_adapters/onedsfm/problem.h"
+#include "lowlap/averaging/internal/pose_warnings.h"
+#include "lowlap/pipeline/internal/output/output_folder.h"
+#include "third_party_adapters/onedsfm/internal/problem.h"
 #include "third_party_adapters/scene_formats.h"
-#include "third_party_adapters/strecha/strecha.h"
+#include "third_party_adapters/strecha/internal/strecha.h"
 
 namespace lowlap::cli {
 namespace {

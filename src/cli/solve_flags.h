@@ -9,8 +9,8 @@
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/result.h"
 #include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/pipeline/internal/output/summary_json.h"
 #include "lowlap/pipeline/solve_scene.h"
-#include "lowlap/pipeline/summary_json.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
 
 namespace lowlap::cli {

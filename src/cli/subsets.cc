@@ -12,14 +12,14 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
-#include "lowlap/core/hash.h"
-#include "lowlap/io/scene_binary.h"
-#include "lowlap/pipeline/output_folder.h"
-#include "lowlap/pipeline/scene_reduction.h"
+#include "lowlap/core/internal/hash.h"
+#include "lowlap/io/internal/scene_binary.h"
+#include "lowlap/pipeline/internal/output/output_folder.h"
+#include "lowlap/pipeline/internal/scene_reduction.h"
 #include "lowlap/report/internal/table_text.h"
 #include "lowlap/study/internal/result_log.h"
-#include "lowlap/study/subset_runs.h"
-#include "lowlap/study/subset_table.h"
+#include "lowlap/study/internal/subset_runs.h"
+#include "lowlap/study/internal/subset_table.h"
 
 namespace lowlap::cli {
 namespace {
@@ -44,7 +44,7 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
   Hash128 hash;
   hash.Add(*bytes);
   for (const auto& [view, pose] : truth) {
-    hash.Add(view);
+    hash.Add(view.value());
     for (int n = 0; n < 3; ++n) hash.Add(pose.center(n));
   }
   std::string text =

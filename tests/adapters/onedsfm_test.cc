@@ -6,10 +6,10 @@
 #include <string>
 
 #include "adapters/temporary_folder.h"
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/validation.h"
-#include "third_party_adapters/onedsfm/problem.h"
+#include "third_party_adapters/onedsfm/internal/problem.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap {
@@ -158,8 +158,8 @@ TEST_F(OneDSfmFolder, RelativePosesAreThoseOfTheCameras) {
   ASSERT_TRUE(problem);
   ASSERT_EQ(problem->scene.relative_poses.size(), 3u);
   for (const auto& [views, pose] : problem->scene.relative_poses) {
-    const Pose& first = poses_[views.first];
-    const Pose& second = poses_[views.second];
+    const Pose& first = poses_[views.first.value()];
+    const Pose& second = poses_[views.second.value()];
     EXPECT_LT(
         (pose.rotation - second.rotation * first.rotation.transpose()).norm(),
         1e-12);
@@ -176,7 +176,8 @@ TEST_F(OneDSfmFolder, KeypointsAreSeenWhereTheIntrinsicsPutThem) {
   for (const ViewId view : {0u, 1u, 4u}) {
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const Vec2 expected = problem->scene.FindIntrinsic(view)->Project(
-          poses_[view].rotation * (points_[k] - poses_[view].center));
+          poses_[view.value()].rotation *
+          (points_[k] - poses_[view.value()].center));
       EXPECT_LT(
           (problem->scene.features.at(view).points_px[k] - expected).norm(),
           1e-9);
@@ -190,8 +191,8 @@ TEST_F(OneDSfmFolder, TruePosesAreOursAndEmptyCamerasAreLeftOut) {
   EXPECT_EQ(truth->size(), 4u);
   EXPECT_EQ(truth->count(1), 0u);
   for (const auto& [n, pose] : *truth) {
-    EXPECT_LT((pose.rotation - poses_[n].rotation).norm(), 1e-12);
-    EXPECT_LT((pose.center - poses_[n].center).norm(), 1e-12);
+    EXPECT_LT((pose.rotation - poses_[n.value()].rotation).norm(), 1e-12);
+    EXPECT_LT((pose.center - poses_[n.value()].center).norm(), 1e-12);
   }
 }
 

@@ -3,7 +3,7 @@
 
 #include "adapters/openmvg_vectors.h"
 #include "adapters/temporary_folder.h"
-#include "third_party_adapters/openmvg/import.h"
+#include "third_party_adapters/openmvg/internal/import.h"
 #include "third_party_adapters/openmvg/internal/sfm_data_bin.h"
 
 namespace lowlap::openmvg {

@@ -3,7 +3,7 @@
 
 #include "adapters/openmvg_vectors.h"
 #include "third_party_adapters/openmvg/internal/feat.h"
-#include "third_party_adapters/openmvg/matches.h"
+#include "third_party_adapters/openmvg/internal/matches.h"
 
 namespace lowlap::openmvg {
 namespace {

@@ -8,9 +8,9 @@
 #include "adapters/temporary_folder.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "support/data_folder.h"
-#include "third_party_adapters/openmvg/import.h"
+#include "third_party_adapters/openmvg/internal/import.h"
 #include "third_party_adapters/scene_formats.h"
-#include "third_party_adapters/strecha/strecha.h"
+#include "third_party_adapters/strecha/internal/strecha.h"
 
 namespace lowlap {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "adapters/openmvg_vectors.h"
 #include "adapters/temporary_folder.h"
-#include "lowlap/io/scene_json.h"
+#include "lowlap/io/internal/json/scene_json.h"
 #include "third_party_adapters/openmvg/internal/prepare.h"
 #include "third_party_adapters/openmvg/internal/sfm_data_bin.h"
 

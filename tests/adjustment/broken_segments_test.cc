@@ -9,9 +9,8 @@
 #include <vector>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/structure_builder.h"
-#include "lowlap/core/random.h"
-#include "lowlap/matching/tracks.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/matching/internal/tracks.h"
 #include "lowlap/scene/validation.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"

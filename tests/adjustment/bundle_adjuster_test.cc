@@ -6,8 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "lowlap/adjustment/structure_builder.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/validation.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"

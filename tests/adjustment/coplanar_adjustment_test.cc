@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/structure_builder.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"
 

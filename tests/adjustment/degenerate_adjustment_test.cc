@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/structure_builder.h"
 #include "lowlap/scene/validation.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"
@@ -78,23 +77,23 @@ TestScene TwoComponents() {
   for (const auto& [id, view] : other.scene.views) {
     View shifted = view;
     shifted.pose_id += kShift;
-    test.scene.views[id + kShift] = shifted;
+    test.scene.views[id.value() + kShift] = shifted;
   }
   for (const auto& [id, features] : other.scene.features) {
-    test.scene.features[id + kShift] = features;
+    test.scene.features[id.value() + kShift] = features;
   }
   for (const auto& [id, pose] : other.scene.poses) {
-    test.scene.poses[id + kShift] = pose;
+    test.scene.poses[id.value() + kShift] = pose;
   }
   const auto shift_track = [](Track track) {
     for (FeatureRef& ref : track) ref.view += kShift;
     return track;
   };
   for (const auto& [id, track] : other.scene.point_tracks) {
-    test.scene.point_tracks[id + kShift] = shift_track(track);
+    test.scene.point_tracks[id.value() + kShift] = shift_track(track);
   }
   for (const auto& [id, track] : other.scene.line_tracks) {
-    test.scene.line_tracks[id + kShift] = shift_track(track);
+    test.scene.line_tracks[id.value() + kShift] = shift_track(track);
   }
   return test;
 }

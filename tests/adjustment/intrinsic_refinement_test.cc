@@ -1,4 +1,4 @@
-#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 
 #include <ceres/manifold_test_utils.h>
 #include <gmock/gmock.h>
@@ -6,7 +6,6 @@
 
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/internal/costs/subspace_manifold.h"
-#include "lowlap/adjustment/structure_builder.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"
 
@@ -32,7 +31,7 @@ void Adjust(const IntrinsicRefinement& refinement, Scene* scene) {
 TEST(SubspaceManifoldTest, IsAManifold) {
   Eigen::MatrixXd basis(4, 2);
   basis << 0.6, 0, 0.8, 0, 0, 1, 0, 0;
-  const internal::SubspaceManifold manifold(basis);
+  const SubspaceManifold manifold(basis);
   Eigen::VectorXd x(4), y(4), delta(2);
   x << 800, 820, 600, -0.1;
   delta << 3, -0.5;

@@ -7,10 +7,10 @@
 #include "lowlap/adjustment/internal/structure/line_track.h"
 #include "lowlap/adjustment/internal/structure/noise_scale.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "test_scene.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr double kArea = 1200 * 800;
@@ -109,4 +109,4 @@ TEST(NoiseTest, PairGapsAreInPixelsOfSegmentNoise) {
 }
 
 }  // namespace
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -6,16 +6,13 @@
 
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
-#include "lowlap/adjustment/structure_builder.h"
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"
 
 namespace lowlap {
 namespace {
 
-using internal::CameraSet;
-using internal::PointShape;
 using test::ComparePoses;
 using test::MakeTestScene;
 using test::TestScene;

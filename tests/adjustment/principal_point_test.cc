@@ -4,18 +4,12 @@
 
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
-#include "lowlap/adjustment/structure_builder.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"
 
 namespace lowlap {
 namespace {
 
-using internal::CameraSet;
-using internal::IntrinsicState;
-using internal::PrincipalPointCost;
-using internal::PrincipalPointStddevPx;
-using internal::RefinementOf;
 using test::ComparePoses;
 using test::MakeTestScene;
 using test::TestScene;
@@ -105,7 +99,7 @@ TEST(PrincipalPointTest, TheCostAndItsDerivative) {
   const TestScene test = MakeTestScene({});
   const IntrinsicState intrinsic = CameraSet(test.scene).intrinsics.front();
   const PrincipalPointCost cost(intrinsic, 0.5);
-  internal::IntrinsicParameters moved = intrinsic.parameters;
+  IntrinsicParameters moved = intrinsic.parameters;
   moved[2] += 1;
   moved[3] -= 2;
   const double* const blocks[] = {moved.data()};

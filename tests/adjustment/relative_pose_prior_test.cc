@@ -3,17 +3,13 @@
 #include <gtest/gtest.h>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/evaluation/pose_errors.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
 namespace lowlap {
 namespace {
-
-using internal::CameraSet;
-using internal::LoadRelativePosePriors;
-using internal::RelativePosePrior;
 
 // A solved chain whose relative poses are true and state a covariance.
 SyntheticScene SolvedChain() {
@@ -35,7 +31,7 @@ double NormOf(const RelativePosePrior& prior, const CameraSet& cameras) {
   const double* const blocks[] = {
       a.cam_from_world.coeffs().data(), a.center.data(),
       b.cam_from_world.coeffs().data(), b.center.data()};
-  EXPECT_TRUE(internal::RelativePoseCost(prior.measured)
+  EXPECT_TRUE(RelativePoseCost(prior.measured)
                   .Evaluate(blocks, residual.data(), nullptr));
   return residual.norm();
 }

@@ -9,10 +9,10 @@
 #include "lowlap/adjustment/internal/costs/line_reprojection_cost.h"
 #include "lowlap/adjustment/internal/costs/point_reprojection_cost.h"
 #include "lowlap/adjustment/internal/costs/relative_pose_cost.h"
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 struct ModelCase {
@@ -316,4 +316,4 @@ TEST(ResidualsTest, LineManifoldKeepsItsInvariants) {
 }
 
 }  // namespace
-}  // namespace lowlap::internal
+}  // namespace lowlap

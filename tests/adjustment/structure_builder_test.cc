@@ -1,5 +1,3 @@
-#include "lowlap/adjustment/structure_builder.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +5,8 @@
 #include <limits>
 #include <set>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/validation.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "averaging/random_problem.h"
-#include "lowlap/core/median.h"
+#include "lowlap/core/internal/median.h"
 
 namespace lowlap {
 

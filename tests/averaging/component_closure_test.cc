@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/types.h"
 
 namespace lowlap {
@@ -71,8 +71,10 @@ std::set<std::set<ViewPair>> GroupsByNullSpace(const Scene& scene,
   for (const ViewPair& e : edges) {
     const Vec2 direction = (center[e.second] - center[e.first]) / length(e);
     for (Eigen::Index axis = 0; axis < 2; ++axis, ++row) {
-      equations(row, 2 * static_cast<Eigen::Index>(e.second) + axis) = 1;
-      equations(row, 2 * static_cast<Eigen::Index>(e.first) + axis) = -1;
+      equations(row, 2 * static_cast<Eigen::Index>(e.second.value()) + axis) =
+          1;
+      equations(row, 2 * static_cast<Eigen::Index>(e.first.value()) + axis) =
+          -1;
       equations(row, column[e]) = -direction(axis);
     }
   }
@@ -124,7 +126,7 @@ Scene RandomScene(std::uint64_t seed) {
   const double share_of_ratios = random.Uniform(0.0, 0.4);
   std::vector<ViewPair> edges;
   for (ViewId a = 0; a < num_views; ++a) {
-    for (ViewId b = a + 1; b < num_views; ++b) {
+    for (ViewId b = a.value() + 1; b < num_views; ++b) {
       if (random.Uniform() < density) edges.push_back({a, b});
     }
   }
@@ -269,10 +271,11 @@ TEST(Diagnose, WeakRatiosAreNamed) {
 
 TEST(Diagnose, AChainHingesOnEveryInnerCamera) {
   std::vector<ViewPair> edges;
-  for (ViewId view = 0; view < 7; ++view) edges.push_back({view, view + 1});
+  for (ViewId view = 0; view < 7; ++view)
+    edges.push_back({view, view.value() + 1});
   Scene scene = SceneWithEdges(8, edges);
   for (ViewId view = 1; view < 7; ++view) {
-    AddRatio(view - 1, view, view + 1, &scene);
+    AddRatio(view.value() - 1, view, view.value() + 1, &scene);
   }
   const Diagnosis diagnosis = DiagnosisOf(scene);
   EXPECT_TRUE(diagnosis.IsFirm());
@@ -285,11 +288,12 @@ TEST(Diagnose, AChainHingesOnEveryInnerCamera) {
 TEST(Diagnose, ARingOfRatiosHasNoHinge) {
   // Without any one ratio, the chain of the others still holds the ring.
   std::vector<ViewPair> edges;
-  for (ViewId view = 0; view + 1 < 6; ++view) edges.push_back({view, view + 1});
+  for (ViewId view = 0; view.value() + 1 < 6; ++view)
+    edges.push_back({view, view.value() + 1});
   edges.push_back({0, 5});
   Scene scene = SceneWithEdges(6, edges);
   for (ViewId view = 1; view < 5; ++view) {
-    AddRatio(view - 1, view, view + 1, &scene);
+    AddRatio(view.value() - 1, view, view.value() + 1, &scene);
   }
   AddRatio(1, 0, 5, &scene);
   AddRatio(0, 5, 4, &scene);
@@ -299,12 +303,12 @@ TEST(Diagnose, ARingOfRatiosHasNoHinge) {
 TEST(Diagnose, ALongChainTakesNoTime) {
   constexpr ViewId kViews = 800;
   std::vector<ViewPair> edges;
-  for (ViewId view = 0; view + 1 < kViews; ++view) {
-    edges.push_back({view, view + 1});
+  for (ViewId view = 0; view.value() + 1 < kViews; ++view) {
+    edges.push_back({view, view.value() + 1});
   }
   Scene scene = SceneWithEdges(kViews, edges);
-  for (ViewId view = 1; view + 1 < kViews; ++view) {
-    if (view != 300) AddRatio(view - 1, view, view + 1, &scene);
+  for (ViewId view = 1; view.value() + 1 < kViews; ++view) {
+    if (view != 300) AddRatio(view.value() - 1, view, view.value() + 1, &scene);
   }
   const Diagnosis diagnosis = DiagnosisOf(scene);
   ASSERT_EQ(diagnosis.floating.size(), 1u);
@@ -337,8 +341,9 @@ TEST(PredictTripletAveraging, GroupsThatMeetInOneCameraAreGlued) {
                                    {5, 7},
                                    {6, 7}});
   for (PointTrackId id = 0; id < 90; ++id) {
-    const ViewId a = std::vector<ViewId>{0, 2, 5}[id % 3];
-    scene.point_tracks[id] = {{a, id}, {a + 1, id}, {a + 2, id}};
+    const ViewId a = std::vector<ViewId>{0, 2, 5}[id.value() % 3];
+    scene.point_tracks[id] = {
+        {a, id}, {a.value() + 1, id}, {a.value() + 2, id}};
   }
   const TripletPrediction prediction = PredictTripletAveraging(scene);
   EXPECT_THAT(prediction.kept, ElementsAre(0, 1, 2, 3, 4));

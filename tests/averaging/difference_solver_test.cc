@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "lowlap/core/random.h"
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {

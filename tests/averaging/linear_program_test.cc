@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {

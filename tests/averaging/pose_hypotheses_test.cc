@@ -1,4 +1,4 @@
-#include "lowlap/averaging/rotations/pose_hypotheses.h"
+#include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 
 #include <gtest/gtest.h>
 
@@ -37,17 +37,18 @@ void PutWrongMotionFirst(const ViewPair& views, const Vec3& turn,
   pose.rotation = RotationFromAngleAxis(turn) * pose.rotation;
 }
 
-std::vector<MotionDecision> Decide(Scene* scene, int num_threads = 0) {
+std::vector<HypothesisDecision> Decide(Scene* scene, int num_threads = 0) {
   RunContext context;
   context.num_threads = num_threads;
-  const auto decisions = DecideMotionsByCycles(scene, PoseOptions(), context);
+  const auto decisions =
+      DecideHypothesesByCycles(scene, PoseOptions(), context);
   EXPECT_TRUE(decisions);
-  return decisions ? *decisions : std::vector<MotionDecision>();
+  return decisions ? *decisions : std::vector<HypothesisDecision>();
 }
 
 const Vec3 kTurn(0.1, -0.2, 0.1);  // 14 degrees
 
-TEST(DecideMotionsByCycles, ALoopTakesTheMotionThatClosesIt) {
+TEST(DecideHypothesesByCycles, ALoopTakesTheMotionThatClosesIt) {
   const Scene truth = ToScene(MakeRotationGraph(8, 1, 0, 0, 3));
   Scene scene = truth;
   const ViewPair views = {2, 3};
@@ -57,7 +58,7 @@ TEST(DecideMotionsByCycles, ALoopTakesTheMotionThatClosesIt) {
   const auto decisions = Decide(&scene);
   ASSERT_EQ(decisions.size(), 1u);
   EXPECT_EQ(decisions[0].views, views);
-  EXPECT_EQ(decisions[0].grounds, MotionGrounds::kCycles);
+  EXPECT_EQ(decisions[0].grounds, HypothesisGrounds::kCycles);
   EXPECT_TRUE(decisions[0].replaced);
   const RelativePose& pose = scene.relative_poses.at(views);
   EXPECT_TRUE(pose.alternatives.empty());
@@ -67,7 +68,7 @@ TEST(DecideMotionsByCycles, ALoopTakesTheMotionThatClosesIt) {
   EXPECT_EQ(pose.covariance, right.covariance);
 }
 
-TEST(DecideMotionsByCycles, TheRightMotionStaysWhereItComesFirst) {
+TEST(DecideHypothesesByCycles, TheRightMotionStaysWhereItComesFirst) {
   const Scene truth = ToScene(MakeRotationGraph(8, 1, 0, 0, 3));
   Scene scene = truth;
   const ViewPair views = {2, 3};
@@ -80,7 +81,7 @@ TEST(DecideMotionsByCycles, TheRightMotionStaysWhereItComesFirst) {
   EXPECT_TRUE(scene.relative_poses == truth.relative_poses);
 }
 
-TEST(DecideMotionsByCycles, PairsOfOneLoopAreDecidedTogether) {
+TEST(DecideHypothesesByCycles, PairsOfOneLoopAreDecidedTogether) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const Scene truth = ToScene(MakeRotationGraph(8, 1, 0, 0, seed));
     Scene scene = truth;
@@ -96,7 +97,7 @@ TEST(DecideMotionsByCycles, PairsOfOneLoopAreDecidedTogether) {
   }
 }
 
-TEST(DecideMotionsByCycles, FalseRelativePosesDoNotMislead) {
+TEST(DecideHypothesesByCycles, FalseRelativePosesDoNotMislead) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const RotationGraph graph = MakeRotationGraph(15, 4, 0.3, 1.0, seed);
     const Scene truth = ToScene(graph);
@@ -122,7 +123,7 @@ TEST(DecideMotionsByCycles, FalseRelativePosesDoNotMislead) {
   }
 }
 
-TEST(DecideMotionsByCycles, NothingIsDecidedWithoutACycle) {
+TEST(DecideHypothesesByCycles, NothingIsDecidedWithoutACycle) {
   RotationGraph graph = MakeRotationGraph(6, 1, 0, 0, 1);
   graph.measurements.pop_back();
   Scene scene = ToScene(graph);
@@ -133,7 +134,7 @@ TEST(DecideMotionsByCycles, NothingIsDecidedWithoutACycle) {
   EXPECT_TRUE(scene == before);
 }
 
-TEST(DecideMotionsByCycles, NothingIsDecidedBetweenLikeRotations) {
+TEST(DecideHypothesesByCycles, NothingIsDecidedBetweenLikeRotations) {
   Scene scene = ToScene(MakeRotationGraph(8, 1, 0, 0, 3));
   PutWrongMotionFirst({2, 3}, 0.02 * kTurn, &scene);
   const Scene before = scene;
@@ -141,7 +142,7 @@ TEST(DecideMotionsByCycles, NothingIsDecidedBetweenLikeRotations) {
   EXPECT_TRUE(scene == before);
 }
 
-TEST(DecideMotionsByCycles, NothingIsDecidedWhereNoMotionClosesTheLoop) {
+TEST(DecideHypothesesByCycles, NothingIsDecidedWhereNoMotionClosesTheLoop) {
   Scene scene = ToScene(MakeRotationGraph(8, 1, 0, 0, 3));
   PutWrongMotionFirst({2, 3}, kTurn, &scene);
   AlternativeMotion& other =
@@ -152,7 +153,7 @@ TEST(DecideMotionsByCycles, NothingIsDecidedWhereNoMotionClosesTheLoop) {
   EXPECT_TRUE(scene == before);
 }
 
-TEST(DecideMotionsByCycles, OtherScenesStayAsTheyAre) {
+TEST(DecideHypothesesByCycles, OtherScenesStayAsTheyAre) {
   Scene scene = ToScene(MakeRotationGraph(12, 3, 0.3, 1.0, 7));
   const Scene before = scene;
   EXPECT_TRUE(Decide(&scene).empty());
@@ -161,27 +162,29 @@ TEST(DecideMotionsByCycles, OtherScenesStayAsTheyAre) {
   EXPECT_TRUE(Decide(&empty).empty());
 }
 
-TEST(DecideMotionsByCycles, IsTheSameForAnyNumberOfThreads) {
+TEST(DecideHypothesesByCycles, IsTheSameForAnyNumberOfThreads) {
   Scene one = ToScene(MakeRotationGraph(15, 4, 0.4, 1.0, 5));
-  for (ViewId n = 0; n < 12; ++n) PutWrongMotionFirst({n, n + 1}, kTurn, &one);
+  for (ViewId n = 0; n < 12; ++n)
+    PutWrongMotionFirst({n, n.value() + 1}, kTurn, &one);
   Scene two = one;
   Decide(&one, 1);
   Decide(&two, 2);
   EXPECT_TRUE(one == two);
 }
 
-TEST(ChooseMotion, NeedsTheMarginToTheNextOfAllMotions) {
+TEST(ChooseHypothesis, NeedsTheMarginToTheNextOfAllMotions) {
   RelativePose pose;
   pose.alternatives.resize(2);
   pose.alternatives[1].direction = Vec3::UnitZ();
   const RelativePose before = pose;
-  MotionDecision decision =
-      ChooseMotion({9, 3, 1}, 2.5, MotionGrounds::kTriplets, &pose);
-  EXPECT_EQ(decision.grounds, MotionGrounds::kNone);
+  HypothesisDecision decision =
+      ChooseHypothesis({9, 3, 1}, 2.5, HypothesisGrounds::kTriplets, &pose);
+  EXPECT_EQ(decision.grounds, HypothesisGrounds::kNone);
   EXPECT_EQ(decision.margin, 2);
   EXPECT_TRUE(pose == before);
-  decision = ChooseMotion({9, 3, 1}, 1.5, MotionGrounds::kTriplets, &pose);
-  EXPECT_EQ(decision.grounds, MotionGrounds::kTriplets);
+  decision =
+      ChooseHypothesis({9, 3, 1}, 1.5, HypothesisGrounds::kTriplets, &pose);
+  EXPECT_EQ(decision.grounds, HypothesisGrounds::kTriplets);
   EXPECT_TRUE(decision.replaced);
   EXPECT_EQ(pose.direction, Vec3::UnitZ());
   EXPECT_TRUE(pose.alternatives.empty());

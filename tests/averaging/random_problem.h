@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lowlap/averaging/translation_problem.h"
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "averaging/random_problem.h"
-#include "lowlap/averaging/rotations/rotation_averaging.h"
+#include "lowlap/averaging/rotations/internal/rotation_averaging.h"
 
 namespace lowlap {
 

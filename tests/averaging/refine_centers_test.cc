@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "averaging/random_problem.h"
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {

@@ -1,11 +1,11 @@
-#include "lowlap/averaging/reliability_warnings.h"
+#include "lowlap/averaging/internal/reliability_warnings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/averaging/scene_poses.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
@@ -170,7 +170,7 @@ TEST(ReliabilityWarnings, PiecesOfALineInTwoViewsAreNotThreeViews) {
   for (const ViewId view : {0u, 1u, 2u}) {
     scene.views[view].intrinsic_id = 0;
     scene.views[view].pose_id = view;
-    scene.poses[view] = Pose();
+    scene.poses[view.value()] = Pose();
   }
   scene.line_tracks[0] = {{0, 0}, {0, 1}, {1, 0}, {1, 2}};
   EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
@@ -185,13 +185,13 @@ TEST(ReliabilityWarnings, PiecesOfALineCountOnce) {
   for (const ViewId view : {0u, 1u, 2u}) {
     scene.views[view].intrinsic_id = 0;
     scene.views[view].pose_id = view;
-    scene.poses[view] = Pose();
+    scene.poses[view.value()] = Pose();
   }
   // Lost, in five pieces; the other two fit.
   scene.line_tracks[0] = {{0, 0}, {0, 1}, {0, 2}, {0, 3},
                           {0, 4}, {1, 0}, {2, 0}};
   for (const LineTrackId id : {1u, 2u}) {
-    scene.line_tracks[id] = {{0, id + 4}, {1, id}, {2, id}};
+    scene.line_tracks[id] = {{0, id.value() + 4}, {1, id}, {2, id}};
     scene.line_structure[id].observations = scene.line_tracks[id];
   }
   EXPECT_THAT(FindLostFeatures(scene), IsEmpty());

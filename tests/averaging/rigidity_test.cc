@@ -1,4 +1,4 @@
-#include "lowlap/averaging/rigidity/rigidity.h"
+#include "lowlap/averaging/rigidity/internal/rigidity.h"
 
 #include <gtest/gtest.h>
 
@@ -109,8 +109,8 @@ TEST(AnalyzeTripletRigidity, TripletsThatShareOneViewKeepTheirOwnScale) {
       6,
       {{0, 1}, {0, 2}, {1, 2}, {2, 3}, {2, 4}, {3, 4}, {4, 5}, {0, 4}, {0, 5}});
   for (PointTrackId id = 0; id < 90; ++id) {
-    const ViewId a = static_cast<ViewId>(id % 3 * 2);
-    const ViewId b = a + 1, c = (a + 2) % 6;
+    const ViewId a = static_cast<ViewId>(id.value() % 3 * 2);
+    const ViewId b = a.value() + 1, c = (a + 2) % 6;
     Track track = {{a, id}, {b, id}, {c, id}};
     std::sort(track.begin(), track.end());
     scene.point_tracks[id] = track;

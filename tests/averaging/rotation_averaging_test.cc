@@ -1,4 +1,4 @@
-#include "lowlap/averaging/rotations/rotation_averaging.h"
+#include "lowlap/averaging/rotations/internal/rotation_averaging.h"
 
 #include <gtest/gtest.h>
 

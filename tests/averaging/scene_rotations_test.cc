@@ -54,10 +54,11 @@ double WorstErrorRad(const RotationGraph& graph,
   const auto& [anchor, reference] = *rotations.cam_from_world.begin();
   double worst = 0;
   for (const auto& [view, rotation] : rotations.cam_from_world) {
-    worst = std::max(worst, RotationAngleBetween(
-                                graph.truth[view] *
-                                    graph.truth[anchor].transpose() * reference,
-                                rotation));
+    worst = std::max(
+        worst, RotationAngleBetween(
+                   graph.truth[view.value()] *
+                       graph.truth[anchor.value()].transpose() * reference,
+                   rotation));
   }
   return worst;
 }
@@ -87,8 +88,8 @@ TEST(AverageSceneRotations, FalseEdgesAreNamedUpToHalfOfAll) {
       const std::set<ViewPair> outliers = Outliers(rotations);
       for (const auto& [views, pose] : ToScene(graph).relative_poses) {
         const double error = RotationAngleBetween(
-            pose.rotation,
-            graph.truth[views.second] * graph.truth[views.first].transpose());
+            pose.rotation, graph.truth[views.second.value()] *
+                               graph.truth[views.first.value()].transpose());
         const bool placed = rotations.cam_from_world.count(views.first) > 0 &&
                             rotations.cam_from_world.count(views.second) > 0;
         if (error > 0.1 && placed) {

@@ -33,8 +33,8 @@ class TrackRaysTest : public ::testing::Test {
       for (ViewId id = 0; id < 6; ++id) {
         auto& pixels = scene_.features[id].points_px;
         track.push_back({id, static_cast<FeatureIndex>(pixels.size())});
-        pixels.push_back(intrinsic.Project(rotations_[id] *
-                                           (points_.back() - centers_[id])));
+        pixels.push_back(intrinsic.Project(
+            rotations_[id.value()] * (points_.back() - centers_[id.value()])));
       }
       scene_.point_tracks[static_cast<PointTrackId>(k)] = track;
     }
@@ -76,7 +76,7 @@ TEST_F(TrackRaysTest, OtherViewsAndThoseWithoutIntrinsicsAreLeftOut) {
 
 TEST_F(TrackRaysTest, LongTracksComeFirstUpToTheBoundPerView) {
   for (auto& [id, track] : scene_.point_tracks) {
-    if (id % 2 == 0) track.resize(2);  // views 0 and 1 alone
+    if (id.value() % 2 == 0) track.resize(2);  // views 0 and 1 alone
   }
   const auto tracks = MakeTrackRays(scene_, views_, rotations_, {}, 10);
   EXPECT_EQ(tracks.size(), 10u);
@@ -86,8 +86,8 @@ TEST_F(TrackRaysTest, LongTracksComeFirstUpToTheBoundPerView) {
 }
 
 TEST_F(TrackRaysTest, MatchesJoinTracksAndContradictoryOnesAreLeftOut) {
-  for (ViewId id = 0; id + 1 < 6; ++id) {
-    RelativePose& pose = scene_.relative_poses[{id, id + 1}];
+  for (ViewId id = 0; id.value() + 1 < 6; ++id) {
+    RelativePose& pose = scene_.relative_poses[{id, id.value() + 1}];
     for (FeatureIndex k = 0; k < 30; ++k) pose.point_inliers.push_back({k, k});
   }
   EXPECT_EQ(MakeTrackRays(scene_, views_, rotations_).size(), 30u);
@@ -111,7 +111,7 @@ TEST_F(TrackRaysTest, MatchesJoinTracksAndContradictoryOnesAreLeftOut) {
 
 TEST_F(TrackRaysTest, OnlyTheProblemThatAsksForTracksHasThem) {
   std::map<ViewId, Mat3> rotation_of;
-  for (const ViewId view : views_) rotation_of[view] = rotations_[view];
+  for (const ViewId view : views_) rotation_of[view] = rotations_[view.value()];
   EXPECT_TRUE(MakeTranslationProblem(scene_, rotation_of, {}).tracks.empty());
   const TranslationProblem problem =
       MakeTranslationProblem(scene_, rotation_of, {}, {}, /*with_tracks=*/true);

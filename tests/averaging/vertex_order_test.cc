@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {

@@ -5,12 +5,12 @@
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/processor_time.h"
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/matching/guided_line_matching.h"
-#include "lowlap/matching/guided_point_matching.h"
-#include "lowlap/matching/internal/nearest_two.h"
-#include "lowlap/matching/point_matching.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/matching/internal/lines/guided_line_matching.h"
+#include "lowlap/matching/internal/points/guided_point_matching.h"
+#include "lowlap/matching/internal/points/nearest_two.h"
+#include "lowlap/matching/internal/points/point_matching.h"
 
 namespace lowlap {
 namespace {
@@ -99,11 +99,10 @@ void NearestTwoAgainstFloats(benchmark::State& state) {
   const auto& b = Couple().second.point_descriptors;
   double floats = 0, chosen = 0;
   for (auto _ : state) {
-    floats += ProcessorSeconds([&] {
-      benchmark::DoNotOptimize(internal::FindNearestTwoInFloats(a, b));
-    });
+    floats += ProcessorSeconds(
+        [&] { benchmark::DoNotOptimize(FindNearestTwoInFloats(a, b)); });
     chosen += ProcessorSeconds(
-        [&] { benchmark::DoNotOptimize(internal::FindNearestTwo(a, b)); });
+        [&] { benchmark::DoNotOptimize(FindNearestTwo(a, b)); });
   }
   state.counters["times_faster"] = floats / chosen;
 }

@@ -11,8 +11,8 @@
 #include <numeric>
 
 #include "benchmarks/processor_time.h"
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/internal/search/ratio_sweep.h"
 #include "lowlap/scale/scale_estimator.h"
 #include "lowlap/scale/scale_ratios.h"

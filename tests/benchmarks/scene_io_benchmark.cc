@@ -4,8 +4,8 @@
 #include <benchmark/benchmark.h>
 
 #include "benchmarks/processor_time.h"
-#include "lowlap/io/scene_binary.h"
-#include "lowlap/io/scene_json.h"
+#include "lowlap/io/internal/json/scene_json.h"
+#include "lowlap/io/internal/scene_binary.h"
 #include "scene/example_scenes.h"
 
 namespace lowlap {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "benchmarks/processor_time.h"
-#include "lowlap/core/median.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/two_view/relative_pose_estimator.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/two_view/internal/relative_pose_estimator.h"
 #include "two_view/two_view_scene.h"
 
 namespace lowlap {

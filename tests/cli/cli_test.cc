@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "cli_fixture.h"
-#include "lowlap/io/scene_binary.h"
-#include "lowlap/io/scene_json.h"
+#include "lowlap/io/internal/json/scene_json.h"
+#include "lowlap/io/internal/scene_binary.h"
 #include "support/data_folder.h"
 
 namespace lowlap {

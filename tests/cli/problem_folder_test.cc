@@ -48,8 +48,8 @@ class ProblemFolder : public Cli {
     for (const auto& [pair, edge] : synthetic_.scene.relative_poses) {
       const Mat3 first_from_second = edge.rotation.transpose();
       const Mat3 r = kAxes.asDiagonal() * first_from_second;
-      geometries += std::to_string(pair.first) + " " +
-                    std::to_string(pair.second) +
+      geometries += std::to_string(pair.first.value()) + " " +
+                    std::to_string(pair.second.value()) +
                     Text(Mat3(r * kAxes.asDiagonal())) +
                     Text(Vec3(-(r * edge.direction))) + "\n";
     }

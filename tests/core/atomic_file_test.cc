@@ -1,4 +1,4 @@
-#include "lowlap/core/atomic_file.h"
+#include "lowlap/core/internal/atomic_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "lowlap/core/format.h"
+#include "lowlap/core/internal/format.h"
 
 #include <gtest/gtest.h>
 

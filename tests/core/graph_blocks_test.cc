@@ -1,4 +1,4 @@
-#include "lowlap/core/graph_blocks.h"
+#include "lowlap/core/internal/graph_blocks.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "lowlap/core/random.h"
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {

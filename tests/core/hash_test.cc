@@ -1,4 +1,4 @@
-#include "lowlap/core/hash.h"
+#include "lowlap/core/internal/hash.h"
 
 #include <gtest/gtest.h>
 

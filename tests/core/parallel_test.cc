@@ -1,11 +1,11 @@
-#include "lowlap/core/parallel.h"
+#include "lowlap/core/internal/parallel.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "support/matchers.h"
 
 namespace lowlap {

@@ -1,4 +1,4 @@
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
 #include <gtest/gtest.h>
 

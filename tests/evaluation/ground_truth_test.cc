@@ -1,9 +1,7 @@
-#include "lowlap/evaluation/ground_truth.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lowlap/evaluation/statistics.h"
+#include "lowlap/evaluation/pose_errors.h"
 
 namespace lowlap {
 namespace {
@@ -87,7 +85,7 @@ TEST(GroundTruthFromScene, TakesThePosedViewsWithSharedPoses) {
 void PoseEveryView(Scene* scene) {
   for (auto& [id, view] : scene->views) {
     view.pose_id = id;
-    scene->poses[id] = PoseAt(id);
+    scene->poses[id.value()] = PoseAt(id.value());
   }
 }
 

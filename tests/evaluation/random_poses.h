@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "lowlap/core/random.h"
-#include "lowlap/evaluation/ground_truth.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/geometry/similarity.h"
 
 namespace lowlap {
@@ -28,8 +28,8 @@ inline Scene RandomScene(int num_views, std::uint64_t seed) {
   for (int n = 0; n < num_views; ++n) {
     const auto id = static_cast<ViewId>(2 * n);
     View view;
-    view.filename = "image" + std::to_string(id) + ".jpg";
-    view.pose_id = id + 100;
+    view.filename = "image" + std::to_string(id.value()) + ".jpg";
+    view.pose_id = id.value() + 100;
     scene.views[id] = view;
     scene.poses[view.pose_id] = RandomPose(random);
   }

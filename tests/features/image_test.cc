@@ -1,4 +1,4 @@
-#include "lowlap/features/image.h"
+#include "lowlap/features/internal/image.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/features/line_detector.h"
+#include "lowlap/features/internal/lines/line_detector.h"
 
 #include <gmock/gmock.h>
 

@@ -1,13 +1,13 @@
-#include "lowlap/features/internal/midpoint_grid.h"
+#include "lowlap/features/internal/lines/midpoint_grid.h"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 using ::testing::Contains;
@@ -67,4 +67,4 @@ TEST(MidpointGridTest, ABoxWithoutExtentHoldsEverything) {
 }
 
 }  // namespace
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -1,4 +1,4 @@
-#include "lowlap/features/overlay.h"
+#include "lowlap/features/internal/overlay.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>

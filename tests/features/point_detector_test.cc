@@ -1,4 +1,4 @@
-#include "lowlap/features/point_detector.h"
+#include "lowlap/features/internal/points/point_detector.h"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/features/internal/point_localization.h"
+#include "lowlap/features/internal/points/point_localization.h"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
-#include "lowlap/features/features.h"
-#include "lowlap/scene/normalized_features.h"
+#include "lowlap/features/internal/features.h"
+#include "lowlap/scene/features.h"
 #include "support/matchers.h"
 #include "support/synthetic_image.h"
 

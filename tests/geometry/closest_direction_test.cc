@@ -1,4 +1,4 @@
-#include "lowlap/geometry/closest_direction.h"
+#include "lowlap/geometry/internal/closest_direction.h"
 
 #include <gtest/gtest.h>
 

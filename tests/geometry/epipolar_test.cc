@@ -1,4 +1,4 @@
-#include "lowlap/geometry/epipolar.h"
+#include "lowlap/geometry/internal/epipolar.h"
 
 #include <gtest/gtest.h>
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/geometry/rotation.h"
 
 namespace lowlap::testing {
 

@@ -1,4 +1,4 @@
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/geometry/triangulation.h"
+#include "lowlap/geometry/internal/triangulation.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/io/ply.h"
+#include "lowlap/io/internal/ply.h"
 
 #include <gtest/gtest.h>
 
@@ -63,7 +63,7 @@ TEST(FormatPly, PointsSegmentsAndFrusta) {
     scene.views[id].intrinsic_id = 0;
     scene.views[id].pose_id = id;
     // The second camera looks along the world's -x.
-    scene.poses[id].center = Vec3(4.0 * id, 0, 0);
+    scene.poses[id.value()].center = Vec3(4.0 * id, 0, 0);
   }
   scene.poses[1].rotation << 0, 0, 1, 0, 1, 0, -1, 0, 0;
   scene.poses.erase(2);

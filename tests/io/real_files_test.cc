@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "lowlap/io/scene_binary.h"
-#include "lowlap/io/scene_json.h"
+#include "lowlap/io/internal/json/scene_json.h"
+#include "lowlap/io/internal/scene_binary.h"
 #include "support/data_folder.h"
 #include "support/matchers.h"
 

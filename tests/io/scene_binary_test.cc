@@ -1,4 +1,4 @@
-#include "lowlap/io/scene_binary.h"
+#include "lowlap/io/internal/scene_binary.h"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 #include <memory>
 #include <sstream>
 
-#include "lowlap/io/scene_json.h"
+#include "lowlap/io/internal/json/scene_json.h"
 #include "scene/example_scenes.h"
 #include "support/matchers.h"
 

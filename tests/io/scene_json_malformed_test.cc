@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "io/worked_example.h"
-#include "lowlap/io/scene_json.h"
+#include "lowlap/io/internal/json/scene_json.h"
 #include "scene/example_scenes.h"
 #include "support/matchers.h"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "io/worked_example.h"
-#include "lowlap/io/scene_json.h"
+#include "lowlap/io/internal/json/scene_json.h"
 #include "support/matchers.h"
 
 namespace lowlap {

@@ -6,10 +6,10 @@
 #include <regex>
 #include <string>
 
-#include "lowlap/core/atomic_file.h"
-#include "lowlap/core/random.h"
-#include "lowlap/io/scene_binary.h"
-#include "lowlap/io/scene_json.h"
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/io/internal/json/scene_json.h"
+#include "lowlap/io/internal/scene_binary.h"
 #include "scene/example_scenes.h"
 #include "support/matchers.h"
 

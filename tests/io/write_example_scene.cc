@@ -1,7 +1,7 @@
 // Writes the scene in which every member is filled, for check_schema.py.
 #include <cstdio>
 
-#include "lowlap/io/scene_json.h"
+#include "lowlap/io/internal/json/scene_json.h"
 #include "scene/example_scenes.h"
 
 int main(int argc, char** argv) {

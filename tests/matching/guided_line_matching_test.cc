@@ -1,9 +1,9 @@
-#include "lowlap/matching/guided_line_matching.h"
+#include "lowlap/matching/internal/lines/guided_line_matching.h"
 
 #include <gmock/gmock.h>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "support/matchers.h"
 
 namespace lowlap {

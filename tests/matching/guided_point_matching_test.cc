@@ -1,12 +1,12 @@
-#include "lowlap/matching/guided_point_matching.h"
+#include "lowlap/matching/internal/points/guided_point_matching.h"
 
 #include <gmock/gmock.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/core/random.h"
-#include "lowlap/matching/point_matching.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/matching/internal/points/point_matching.h"
 #include "support/matchers.h"
 
 namespace lowlap {

@@ -1,10 +1,10 @@
-#include "lowlap/matching/internal/hamming.h"
+#include "lowlap/matching/internal/lines/hamming.h"
 
 #include <gtest/gtest.h>
 
 #include <bitset>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {
@@ -22,7 +22,7 @@ TEST(HammingDistances, CountsTheBitsThatDiffer) {
     all[6][k] = static_cast<std::uint8_t>(~all[0][k]);
   }
   std::vector<int> distances(3, -1);
-  internal::HammingDistances(all[0], all, &distances);
+  HammingDistances(all[0], all, &distances);
   ASSERT_EQ(distances.size(), all.size());
   for (std::size_t n = 0; n < all.size(); ++n) {
     std::size_t expected = 0;
@@ -33,7 +33,7 @@ TEST(HammingDistances, CountsTheBitsThatDiffer) {
   }
   EXPECT_EQ(distances[5], 0);
   EXPECT_EQ(distances[6], 256);
-  internal::HammingDistances(all[0], {}, &distances);
+  HammingDistances(all[0], {}, &distances);
   EXPECT_TRUE(distances.empty());
 }
 

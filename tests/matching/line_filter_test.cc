@@ -1,8 +1,8 @@
-#include "lowlap/matching/line_filter.h"
+#include "lowlap/matching/internal/lines/line_filter.h"
 
 #include <gmock/gmock.h>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "support/matchers.h"
 
 namespace lowlap {

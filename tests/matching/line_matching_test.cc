@@ -1,8 +1,8 @@
-#include "lowlap/matching/line_matching.h"
+#include "lowlap/matching/internal/lines/line_matching.h"
 
 #include <gmock/gmock.h>
 
-#include "lowlap/features/line_detector.h"
+#include "lowlap/features/internal/lines/line_detector.h"
 #include "support/matchers.h"
 #include "support/synthetic_image.h"
 

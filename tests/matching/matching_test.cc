@@ -1,4 +1,4 @@
-#include "lowlap/matching/matching.h"
+#include "lowlap/matching/internal/matching.h"
 
 #include <gmock/gmock.h>
 
@@ -20,7 +20,8 @@ std::map<ViewId, DetectedFeatures> ShiftedViews() {
     const Vec2 shift(7.0 * id, 3.0 * id);
     features[id] = *DetectFeatures(
         Render(
-            180, 160, [&](const Vec2& p) { return texture(p + shift); }, 1, id),
+            180, 160, [&](const Vec2& p) { return texture(p + shift); }, 1,
+            id.value()),
         {});
   }
   return features;

@@ -1,8 +1,8 @@
-#include "lowlap/matching/pair_retrieval.h"
+#include "lowlap/matching/internal/pair_retrieval.h"
 
 #include <gmock/gmock.h>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "support/matchers.h"
 
 namespace lowlap {

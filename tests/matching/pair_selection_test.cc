@@ -1,4 +1,4 @@
-#include "lowlap/matching/pair_selection.h"
+#include "lowlap/matching/internal/pair_selection.h"
 
 #include <gmock/gmock.h>
 

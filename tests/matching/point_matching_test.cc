@@ -1,18 +1,16 @@
-#include "lowlap/matching/point_matching.h"
+#include "lowlap/matching/internal/points/point_matching.h"
 
 #include <gmock/gmock.h>
 
-#include "lowlap/core/random.h"
-#include "lowlap/matching/internal/approximate_nearest_two.h"
-#include "lowlap/matching/internal/nearest_two.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/matching/internal/points/approximate_nearest_two.h"
+#include "lowlap/matching/internal/points/nearest_two.h"
 #include "support/matchers.h"
 #include "support/synthetic_image.h"
 
 namespace lowlap {
 namespace {
 
-using internal::FindNearestTwo;
-using internal::NearestTwo;
 using testing::BlobTexture;
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
@@ -68,9 +66,9 @@ TEST(FindNearestTwoTest, EqualsBruteForceForEverySizeAndWithTies) {
       if (count > 16) database[16] = database[3] = queries[5];
       std::vector<std::vector<NearestTwo>> forms = {
           FindNearestTwo(queries, database),
-          internal::FindNearestTwoInFloats(queries, database)};
-      if (internal::HasByteProducts()) {
-        forms.push_back(internal::FindNearestTwoInBytes(queries, database));
+          FindNearestTwoInFloats(queries, database)};
+      if (HasByteProducts()) {
+        forms.push_back(FindNearestTwoInBytes(queries, database));
       }
       for (const std::vector<NearestTwo>& nearest : forms) {
         ASSERT_EQ(nearest.size(), queries.size());
@@ -109,8 +107,8 @@ TEST(FindNearestTwoApproximatelyTest,
     }
   }
   const auto exact = FindNearestTwo(queries, database);
-  const auto found = internal::FindNearestTwoApproximately(queries, database);
-  const auto again = internal::FindNearestTwoApproximately(queries, database);
+  const auto found = FindNearestTwoApproximately(queries, database);
+  const auto again = FindNearestTwoApproximately(queries, database);
   ASSERT_EQ(found.size(), queries.size());
   int num_same = 0;
   for (std::size_t i = 0; i < queries.size(); ++i) {
@@ -124,8 +122,7 @@ TEST(FindNearestTwoApproximatelyTest,
   }
   // Descriptors without any structure are the hardest there are for trees.
   EXPECT_GT(num_same, 250);
-  EXPECT_EQ(internal::FindNearestTwoApproximately(queries, {}).front().index,
-            -1);
+  EXPECT_EQ(FindNearestTwoApproximately(queries, {}).front().index, -1);
 }
 
 // At distance `offset` from `base`, along element `k`.

@@ -1,12 +1,9 @@
-#include "lowlap/matching/internal/relaxation.h"
+#include "lowlap/matching/internal/lines/relaxation.h"
 
 #include <gtest/gtest.h>
 
 namespace lowlap {
 namespace {
-
-using internal::RelaxScores;
-using internal::Support;
 
 TEST(RelaxScores, TakesTheBestOfEachNeighbourAndTheMeanOfAll) {
   // One neighbour with two candidates, one with none that agrees.

@@ -1,11 +1,11 @@
-#include "lowlap/matching/relaxed_point_matching.h"
+#include "lowlap/matching/internal/points/relaxed_point_matching.h"
 
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
 
-#include "lowlap/core/random.h"
-#include "lowlap/matching/matching.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/matching/internal/matching.h"
 #include "support/matchers.h"
 
 namespace lowlap {

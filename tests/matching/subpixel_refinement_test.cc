@@ -1,4 +1,4 @@
-#include "lowlap/matching/subpixel_refinement.h"
+#include "lowlap/matching/internal/points/subpixel_refinement.h"
 
 #include <gmock/gmock.h>
 #include <unistd.h>
@@ -212,7 +212,7 @@ class RefinePointTracksTest : public ::testing::Test {
       shot.place = true_[id];
       const GrayImage image = shot.Render();
       View view;
-      view.filename = std::to_string(id) + ".pgm";
+      view.filename = std::to_string(id.value()) + ".pgm";
       view.width_px = image.width;
       view.height_px = image.height;
       scene_.views[id] = view;

@@ -9,11 +9,12 @@
 #include <opencv2/imgcodecs.hpp>
 #include <sstream>
 
-#include "lowlap/pipeline/calibrate_images.h"
 #include "lowlap/pipeline/image_collection.h"
-#include "lowlap/pipeline/internal/cache_folder.h"
-#include "lowlap/pipeline/internal/measurement_bytes.h"
-#include "lowlap/pipeline/internal/measurement_key.h"
+#include "lowlap/pipeline/internal/measure/cache_folder.h"
+#include "lowlap/pipeline/internal/measure/image_measurements.h"
+#include "lowlap/pipeline/internal/measure/measurement_bytes.h"
+#include "lowlap/pipeline/internal/measure/measurement_key.h"
+#include "lowlap/pipeline/measure_images.h"
 #include "support/matchers.h"
 #include "support/synthetic_image.h"
 
@@ -73,7 +74,7 @@ class CacheTest : public ::testing::Test {
     Result<Scene> scene;
     std::vector<std::string> log;
   };
-  Run Measure(FrontEndOptions options = {},
+  Run Measure(MeasurementOptions options = {},
               RunContext::ProgressSink progress = nullptr) {
     Run run;
     IntrinsicSource source;
@@ -136,7 +137,7 @@ TEST_F(CacheTest, ADamagedImageIsLeftOutAndNamed) {
   ASSERT_THAT(scene, IsOk());
   Write(folder_ / "images" / "1.png", "gone bad since");
   for (const std::string& cache : {std::string(), CachePath(), CachePath()}) {
-    FrontEndOptions options;
+    MeasurementOptions options;
     options.cache_folder = cache;
     std::vector<std::string> warnings;
     RunContext context;
@@ -217,21 +218,20 @@ TEST_F(CacheTest, FeaturesAndMatchesKeepEveryBit) {
   features.point_descriptors[1][127] = 255;
   features.line_descriptors.resize(1);
   features.line_descriptors[0][31] = 7;
-  const std::string bytes = internal::ToBytes(features);
-  const auto back = internal::FeaturesFromBytes(bytes);
+  const std::string bytes = ToBytes(features);
+  const auto back = FeaturesFromBytes(bytes);
   ASSERT_TRUE(back);
   EXPECT_TRUE(back->features == features.features);
   EXPECT_TRUE(std::signbit(back->features.points_px[1].x()));
   EXPECT_EQ(back->keypoints[1].angle_rad, 0.3);
   EXPECT_EQ(back->point_descriptors, features.point_descriptors);
   EXPECT_EQ(back->line_descriptors, features.line_descriptors);
-  EXPECT_EQ(internal::ToBytes(*back), bytes);
-  EXPECT_FALSE(internal::FeaturesFromBytes(bytes.substr(1)));
-  EXPECT_FALSE(internal::FeaturesFromBytes(bytes + '\0'));
+  EXPECT_EQ(ToBytes(*back), bytes);
+  EXPECT_FALSE(FeaturesFromBytes(bytes.substr(1)));
+  EXPECT_FALSE(FeaturesFromBytes(bytes + '\0'));
 
   const PairMatches matches = {{{1, 2}, {3, 4}}, {{5, 6}}};
-  const auto matches_back =
-      internal::MatchesFromBytes(internal::ToBytes(matches));
+  const auto matches_back = MatchesFromBytes(ToBytes(matches));
   ASSERT_TRUE(matches_back);
   EXPECT_EQ(matches_back->points, matches.points);
   EXPECT_EQ(matches_back->lines, matches.lines);
@@ -241,40 +241,40 @@ TEST_F(CacheTest, KeysDependOnImageOptionsAndDistortion) {
   const FeatureOptions options;
   Intrinsic pinhole;
   pinhole.fx_px = pinhole.fy_px = 100;
-  const auto key = internal::FeatureKey("image", &pinhole, options);
-  EXPECT_EQ(key, internal::FeatureKey("image", &pinhole, options));
-  EXPECT_NE(key, internal::FeatureKey("imagE", &pinhole, options));
+  const auto key = FeatureKey("image", &pinhole, options);
+  EXPECT_EQ(key, FeatureKey("image", &pinhole, options));
+  EXPECT_NE(key, FeatureKey("imagE", &pinhole, options));
   Intrinsic other = pinhole;
   other.fx_px = 120;  // straight lines are straight at any focal length
-  EXPECT_EQ(key, internal::FeatureKey("image", &other, options));
+  EXPECT_EQ(key, FeatureKey("image", &other, options));
   other.model = CameraModel::kRadialK1;
   other.distortion = {-0.1};
-  const auto distorted = internal::FeatureKey("image", &other, options);
+  const auto distorted = FeatureKey("image", &other, options);
   EXPECT_NE(key, distorted);
   other.distortion = {-0.2};
-  EXPECT_NE(distorted, internal::FeatureKey("image", &other, options));
+  EXPECT_NE(distorted, FeatureKey("image", &other, options));
   FeatureOptions fewer = options;
   fewer.points.max_points = 11;
-  EXPECT_NE(key, internal::FeatureKey("image", &pinhole, fewer));
+  EXPECT_NE(key, FeatureKey("image", &pinhole, fewer));
   fewer = options;
   fewer.lines.min_length_ratio = 0.5;
-  EXPECT_NE(key, internal::FeatureKey("image", &pinhole, fewer));
+  EXPECT_NE(key, FeatureKey("image", &pinhole, fewer));
   fewer = options;
   fewer.max_memory_gb = 1;
-  EXPECT_EQ(key, internal::FeatureKey("image", &pinhole, fewer));
+  EXPECT_EQ(key, FeatureKey("image", &pinhole, fewer));
 
   const MatchOptions matching;
   MatchOptions stricter;
   stricter.points.max_ratio = 0.5;
-  EXPECT_NE(internal::MatchKey(key, distorted, matching),
-            internal::MatchKey(distorted, key, matching));
-  EXPECT_NE(internal::MatchKey(key, distorted, matching),
-            internal::MatchKey(key, distorted, stricter));
+  EXPECT_NE(MatchKey(key, distorted, matching),
+            MatchKey(distorted, key, matching));
+  EXPECT_NE(MatchKey(key, distorted, matching),
+            MatchKey(key, distorted, stricter));
 }
 
 TEST_F(CacheTest, AWarmCacheGivesTheSameScene) {
   AddImages();
-  FrontEndOptions options;
+  MeasurementOptions options;
   const Run cold = Measure();
   ASSERT_THAT(cold.scene, IsOk());
   EXPECT_THAT(cold.log, Not(Contains(HasSubstr("from the cache"))));
@@ -320,7 +320,7 @@ TEST_F(CacheTest, AStoppedRunIsTakenUpWhereItWas) {
   AddImages();
   const Run cold = Measure();
   fs::remove_all(CachePath());
-  FrontEndOptions options;
+  MeasurementOptions options;
   const Run stopped = Measure(
       options, [](const std::string& stage, std::size_t done, std::size_t) {
         return !(stage == "features" && done == 2);

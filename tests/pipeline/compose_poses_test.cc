@@ -3,9 +3,9 @@
 #include <cmath>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/evaluation/ground_truth.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
@@ -67,7 +67,7 @@ MadeScene RingWithATriangle() {
   };
   for (const ViewTriplet& views : FindTriplets(ViewGraph(scene))) {
     const auto is_closing = [&](ViewId outer) {
-      return outer + views.middle == 8 && (outer == 0 || outer == 8);
+      return outer.value() + views.middle == 8 && (outer == 0 || outer == 8);
     };
     if (is_closing(views.first) || is_closing(views.last)) continue;
     ScaleRatio ratio;

@@ -1,5 +1,3 @@
-#include "lowlap/pipeline/decide_motions.h"
-
 #include <gtest/gtest.h>
 
 #include <map>
@@ -8,10 +6,11 @@
 #include <vector>
 
 #include "lowlap/evaluation/pose_errors.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/pipeline/relative_poses.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/pipeline/internal/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/measure/relative_poses.h"
+#include "lowlap/pipeline/internal/output/summary_json.h"
 #include "lowlap/pipeline/solve_scene.h"
-#include "lowlap/pipeline/summary_json.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "lowlap/two_view/internal/planar_motion.h"
 #include "tests/two_view/two_view_scene.h"
@@ -56,55 +55,55 @@ void PutWrongMotionFirst(const ViewPair& views, SyntheticScene* synthetic) {
   pose.direction = other->translation;
 }
 
-std::vector<MotionDecision> Decide(Scene* scene, int num_threads = 0) {
+std::vector<HypothesisDecision> Decide(Scene* scene, int num_threads = 0) {
   RunContext context;
   context.num_threads = num_threads;
-  const auto decisions = DecideMotions(
+  const auto decisions = DecideHypotheses(
       scene, *MakeScaleEstimator(ScaleOptions()), PoseOptions(), context);
   EXPECT_TRUE(decisions) << decisions.error().ToString();
-  return decisions ? *decisions : std::vector<MotionDecision>();
+  return decisions ? *decisions : std::vector<HypothesisDecision>();
 }
 
-TEST(DecideMotions, TripletsDecideOnAChain) {
+TEST(DecideHypotheses, TripletsDecideOnAChain) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     SyntheticScene wall = Wall("chain", seed);
     const Scene truth = wall.scene;
     PutWrongMotionFirst({2, 3}, &wall);
     const auto decisions = Decide(&wall.scene);
     ASSERT_EQ(decisions.size(), 1u);
-    EXPECT_EQ(decisions[0].grounds, MotionGrounds::kTriplets) << seed;
+    EXPECT_EQ(decisions[0].grounds, HypothesisGrounds::kTriplets) << seed;
     EXPECT_TRUE(decisions[0].replaced);
     EXPECT_TRUE(wall.scene == truth);
   }
 }
 
-TEST(DecideMotions, TripletsDecideWhereEveryPairIsAmbiguous) {
+TEST(DecideHypotheses, TripletsDecideWhereEveryPairIsAmbiguous) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     SyntheticScene wall = Wall("chain", seed);
     const Scene truth = wall.scene;
     for (const auto& entry : truth.relative_poses) {
       PutWrongMotionFirst(entry.first, &wall);
     }
-    for (const MotionDecision& decision : Decide(&wall.scene)) {
-      EXPECT_EQ(decision.grounds, MotionGrounds::kTriplets) << seed;
+    for (const HypothesisDecision& decision : Decide(&wall.scene)) {
+      EXPECT_EQ(decision.grounds, HypothesisGrounds::kTriplets) << seed;
     }
     EXPECT_TRUE(wall.scene == truth);
   }
 }
 
-TEST(DecideMotions, CyclesDecideBeforeTriplets) {
+TEST(DecideHypotheses, CyclesDecideBeforeTriplets) {
   SyntheticScene wall = Wall("window:2", 1);
   const Scene truth = wall.scene;
   PutWrongMotionFirst({2, 3}, &wall);
   PutWrongMotionFirst({0, 2}, &wall);
-  for (const MotionDecision& decision : Decide(&wall.scene)) {
-    EXPECT_EQ(decision.grounds, MotionGrounds::kCycles);
+  for (const HypothesisDecision& decision : Decide(&wall.scene)) {
+    EXPECT_EQ(decision.grounds, HypothesisGrounds::kCycles);
     EXPECT_TRUE(decision.replaced);
   }
   EXPECT_TRUE(wall.scene == truth);
 }
 
-TEST(DecideMotions, WithoutCyclesAndTripletsBothMotionsStay) {
+TEST(DecideHypotheses, WithoutCyclesAndTripletsBothMotionsStay) {
   SyntheticScene wall = Wall("chain", 0);
   Scene& scene = wall.scene;
   PutWrongMotionFirst({0, 1}, &wall);
@@ -113,25 +112,25 @@ TEST(DecideMotions, WithoutCyclesAndTripletsBothMotionsStay) {
   std::string logged;
   RunContext context;
   context.log = [&](LogLevel, const std::string& text) { logged += text; };
-  const auto decisions = DecideMotions(
+  const auto decisions = DecideHypotheses(
       &scene, *MakeScaleEstimator(ScaleOptions()), PoseOptions(), context);
   ASSERT_TRUE(decisions);
   ASSERT_EQ(decisions->size(), 1u);
   EXPECT_EQ((*decisions)[0].views, (ViewPair{0, 1}));
-  EXPECT_EQ((*decisions)[0].grounds, MotionGrounds::kNone);
+  EXPECT_EQ((*decisions)[0].grounds, HypothesisGrounds::kNone);
   EXPECT_FALSE((*decisions)[0].replaced);
   EXPECT_TRUE(scene == before);
   EXPECT_NE(logged.find(scene.views.at(1).filename), std::string::npos);
 }
 
-TEST(DecideMotions, OtherScenesStayAsTheyAre) {
+TEST(DecideHypotheses, OtherScenesStayAsTheyAre) {
   SyntheticScene wall = Wall("window:2", 0);
   const Scene before = wall.scene;
   EXPECT_TRUE(Decide(&wall.scene).empty());
   EXPECT_TRUE(wall.scene == before);
 }
 
-TEST(DecideMotions, IsTheSameForAnyNumberOfThreads) {
+TEST(DecideHypotheses, IsTheSameForAnyNumberOfThreads) {
   SyntheticScene one = Wall("chain", 2);
   PutWrongMotionFirst({1, 2}, &one);
   PutWrongMotionFirst({2, 3}, &one);
@@ -144,7 +143,7 @@ TEST(DecideMotions, IsTheSameForAnyNumberOfThreads) {
   }
 }
 
-TEST(DecideMotions, IsPartOfSolvingAndOfItsSummary) {
+TEST(DecideHypotheses, IsPartOfSolvingAndOfItsSummary) {
   SyntheticScene wall = Wall("chain", 3);
   Scene unambiguous = wall.scene;
   PutWrongMotionFirst({2, 3}, &wall);
@@ -182,7 +181,7 @@ Scene AmbiguousPair(std::map<ViewPair, PairMatches>* matches) {
   intrinsic.principal_point_px = Vec2(800, 600);
   for (const ViewId id : {0, 1}) {
     View& view = scene.views[id];
-    view.filename = std::to_string(id) + ".jpg";
+    view.filename = std::to_string(id.value()) + ".jpg";
     view.width_px = intrinsic.width_px;
     view.height_px = intrinsic.height_px;
     view.intrinsic_id = 0;

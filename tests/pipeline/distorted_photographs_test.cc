@@ -10,11 +10,11 @@
 #include <opencv2/imgproc.hpp>
 
 #include "lowlap/evaluation/internal/relative_errors.h"
-#include "lowlap/pipeline/calibrate_images.h"
 #include "lowlap/pipeline/image_collection.h"
+#include "lowlap/pipeline/measure_images.h"
 #include "support/data_folder.h"
 #include "support/matchers.h"
-#include "third_party_adapters/strecha/strecha.h"
+#include "third_party_adapters/strecha/internal/strecha.h"
 
 namespace lowlap {
 namespace {
@@ -59,7 +59,7 @@ struct Quality {
 };
 
 Quality Measure(Scene scene) {
-  FrontEndOptions options;
+  MeasurementOptions options;
   options.pairs = "cycle";
   StageLog stages;
   Quality quality;

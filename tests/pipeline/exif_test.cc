@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/exif.h"
+#include "lowlap/pipeline/internal/measure/exif.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

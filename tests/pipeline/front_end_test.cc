@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "lowlap/pipeline/calibrate_images.h"
-#include "lowlap/pipeline/scene_reduction.h"
+#include "lowlap/pipeline/internal/scene_reduction.h"
+#include "lowlap/pipeline/measure_images.h"
 #include "lowlap/scene/validation.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 

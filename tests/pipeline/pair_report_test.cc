@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/pair_report.h"
+#include "lowlap/pipeline/internal/measure/pair_report.h"
 
 #include <gmock/gmock.h>
 

@@ -4,12 +4,13 @@
 
 #include <filesystem>
 
-#include "lowlap/matching/pair_selection.h"
-#include "lowlap/pipeline/calibrate_images.h"
+#include "lowlap/matching/internal/pair_selection.h"
 #include "lowlap/pipeline/image_collection.h"
+#include "lowlap/pipeline/internal/measure/image_measurements.h"
+#include "lowlap/pipeline/measure_images.h"
 #include "support/data_folder.h"
 #include "support/matchers.h"
-#include "third_party_adapters/strecha/strecha.h"
+#include "third_party_adapters/strecha/internal/strecha.h"
 
 namespace lowlap {
 namespace {
@@ -23,7 +24,7 @@ TEST(PairsAuto, FindTheNeighboursOfARoom) {
   source.calibration = *strecha::ReadCalibrationMatrix(images + "/K.txt");
   const auto scene = SceneFromImages(images, source, {});
   ASSERT_THAT(scene, IsOk());
-  FrontEndOptions options;
+  MeasurementOptions options;
   options.pairs = "auto";
   options.features.detect_lines = false;
   options.matching.match_lines = false;

@@ -4,15 +4,16 @@
 
 #include <cmath>
 
-#include "lowlap/core/median.h"
-#include "lowlap/evaluation/ground_truth.h"
-#include "lowlap/geometry/epipolar.h"
-#include "lowlap/pipeline/calibrate_images.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/geometry/internal/epipolar.h"
 #include "lowlap/pipeline/image_collection.h"
-#include "lowlap/scene/normalized_features.h"
+#include "lowlap/pipeline/internal/measure/image_measurements.h"
+#include "lowlap/pipeline/measure_images.h"
+#include "lowlap/scene/features.h"
 #include "support/data_folder.h"
 #include "support/matchers.h"
-#include "third_party_adapters/strecha/strecha.h"
+#include "third_party_adapters/strecha/internal/strecha.h"
 
 namespace lowlap {
 namespace {
@@ -51,7 +52,7 @@ TEST(RefinePoints, BringsMatchesNearerToTheTrueGeometry) {
       *strecha::ReadCalibrationMatrix(Room() + "/images/K.txt");
   const auto scene = SceneFromImages(Room() + "/images", source, {});
   ASSERT_THAT(scene, IsOk());
-  FrontEndOptions options;
+  MeasurementOptions options;
   options.pairs = "chain";
   StageLog stages;
   const auto measured = MatchImages(*scene, options, RunContext(), &stages);

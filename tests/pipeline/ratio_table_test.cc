@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/ratio_table.h"
+#include "lowlap/pipeline/internal/output/ratio_table.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

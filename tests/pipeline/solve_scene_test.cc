@@ -7,7 +7,7 @@
 
 #include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/evaluation/pose_errors.h"
-#include "lowlap/pipeline/relative_poses.h"
+#include "lowlap/pipeline/internal/measure/relative_poses.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
 namespace lowlap {

@@ -1,4 +1,4 @@
-#include "lowlap/report/report.h"
+#include "lowlap/report/internal/report.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "lowlap/robust/a_contrario_ransac.h"
+#include "lowlap/robust/internal/a_contrario_ransac.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {

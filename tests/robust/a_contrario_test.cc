@@ -1,4 +1,4 @@
-#include "lowlap/robust/a_contrario.h"
+#include "lowlap/robust/internal/a_contrario.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/robust/log_combinatorics.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/robust/internal/log_combinatorics.h"
 
 namespace lowlap {
 namespace {

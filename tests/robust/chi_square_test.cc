@@ -1,4 +1,4 @@
-#include "lowlap/robust/chi_square.h"
+#include "lowlap/robust/internal/chi_square.h"
 
 #include <gtest/gtest.h>
 

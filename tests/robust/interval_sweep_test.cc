@@ -1,4 +1,4 @@
-#include "lowlap/robust/interval_sweep.h"
+#include "lowlap/robust/internal/interval_sweep.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {

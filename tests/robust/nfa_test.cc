@@ -1,4 +1,4 @@
-#include "lowlap/robust/nfa.h"
+#include "lowlap/robust/internal/nfa.h"
 
 #include <gmock/gmock.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/robust/log_combinatorics.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/robust/internal/log_combinatorics.h"
 
 namespace lowlap {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
@@ -89,7 +89,7 @@ class FragmentedSegments : public ::testing::TestWithParam<ViewId> {
       for (ViewId view = 0; view < 3; ++view) {
         const auto seen = [&](const Vec3& x) -> Vec2 {
           const double u = random.Gaussian(0.2), v = random.Gaussian(0.2);
-          return camera.Project(cams[view] * x) + Vec2(u, v);
+          return camera.Project(cams[view.value()] * x) + Vec2(u, v);
         };
         const Vec2 start_px = seen(a);
         scene_.features[view].segments.push_back({start_px, seen(b), 0.2});
@@ -97,9 +97,9 @@ class FragmentedSegments : public ::testing::TestWithParam<ViewId> {
     }
     for (ViewId view = 0; view < 2; ++view) {
       const RigidTransform next_from_view =
-          cams[view + 1] * cams[view].Inverse();
+          cams[view.value() + 1] * cams[view.value()].Inverse();
       RelativePose pose;
-      pose.views = {view, view + 1};
+      pose.views = {view, view.value() + 1};
       pose.rotation = next_from_view.rotation;
       pose.direction = next_from_view.translation.normalized();
       for (FeatureIndex n = 0; n < kLines; ++n) {

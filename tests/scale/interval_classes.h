@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/scale/scale_estimator.h"
 #include "scale/synthetic_triplet.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lowlap/scale/triplet_geometry.h"
+#include "lowlap/scale/triplet_view.h"
 #include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
 

@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap::testing {
@@ -49,20 +49,22 @@ struct RowOfViews {
     for (int n = 0; n < kPoints; ++n) {
       const Vec3 x = on_wall();
       for (ViewId view = 0; view < kViews; ++view) {
-        scene.features[view].points_px.push_back(project(cams[view], x));
+        scene.features[view].points_px.push_back(
+            project(cams[view.value()], x));
       }
     }
     for (int n = 0; n < kLines; ++n) {
       const Vec3 a = on_wall(), b = on_wall();
       for (ViewId view = 0; view < kViews; ++view) {
-        const Vec2 start_px = project(cams[view], a);
+        const Vec2 start_px = project(cams[view.value()], a);
         scene.features[view].segments.push_back(
-            {start_px, project(cams[view], b), 0.3});
+            {start_px, project(cams[view.value()], b), 0.3});
       }
     }
     for (ViewId i = 0; i < kViews; ++i) {
-      for (ViewId j = i + 1; j < kViews; ++j) {
-        const RigidTransform j_from_i = cams[j] * cams[i].Inverse();
+      for (ViewId j = i.value() + 1; j < kViews; ++j) {
+        const RigidTransform j_from_i =
+            cams[j.value()] * cams[i.value()].Inverse();
         RelativePose pose;
         pose.views = {i, j};
         pose.rotation = j_from_i.rotation;

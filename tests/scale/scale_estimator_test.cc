@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lowlap/scale/evidence/internal/coplanar_candidates.h"
+#include "lowlap/scale/internal/candidate_limits.h"
 #include "lowlap/scale/internal/uncertainty/ratio_inliers.h"
 #include "scale/synthetic_triplet.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/evidence/internal/coplanar_lines.h"
 #include "lowlap/scale/evidence/internal/plane_points.h"
 #include "lowlap/scale/internal/planes/planes_by_pair.h"
@@ -115,7 +115,7 @@ TEST(ProfileScaleRatios, AreThoseOfTheEstimatedRatios) {
     for (auto& [views, pose] : row.scene.relative_poses) {
       if (has_lines) continue;
       pose.line_inliers.clear();
-      const FeatureIndex slot = (views.first + views.second) % 3;
+      const FeatureIndex slot = (views.first.value() + views.second) % 3;
       auto& points = pose.point_inliers;
       points.erase(std::remove_if(points.begin(), points.end(),
                                   [&](const FeatureMatch& match) {
@@ -159,7 +159,7 @@ TEST(EstimateScaleRatios, WorkWhenNoFeatureIsSeenThrice) {
   RowOfViews row;
   // Every feature goes to one pair only.
   for (auto& [views, pose] : row.scene.relative_poses) {
-    const FeatureIndex slot = (views.first + views.second) % 3;
+    const FeatureIndex slot = (views.first.value() + views.second) % 3;
     const auto elsewhere = [&](const FeatureMatch& match) {
       return match.first % 3 != slot;
     };

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/evidence/internal/plane_points.h"
 #include "lowlap/scale/triplet_view.h"
 #include "scale/synthetic_room.h"

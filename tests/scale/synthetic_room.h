@@ -2,10 +2,10 @@
 
 #include <cmath>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/scene/normalized_features.h"
+#include "lowlap/scene/features.h"
 
 namespace lowlap::testing {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
 #include "scale/synthetic_room.h"
 

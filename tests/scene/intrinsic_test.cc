@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "lowlap/core/random.h"
-#include "lowlap/scene/normalized_features.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/scene/features.h"
 #include "support/matchers.h"
 
 namespace lowlap {

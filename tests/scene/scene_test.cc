@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/validation.h"
 #include "scene/example_scenes.h"
 #include "support/matchers.h"

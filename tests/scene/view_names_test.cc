@@ -1,4 +1,4 @@
-#include "lowlap/scene/view_names.h"
+#include "lowlap/scene/internal/view_names.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/study/ablation.h"
+#include "lowlap/study/internal/ablation.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,10 +1,10 @@
-#include "lowlap/study/consistency.h"
+#include "lowlap/study/internal/consistency.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
 namespace lowlap {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/core/atomic_file.h"
+#include "lowlap/core/internal/atomic_file.h"
 #include "support/matchers.h"
 
 namespace lowlap {

@@ -4,8 +4,8 @@
 #include <set>
 #include <string>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/study/internal/robustness/output.h"
 #include "lowlap/study/internal/robustness/study.h"
 #include "lowlap/study/internal/robustness/summary.h"

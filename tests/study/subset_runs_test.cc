@@ -1,4 +1,4 @@
-#include "lowlap/study/subset_runs.h"
+#include "lowlap/study/internal/subset_runs.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "lowlap/evaluation/pose_errors.h"
-#include "lowlap/study/subset_table.h"
+#include "lowlap/study/internal/subset_table.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "read_csv.h"
 
@@ -23,7 +23,8 @@ using ::testing::HasSubstr;
 Scene SceneOfViews(ViewId count) {
   Scene scene;
   for (ViewId view = 0; view < count; ++view) {
-    scene.views[2 * view].filename = "image " + std::to_string(view) + ".jpg";
+    scene.views[2 * view].filename =
+        "image " + std::to_string(view.value()) + ".jpg";
   }
   return scene;
 }
@@ -63,7 +64,7 @@ TEST(ChooseSubsets, RefusesWhatMakesNoSense) {
 
 SubsetOutcome Outcome(ViewId dropped, int placed, double mean, double max) {
   SubsetOutcome outcome;
-  outcome.dropped = {dropped, dropped + 2};
+  outcome.dropped = {dropped, dropped.value() + 2};
   outcome.num_views = 4;
   outcome.num_placed = placed;
   outcome.mean_error = outcome.mean_error_before_adjustment = mean;

@@ -8,12 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/pipeline/image_collection.h"
-#include "lowlap/pipeline/relative_poses.h"
-#include "lowlap/study/subset_runs.h"
+#include "lowlap/pipeline/internal/measure/relative_poses.h"
+#include "lowlap/study/internal/subset_runs.h"
 #include "support/data_folder.h"
-#include "third_party_adapters/openmvg/import.h"
+#include "third_party_adapters/openmvg/internal/import.h"
 
 namespace lowlap {
 namespace {

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include "lowlap/core/result.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/view.h"
 
 namespace lowlap::testing {

@@ -5,8 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/features/image.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/features/internal/image.h"
 #include "lowlap/geometry/types.h"
 
 namespace lowlap::testing {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "lowlap/geometry/plucker_line.h"
-#include "lowlap/scene/normalized_features.h"
+#include "lowlap/scene/features.h"
 #include "lowlap/scene/view_graph.h"
 #include "support/matchers.h"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <set>
 
-#include "lowlap/core/median.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/synthetic/simulate_ratios.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/synthetic/internal/simulate_ratios.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "support/matchers.h"
 
@@ -54,7 +54,7 @@ TEST(SimulateGraph, TwinsAndLinesAreAsDegenerateAsAskedFor) {
   twins.twin_baseline_m = 0.01;
   const SyntheticScene made = *Simulate(twins);
   for (const auto& [pair, length] : made.true_baselines) {
-    if (pair.first % 2 == 0) {
+    if (pair.first.value() % 2 == 0) {
       EXPECT_NEAR(length, 0.01, 1e-12);
     } else {
       EXPECT_GT(length, 0.1);

@@ -8,9 +8,9 @@
 #include <string>
 #include <utility>
 
-#include "lowlap/geometry/epipolar.h"
-#include "lowlap/geometry/triangulation.h"
-#include "lowlap/scene/normalized_features.h"
+#include "lowlap/geometry/internal/epipolar.h"
+#include "lowlap/geometry/internal/triangulation.h"
+#include "lowlap/scene/features.h"
 #include "lowlap/scene/validation.h"
 #include "lowlap/synthetic/internal/coplanar_truth.h"
 #include "lowlap/synthetic/synthetic_scene.h"

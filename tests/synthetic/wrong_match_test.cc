@@ -6,8 +6,8 @@
 #include <map>
 #include <vector>
 
-#include "lowlap/geometry/epipolar.h"
-#include "lowlap/scene/normalized_features.h"
+#include "lowlap/geometry/internal/epipolar.h"
+#include "lowlap/scene/features.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "support/matchers.h"
 

@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/essential_kernel.h"
+#include "lowlap/two_view/internal/kernels/essential_kernel.h"
 
 #include <gtest/gtest.h>
 

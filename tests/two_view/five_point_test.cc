@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/five_point.h"
+#include "lowlap/two_view/internal/kernels/five_point.h"
 
 #include <gtest/gtest.h>
 
@@ -6,9 +6,9 @@
 #include <cmath>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/epipolar.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/epipolar.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {

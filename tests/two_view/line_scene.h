@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/scene/normalized_features.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/scene/features.h"
 #include "two_view/two_view_scene.h"
 
 namespace lowlap::testing {

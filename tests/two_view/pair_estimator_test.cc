@@ -1,4 +1,4 @@
-#include "lowlap/two_view/pair_estimator.h"
+#include "lowlap/two_view/internal/pair_estimator.h"
 
 #include <gmock/gmock.h>
 

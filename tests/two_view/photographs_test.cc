@@ -5,12 +5,12 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/two_view/relative_pose_estimator.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/two_view/internal/relative_pose_estimator.h"
 #include "tests/support/data_folder.h"
 #include "tests/support/matchers.h"
-#include "third_party_adapters/openmvg/import.h"
-#include "third_party_adapters/strecha/strecha.h"
+#include "third_party_adapters/openmvg/internal/import.h"
+#include "third_party_adapters/strecha/internal/strecha.h"
 
 namespace lowlap {
 namespace {
@@ -46,7 +46,7 @@ PairErrors MeasureNeighbours(const std::string& data, const std::string& name) {
     return truth->at(project->scene.views.at(view).filename);
   };
   for (const auto& [views, matches] : project->matches) {
-    if (views.second != views.first + 1) continue;
+    if (views.second != views.first.value() + 1) continue;
     // OpenMVG's listing has one focal length; the true cameras have two.
     const NormalizedFeatures features1 = NormalizeFeatures(
         project->scene.features.at(views.first), camera(views.first).intrinsic);
@@ -59,7 +59,7 @@ PairErrors MeasureNeighbours(const std::string& data, const std::string& name) {
     input.features2 = &features2;
     input.point_matches = matches;
     input.image_size1_px = input.image_size2_px = Vec2(3072, 2048);
-    const auto result = EstimateRelativePose(input, {}, views.first);
+    const auto result = EstimateRelativePose(input, {}, views.first.value());
     EXPECT_THAT(result, IsOk());
     if (!result) continue;
     EXPECT_TRUE(result->HasDirection());

@@ -1,11 +1,11 @@
-#include "lowlap/two_view/internal/polynomial.h"
+#include "lowlap/two_view/internal/kernels/polynomial.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {

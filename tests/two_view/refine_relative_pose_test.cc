@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "lowlap/geometry/epipolar.h"
+#include "lowlap/geometry/internal/epipolar.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "lowlap/two_view/relative_pose_estimator.h"
+#include "lowlap/two_view/internal/relative_pose_estimator.h"
 #include "tests/support/matchers.h"
 #include "tests/two_view/two_view_scene.h"
 

@@ -1,4 +1,4 @@
-#include "lowlap/two_view/relative_pose_estimator.h"
+#include "lowlap/two_view/internal/relative_pose_estimator.h"
 
 #include <gtest/gtest.h>
 

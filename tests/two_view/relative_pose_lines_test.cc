@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "lowlap/two_view/internal/two_point_kernel.h"
-#include "lowlap/two_view/relative_pose_estimator.h"
+#include "lowlap/two_view/internal/kernels/two_point_kernel.h"
+#include "lowlap/two_view/internal/relative_pose_estimator.h"
 #include "support/matchers.h"
 #include "two_view/line_scene.h"
 

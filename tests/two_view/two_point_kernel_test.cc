@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/two_point_kernel.h"
+#include "lowlap/two_view/internal/kernels/two_point_kernel.h"
 
 #include <gtest/gtest.h>
 

@@ -3,10 +3,10 @@
 #include <cstdint>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/two_view/internal/point_pairs.h"
-#include "lowlap/two_view/relative_pose_estimator.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/two_view/internal/kernels/point_pairs.h"
+#include "lowlap/two_view/internal/relative_pose_estimator.h"
 
 namespace lowlap::testing {
 

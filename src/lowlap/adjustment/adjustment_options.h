@@ -19,6 +19,40 @@ enum class AdjustedCoplanarResidual {
   kImageDistance,
 };
 
+/// How tracks become landmarks.
+struct StructureOptions {
+  bool use_points = true;
+  bool use_lines = true;
+  bool use_coplanar = true;  // needs use_lines
+
+  /// Largest error of an observation, in pixels. 0: a contrario, from the
+  /// residuals of all tracks of the kind, and at least the thresholds that the
+  /// relative poses were verified with. Change it only for data whose noise is
+  /// known better than its residuals tell.
+  double max_point_error_px = 0;
+  double max_line_error_px = 0;
+
+  /// A point is kept if the standard deviation of its depth, propagated
+  /// from the image noise, is at most this share of the depth. It takes the
+  /// place of a least triangulation angle: it knows the focal length, the
+  /// noise and the number of views.
+  double max_relative_depth_stddev = 0.3;
+  /// The same for lines, at the worse end of their extent. Lines near an
+  /// epipolar plane say little and make the adjustment slow.
+  double max_relative_line_depth_stddev = 0.1;
+
+  /// A line seen in two views fits them always. It is kept if its segments,
+  /// lifted onto it, share at least this part of the shorter one.
+  double min_two_view_line_overlap = 0.2;
+
+  /// Lines of a coplanar pair must differ by this angle: the meeting point of
+  /// almost parallel lines is not defined by the images.
+  double min_coplanar_angle_deg = 10;
+
+  /// kInvalidArgument for values without a meaning.
+  Status Validate() const;
+};
+
 /// Which parts of an intrinsic are unknowns.
 struct IntrinsicRefinement {
   bool focal = false;  // fx and fy by one factor

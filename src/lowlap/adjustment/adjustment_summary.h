@@ -12,6 +12,36 @@
 
 namespace lowlap {
 
+/// What became of the tracks of one kind. Every track is counted once, in
+/// `landmarks` or in one of the reasons after it.
+struct TriangulationSummary {
+  std::size_t tracks = 0;
+  std::size_t landmarks = 0;
+  std::size_t two_view_landmarks = 0;  // of `landmarks`
+  std::size_t too_few_views = 0;       // fewer than two with pose and intrinsic
+  std::size_t inconsistent = 0;        // no two observations that agree
+  std::size_t behind_camera = 0;
+  std::size_t uncertain = 0;    // depth not determined, see the options
+  std::size_t implausible = 0;  // lines: segments that do not overlap
+
+  std::size_t observations = 0;          // of all tracks, in usable views
+  std::size_t observations_used = 0;     // of the landmarks
+  std::size_t observations_dropped = 0;  // of landmarks, beyond the threshold
+  double threshold_px = 0;
+};
+
+struct StructureSummary {
+  TriangulationSummary points;
+  TriangulationSummary lines;
+  /// Coplanar inliers of the meaningful ratios, and why some are not pairs.
+  std::size_t coplanar_inliers = 0;
+  std::size_t coplanar_without_lines = 0;  // a line was not triangulated
+  std::size_t coplanar_parallel = 0;       // or both are one line
+  std::size_t coplanar_duplicates = 0;     // already a pair
+  std::size_t coplanar_pairs = 0;
+  double seconds = 0;
+};
+
 /// One kind of residual (points, lines, coplanar pairs). "Observations" of the
 /// coplanar kind are the pairs.
 struct KindAdjustment {

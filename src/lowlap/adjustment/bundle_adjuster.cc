@@ -20,17 +20,6 @@
 namespace lowlap {
 namespace {
 
-using internal::CameraSet;
-using internal::LineCandidate;
-using internal::LineTrackState;
-using internal::NoiseLevels;
-using internal::PairState;
-using internal::PointCandidate;
-using internal::PointTrackState;
-using internal::SolveOutcome;
-using internal::SolveRequest;
-using internal::StructureState;
-
 constexpr char kFinalStage[] = "final";
 constexpr double kRoughTolerance = 1e-5;
 // Pairs could be exchanged for one another for ever.
@@ -152,8 +141,7 @@ void FillKinds(const NoiseLevels& noise, const KindRmse& initial,
                const KindRmse& final, const StructureState& state,
                std::size_t input_pairs, AdjustmentSummary* summary) {
   const auto fill = [](double initial_px, double final_px,
-                       const internal::NoiseScale& scale,
-                       KindAdjustment* kind) {
+                       const NoiseScale& scale, KindAdjustment* kind) {
     kind->initial_rmse_px = initial_px;
     kind->final_rmse_px = final_px;
     kind->stddev_px = scale.stddev_px;
@@ -284,7 +272,7 @@ class Adjuster {
       return tl::unexpected<Error>(status.error());
     }
     EstimateNoise();
-    const Result<internal::ObservationChanges> changes = UpdateObservations(
+    const Result<ObservationChanges> changes = UpdateObservations(
         options_, noise_, take_new_pairs, context_, *cameras_, state_);
     if (!changes) return tl::unexpected<Error>(changes.error());
     return changes->total > 0 ? static_cast<double>(changes->changed) /
@@ -320,7 +308,7 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
     if (scene->intrinsics.count(id) == 0) {
       return MakeError(
           ErrorCode::kInvalidArgument,
-          "there is no intrinsic " + std::to_string(id) + " to refine");
+          "there is no intrinsic " + std::to_string(id.value()) + " to refine");
     }
   }
 
@@ -331,7 +319,7 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
   state.lines = LoadLines(*scene, cameras, options.MovesIntrinsics());
   state.pairs = LoadPairs(*scene, state.lines);
   if (options.use_relative_poses) {
-    state.priors = internal::LoadRelativePosePriors(*scene, cameras);
+    state.priors = LoadRelativePosePriors(*scene, cameras);
   }
   summary.observations_without_camera =
       CountObservationsWithoutCamera(*scene, cameras);
@@ -356,8 +344,8 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
     if (!context.Progress("adjustment: calibration", 0, 1)) {
       return MakeError(ErrorCode::kCancelled, "stopped on request");
     }
-    summary.calibration_preferences = internal::FindCalibrationPreferences(
-        options, adjuster.noise(), cameras, state);
+    summary.calibration_preferences =
+        FindCalibrationPreferences(options, adjuster.noise(), cameras, state);
   }
   for (const auto& [id, pose] : scene->poses) {
     if (adjusted.count(id) == 0) {

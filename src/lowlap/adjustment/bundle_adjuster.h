@@ -8,6 +8,25 @@
 
 namespace lowlap {
 
+/// Triangulates scene->point_tracks and scene->line_tracks from scene->poses,
+/// and collects the coplanar pairs of scene->scale_ratios: replaces
+/// `structure`, `line_structure` and `coplanar_pairs` of the enabled kinds
+/// (clears those of the others).
+///
+/// Points: the pair of observations that most others agree with is refined on
+/// all that agree (reprojection error below the threshold, in front of every
+/// camera); tracks of two views are landmarks like the others. Lines: the same
+/// with interpretation planes and the distances of the segments' end points;
+/// the extent is what the segments cover.
+///
+/// Observations in views without a pose or an intrinsic are left out. The
+/// result does not depend on the number of threads. Errors: kInvalidArgument
+/// (options, null scene), kInvalidScene (a track refers to a missing feature, a
+/// number that is not finite), kCancelled.
+Result<StructureSummary> BuildStructure(Scene* scene,
+                                        const StructureOptions& options,
+                                        const RunContext& context);
+
 /// Bundle adjustment of scene->poses, structure, line_structure and, on
 /// request, intrinsics; scene->coplanar_pairs hold lines together.
 ///

@@ -1,5 +1,3 @@
-#include "lowlap/adjustment/structure_builder.h"
-
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -10,20 +8,14 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/internal/structure/coplanar_pairs.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
-#include "lowlap/core/median.h"
+#include "lowlap/core/internal/median.h"
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
 namespace {
-
-using internal::CameraSet;
-using internal::LandmarkStatus;
-using internal::LineTrackState;
-using internal::NoiseBounds;
-using internal::NoiseScale;
-using internal::PointTrackState;
 
 std::vector<std::size_t> AllOf(std::size_t count) {
   std::vector<std::size_t> indices(count);
@@ -94,7 +86,7 @@ Status BuildPoints(const CameraSet& cameras, const StructureOptions& options,
                    double verification_px, const RunContext& context,
                    std::vector<PointTrackState>* points, double* threshold_px) {
   const std::vector<std::size_t> all = AllOf(points->size());
-  internal::PointTriangulationLimits limits;
+  PointTriangulationLimits limits;
   limits.noise_px = ImageNoisePx(verification_px);
   limits.max_relative_depth_stddev = options.max_relative_depth_stddev;
   if (options.max_point_error_px > 0) {
@@ -120,7 +112,7 @@ Status BuildLines(const CameraSet& cameras, const StructureOptions& options,
                   double verification_px, const RunContext& context,
                   std::vector<LineTrackState>* lines, double* threshold_px) {
   const std::vector<std::size_t> all = AllOf(lines->size());
-  internal::LineTriangulationLimits limits;
+  LineTriangulationLimits limits;
   limits.noise_px = ImageNoisePx(verification_px);
   limits.max_relative_depth_stddev = options.max_relative_line_depth_stddev;
   limits.min_two_view_overlap = options.min_two_view_line_overlap;
@@ -185,7 +177,7 @@ Result<StructureSummary> BuildStructure(Scene* scene,
     return MakeError(ErrorCode::kCancelled, "stopped on request");
   }
   if (options.use_points) {
-    std::vector<PointTrackState> points = internal::LoadPoints(*scene, cameras);
+    std::vector<PointTrackState> points = LoadPoints(*scene, cameras);
     if (Status status = BuildPoints(cameras, options, verification_px, context,
                                     &points, &summary.points.threshold_px);
         !status) {
@@ -202,8 +194,7 @@ Result<StructureSummary> BuildStructure(Scene* scene,
     return MakeError(ErrorCode::kCancelled, "stopped on request");
   }
   if (options.use_lines) {
-    std::vector<LineTrackState> lines =
-        internal::LoadLines(*scene, cameras, false);
+    std::vector<LineTrackState> lines = LoadLines(*scene, cameras, false);
     if (Status status = BuildLines(cameras, options, verification_px, context,
                                    &lines, &summary.lines.threshold_px);
         !status) {
@@ -216,7 +207,7 @@ Result<StructureSummary> BuildStructure(Scene* scene,
       }
     }
     if (options.use_coplanar) {
-      coplanar_pairs = internal::CollectCoplanarPairs(
+      coplanar_pairs = CollectCoplanarPairs(
           scene->scale_ratios, line_structure,
           RadFromDeg(options.min_coplanar_angle_deg), &summary);
     }

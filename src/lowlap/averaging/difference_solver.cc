@@ -5,7 +5,7 @@
 #include <queue>
 
 #include "lowlap/averaging/internal/sparse_solver.h"
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 

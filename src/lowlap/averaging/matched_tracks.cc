@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {
@@ -86,7 +86,8 @@ std::map<PointTrackId, Track> MatchedTracks(
   PointTrackId id = 0;
   for (auto& [label, track] : joined) {
     if (contradictory.count(label) > 0 || track.size() < 2) continue;
-    tracks.emplace_hint(tracks.end(), id++, std::move(track));
+    tracks.emplace_hint(tracks.end(), id, std::move(track));
+    ++id;
   }
   return tracks;
 }

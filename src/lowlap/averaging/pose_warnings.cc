@@ -1,4 +1,4 @@
-#include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/averaging/internal/pose_warnings.h"
 
 #include <cstdio>
 
@@ -64,7 +64,7 @@ class Writer {
  private:
   std::string Name(ViewId view) const {
     const auto found = scene_.views.find(view);
-    return found == scene_.views.end() ? std::to_string(view)
+    return found == scene_.views.end() ? std::to_string(view.value())
                                        : found->second.filename;
   }
 

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/reliability_warnings.h"
+#include "lowlap/averaging/internal/reliability_warnings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,11 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
-#include "lowlap/core/median.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/robust/median_deviation.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -216,9 +216,8 @@ struct FeatureCount {
   std::size_t fitting = 0;
 };
 
-template <class Landmarks>
-void CountFeatures(const Scene& scene,
-                   const std::map<std::uint32_t, Track>& tracks,
+template <class Tracks, class Landmarks>
+void CountFeatures(const Scene& scene, const Tracks& tracks,
                    const Landmarks& landmarks, std::size_t min_views,
                    std::map<ViewId, FeatureCount>* counts) {
   for (const auto& [id, track] : tracks) {

@@ -4,10 +4,11 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
-#include "lowlap/core/median.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/robust/median_deviation.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/median_deviation.h"
 
 namespace lowlap {
 namespace {

@@ -3,8 +3,6 @@
 #include <memory>
 #include <vector>
 
-#include "lowlap/averaging/reliability_warnings.h"
-#include "lowlap/averaging/rotations/rotation_averaging.h"
 #include "lowlap/averaging/rotations/scene_rotations.h"
 #include "lowlap/averaging/translation_problem.h"
 #include "lowlap/core/result.h"
@@ -28,6 +26,35 @@ struct PoseOptions {
   double least_false_deg = 1.0;
 
   Status Validate() const;
+};
+
+enum class WarningReason {
+  /// The relative poses of a view that contradict its place have more evidence
+  /// than those that agree with it.
+  kContradictedPoses,
+  /// Only ratios that are too weak to rely on alone (IsWeak) give the views the
+  /// scale of the others.
+  kWeakScale,
+  /// The ratios that give the views the scale of the others, across one camera
+  /// or all of them, disagree with one another.
+  kContradictedRatios,
+  /// Most of what was matched in a view does not fit its pose.
+  kLostFeatures,
+};
+
+/// "contradicted_poses", "weak_scale", "contradicted_ratios", "lost_features".
+const char* WarningReasonName(WarningReason reason);
+
+/// Placed views whose place is doubtful, and why.
+struct ReliabilityWarning {
+  WarningReason reason = WarningReason::kContradictedPoses;
+  std::vector<ViewId> views;  // sorted
+  /// kContradictedPoses: the relative poses that contradict.
+  std::vector<ViewPair> against;
+  /// kWeakScale: the ratios in use. kContradictedRatios: those rejected.
+  std::vector<ViewTriplet> ratios;
+  /// kLostFeatures: the share of the features that fit.
+  double share = 0;
 };
 
 /// What became of the views and edges on the way to absolute poses.

@@ -1,4 +1,4 @@
-#include "lowlap/core/format.h"
+#include "lowlap/core/internal/format.h"
 #include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/evaluation/pose_errors.h"
 
@@ -13,11 +13,12 @@ std::string SummaryLine(const std::string& name,
 }
 
 std::string PairName(const ViewPair& views) {
-  return Format("%u-%u", views.first, views.second);
+  return Format("%u-%u", views.first.value(), views.second.value());
 }
 
 std::string TripletName(const ViewTriplet& views) {
-  return Format("%u-%u-%u", views.first, views.middle, views.last);
+  return Format("%u-%u-%u", views.first.value(), views.middle.value(),
+                views.last.value());
 }
 
 }  // namespace

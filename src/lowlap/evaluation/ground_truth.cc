@@ -1,7 +1,7 @@
-#include "lowlap/evaluation/ground_truth.h"
-
 #include <array>
 #include <cstddef>
+
+#include "lowlap/evaluation/pose_errors.h"
 
 namespace lowlap {
 namespace {
@@ -55,8 +55,8 @@ Result<GroundTruth> GroundTruthByName(
       if (!inserted) {
         return MakeError(ErrorCode::kInvalidScene,
                          "the true pose of '" + name + "' fits views " +
-                             std::to_string(entry->second) + " and " +
-                             std::to_string(id) + " equally well");
+                             std::to_string(entry->second.value()) + " and " +
+                             std::to_string(id.value()) + " equally well");
       }
       truth.emplace(id, pose->second);
     }

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {

@@ -1,8 +1,8 @@
-#include "lowlap/evaluation/statistics.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+
+#include "lowlap/evaluation/pose_errors.h"
 
 namespace lowlap {
 

@@ -4,9 +4,10 @@
 #include <cctype>
 #include <filesystem>
 
-#include "lowlap/io/ply.h"
-#include "lowlap/io/scene_binary.h"
-#include "lowlap/io/scene_json.h"
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/io/internal/json/scene_json.h"
+#include "lowlap/io/internal/ply.h"
+#include "lowlap/io/internal/scene_binary.h"
 
 namespace lowlap {
 
@@ -81,6 +82,25 @@ Result<const SceneFormat*> FindNamedSceneFormat(const SceneFormats& formats,
   return MakeError(ErrorCode::kUnsupported, "there is no scene format '" +
                                                 name + "'; there are:\n" +
                                                 DescribeSceneFormats(formats));
+}
+
+std::function<Result<SceneNotes>(const Scene&, const std::string& path,
+                                 FileSet* files)>
+WriteOneFile(std::function<Result<std::string>(const Scene&)> format) {
+  return
+      [format = std::move(format)](const Scene& scene, const std::string& path,
+                                   FileSet* files) -> Result<SceneNotes> {
+        const Result<std::string> bytes = format(scene);
+        Status status;
+        if (bytes) {
+          status = files->Add(path, *bytes);
+        } else {
+          status = tl::unexpected<Error>(bytes.error());
+        }
+        if (status) return SceneNotes();
+        if (status.error().file.empty()) status.error().file = path;
+        return tl::unexpected<Error>(std::move(status.error()));
+      };
 }
 
 }  // namespace lowlap

@@ -5,11 +5,12 @@
 #include <string_view>
 #include <vector>
 
-#include "lowlap/core/atomic_file.h"
 #include "lowlap/core/result.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
+
+class FileSet;
 
 /// One sentence for each kind of thing that a format cannot hold, or a reader
 /// does not take, and that was changed or left out.
@@ -46,22 +47,9 @@ using SceneFormats = std::vector<SceneFormat>;
 SceneFormats OwnSceneFormats();
 
 /// A `write` for formats that keep everything in one file.
-template <class FormatScene>
-auto WriteOneFile(FormatScene format) {
-  return [format](const Scene& scene, const std::string& path,
-                  FileSet* files) -> Result<SceneNotes> {
-    const Result<std::string> bytes = format(scene);
-    Status status;
-    if (bytes) {
-      status = files->Add(path, *bytes);
-    } else {
-      status = tl::unexpected<Error>(bytes.error());
-    }
-    if (status) return SceneNotes();
-    if (status.error().file.empty()) status.error().file = path;
-    return tl::unexpected<Error>(std::move(status.error()));
-  };
-}
+std::function<Result<SceneNotes>(const Scene&, const std::string& path,
+                                 FileSet* files)>
+WriteOneFile(std::function<Result<std::string>(const Scene&)> format);
 
 /// The first format that recognises the path, or kUnsupported with the list of
 /// those that exist. The pointer belongs to `formats`.

@@ -7,11 +7,11 @@
 #include <set>
 #include <system_error>
 
-#include "lowlap/core/format.h"
-#include "lowlap/features/image.h"
-#include "lowlap/pipeline/internal/calibration_fit.h"
-#include "lowlap/pipeline/internal/exif.h"
-#include "lowlap/scene/view_names.h"
+#include "lowlap/core/internal/format.h"
+#include "lowlap/features/internal/image.h"
+#include "lowlap/pipeline/internal/measure/calibration_fit.h"
+#include "lowlap/pipeline/internal/measure/exif.h"
+#include "lowlap/scene/internal/view_names.h"
 
 namespace lowlap {
 namespace {
@@ -149,7 +149,7 @@ IntrinsicId Add(const Intrinsic& intrinsic, IntrinsicId wanted, Scene* scene) {
     if (known == intrinsic) return id;
   }
   const IntrinsicId id =
-      intrinsics.empty() ? 0 : intrinsics.rbegin()->first + 1;
+      intrinsics.empty() ? 0 : intrinsics.rbegin()->first.value() + 1;
   intrinsics[id] = intrinsic;
   return id;
 }

@@ -6,8 +6,9 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/averaging/rigidity/rigidity.h"
-#include "lowlap/pipeline/decide_motions.h"
+#include "lowlap/averaging/internal/reliability_warnings.h"
+#include "lowlap/averaging/rigidity/internal/rigidity.h"
+#include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -60,10 +61,11 @@ std::vector<ViewTriplet> BelievedTriplets(const Scene& scene,
 // motions.
 Result<std::vector<ScaleRatio>> CompleteRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
-    std::vector<ScaleRatio> known, const std::vector<MotionDecision>& motions,
+    std::vector<ScaleRatio> known,
+    const std::vector<HypothesisDecision>& motions,
     const ScaleEstimator& estimator, const RunContext& context) {
   std::set<ViewPair> replaced;
-  for (const MotionDecision& motion : motions) {
+  for (const HypothesisDecision& motion : motions) {
     if (motion.replaced) replaced.insert(motion.views);
   }
   const auto is_replaced = [&](ViewId a, ViewId b) {
@@ -108,7 +110,7 @@ Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
   const StageLog::Scope scope(stages, "rotations");
   SolveStart start;
   auto motions =
-      DecideMotions(scene, *options.scale_estimator, options.poses, context);
+      DecideHypotheses(scene, *options.scale_estimator, options.poses, context);
   if (!motions) return tl::unexpected<Error>(motions.error());
   start.motions = std::move(*motions);
   auto averaged = AverageSceneRotations(*scene, options.poses, context);

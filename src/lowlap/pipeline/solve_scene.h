@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/structure_builder.h"
-#include "lowlap/averaging/rotations/pose_hypotheses.h"
 #include "lowlap/averaging/rotations/scene_rotations.h"
 #include "lowlap/averaging/scene_poses.h"
 #include "lowlap/core/result.h"
@@ -47,7 +45,7 @@ RatioSummary SummarizeRatios(const std::vector<ScaleRatio>& ratios);
 
 struct SolveResult {
   /// One for every relative pose that came with alternatives, by views.
-  std::vector<MotionDecision> motions;
+  std::vector<HypothesisDecision> motions;
   RatioSummary ratios;
   PoseSummary poses;
   StructureSummary structure;
@@ -58,12 +56,12 @@ struct SolveResult {
 
 /// What every strategy of composing poses starts from.
 struct SolveStart {
-  std::vector<MotionDecision> motions;
+  std::vector<HypothesisDecision> motions;
   SceneRotations rotations;
 };
 
 /// The first stage of SolveScene: settles the alternatives of relative poses
-/// (DecideMotions), averages the rotations and chooses the relative poses to
+/// (DecideHypotheses), averages the rotations and chooses the relative poses to
 /// believe.
 Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
                                  const RunContext& context, StageLog* stages);
@@ -95,11 +93,11 @@ Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
                                   const RunContext& context, StageLog* stages);
 
 /// From measurements to a calibrated scene: choice between alternative motions
-/// (DecideMotions), rotations and the choice of relative poses, ratios of the
-/// triplets of those believed, absolute poses, structure, bundle adjustment.
-/// Where there is nothing to adjust (a graph without features, views without
-/// intrinsics), the poses stay as they are, with a warning in the log.
-/// Views that lost most of their features in the end are added to
+/// (DecideHypotheses), rotations and the choice of relative poses, ratios of
+/// the triplets of those believed, absolute poses, structure, bundle
+/// adjustment. Where there is nothing to adjust (a graph without features,
+/// views without intrinsics), the poses stay as they are, with a warning in the
+/// log. Views that lost most of their features in the end are added to
 /// PoseSummary::reliability_warnings (FindLostFeatures).
 /// Reads intrinsics, features, relative poses and tracks; settles alternatives
 /// and replaces scale ratios, poses and structure. Errors leave

@@ -3,13 +3,13 @@
 #include <string>
 #include <utility>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
 namespace {
 
-std::string Name(ViewId view) { return "view " + std::to_string(view); }
+std::string Name(ViewId view) { return "view " + std::to_string(view.value()); }
 
 std::vector<FeatureMatch> Matches(const Eigen::Matrix2Xi& columns,
                                   bool swapped) {
@@ -46,12 +46,12 @@ void TranslationScaleEstimator::AddView(ViewId view, const Intrinsic& intrinsic,
   View added;
   added.width_px = intrinsic.width_px;
   added.height_px = intrinsic.height_px;
-  added.intrinsic_id = view;
-  added.pose_id = view;
+  added.intrinsic_id = view.value();
+  added.pose_id = view.value();
   if (!scene_.views.emplace(view, added).second) {
     return Fail(Name(view) + " is given twice");
   }
-  scene_.intrinsics[view] = intrinsic;
+  scene_.intrinsics[view.value()] = intrinsic;
   ViewFeatures& features = scene_.features[view];
   for (Eigen::Index n = 0; n < points_px.cols(); ++n) {
     features.points_px.emplace_back(points_px.col(n));

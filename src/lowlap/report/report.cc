@@ -1,4 +1,4 @@
-#include "lowlap/report/report.h"
+#include "lowlap/report/internal/report.h"
 
 #include "lowlap/report/internal/markup.h"
 #include "lowlap/report/internal/report_page.h"

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/core/median.h"
+#include "lowlap/core/internal/median.h"
 
 namespace lowlap {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
 
 namespace lowlap {

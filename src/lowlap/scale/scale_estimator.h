@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "lowlap/core/result.h"
-#include "lowlap/scale/evidence/evidence.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
 #include "lowlap/scale/scale_options.h"
 #include "lowlap/scale/triplet_view.h"
 #include "lowlap/scene/scale_ratio.h"

@@ -42,8 +42,8 @@ Status CheckMatches(const Scene& scene, const RelativePose& edge,
     if (match.first < num_first && match.second < num_second) continue;
     return MakeError(ErrorCode::kInvalidScene,
                      "the relative pose of views " +
-                         std::to_string(edge.views.first) + " and " +
-                         std::to_string(edge.views.second) +
+                         std::to_string(edge.views.first.value()) + " and " +
+                         std::to_string(edge.views.second.value()) +
                          " matches a feature that does not exist");
   }
   return {};
@@ -98,9 +98,9 @@ bool SceneFeatures::HasAll(const ViewTriplet& views) const {
 Result<TripletView> MakeTripletView(const SceneFeatures& features,
                                     const ViewTriplet& views) {
   const Scene& scene = features.scene;
-  const std::string name = "triplet (" + std::to_string(views.first) + ", " +
-                           std::to_string(views.middle) + ", " +
-                           std::to_string(views.last) + ")";
+  const std::string name = "triplet (" + std::to_string(views.first.value()) +
+                           ", " + std::to_string(views.middle.value()) + ", " +
+                           std::to_string(views.last.value()) + ")";
   const Intrinsic* intrinsic = scene.FindIntrinsic(views.middle);
   if (intrinsic == nullptr) {
     return MakeError(ErrorCode::kInvalidArgument,

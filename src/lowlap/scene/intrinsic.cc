@@ -46,8 +46,7 @@ int DistortionCount(CameraModel model) { return Entry(model).distortion_count; }
 
 Vec2 Distort(CameraModel model, const std::vector<double>& k, const Vec2& p) {
   Vec2 distorted;
-  internal::DistortPoint(model, k.data(), p.x(), p.y(), &distorted.x(),
-                         &distorted.y());
+  DistortPoint(model, k.data(), p.x(), p.y(), &distorted.x(), &distorted.y());
   return distorted;
 }
 
@@ -85,7 +84,7 @@ std::optional<Vec2> Intrinsic::Normalize(const Vec2& pixel_px) const {
   const Vec2 centred = pixel_px - principal_point_px;
   const Vec2 distorted(centred.x() / fx_px, centred.y() / fy_px);
   if (!HasDistortion()) return distorted;
-  return internal::Undistort(model, distortion, distorted);
+  return Undistort(model, distortion, distorted);
 }
 
 double Intrinsic::MeanFocalPx() const {

@@ -87,12 +87,12 @@ Scene WithoutViews(const Scene& scene, const std::vector<ViewId>& excluded) {
     });
   }
 
-  for (auto* tracks : {&kept.point_tracks, &kept.line_tracks}) {
-    erase_if(*tracks, [&](auto& e) {
-      shrink(e.second);
-      return NumViews(e.second) < 2;
-    });
-  }
+  const auto shrinks_too_far = [&](auto& e) {
+    shrink(e.second);
+    return NumViews(e.second) < 2;
+  };
+  erase_if(kept.point_tracks, shrinks_too_far);
+  erase_if(kept.line_tracks, shrinks_too_far);
   erase_if(kept.structure, [&](auto& e) {
     shrink(e.second.observations);
     return e.second.observations.size() < 2;

@@ -5,7 +5,6 @@
 #include "lowlap/scene/internal/validation_parts.h"
 
 namespace lowlap {
-namespace internal {
 
 std::string ItemPlace(const char* section, std::uint32_t id) {
   return std::string("$.") + section + "[key=" + std::to_string(id) + "]";
@@ -21,7 +20,7 @@ std::string IndexPlace(std::size_t index) {
 }
 
 std::string UnknownView(ViewId view) {
-  return "there is no view " + std::to_string(view);
+  return "there is no view " + std::to_string(view.value());
 }
 
 ViewTable::ViewTable(const Scene& scene) {
@@ -41,8 +40,8 @@ ViewTable::ViewTable(const Scene& scene) {
 
 const ViewTable::Entry* ViewTable::Find(ViewId view) const {
   // Mostly the ids are 0, 1, 2, ...
-  if (view < entries_.size() && entries_[view].view == view) {
-    return &entries_[view];
+  if (view < entries_.size() && entries_[view.value()].view == view) {
+    return &entries_[view.value()];
   }
   const auto found = std::lower_bound(
       entries_.begin(), entries_.end(), view,
@@ -50,15 +49,11 @@ const ViewTable::Entry* ViewTable::Find(ViewId view) const {
   return found != entries_.end() && found->view == view ? &*found : nullptr;
 }
 
-}  // namespace internal
-
 Status ValidateScene(const Scene& scene) {
-  const internal::ViewTable views(scene);
-  for (const auto part :
-       {internal::ValidateCameras, internal::ValidateStructure,
-        internal::ValidateFeatures, internal::ValidateRelativePoses,
-        internal::ValidateTracks, internal::ValidateScaleRatios,
-        internal::ValidateLineStructure}) {
+  const ViewTable views(scene);
+  for (const auto part : {ValidateCameras, ValidateStructure, ValidateFeatures,
+                          ValidateRelativePoses, ValidateTracks,
+                          ValidateScaleRatios, ValidateLineStructure}) {
     if (Status status = part(scene, views); !status) return status;
   }
   return {};

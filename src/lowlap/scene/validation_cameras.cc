@@ -1,16 +1,16 @@
 #include <set>
 #include <string>
 
-#include "lowlap/core/format.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/format.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/internal/validation_parts.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 Status ValidateView(const Scene& scene, ViewId id, const View& view) {
   const auto invalid = [&](std::string message, const char* member) {
-    return Invalid(std::move(message), ItemPlace("views", id) + member);
+    return Invalid(std::move(message), ItemPlace("views", id.value()) + member);
   };
   if (id == kInvalidId) return invalid("this id is reserved", "");
   if (!IsUtf8(view.local_path)) return invalid("not UTF-8", ".local_path");
@@ -19,8 +19,9 @@ Status ValidateView(const Scene& scene, ViewId id, const View& view) {
   if (view.height_px < 0) return invalid("must not be negative", ".height");
   if (view.intrinsic_id != kInvalidId &&
       scene.intrinsics.count(view.intrinsic_id) == 0) {
-    return invalid("there is no intrinsic " + std::to_string(view.intrinsic_id),
-                   ".id_intrinsic");
+    return invalid(
+        "there is no intrinsic " + std::to_string(view.intrinsic_id.value()),
+        ".id_intrinsic");
   }
   if (view.center_prior) {
     if (!view.center_prior->weight.allFinite()) {
@@ -45,7 +46,7 @@ Status ValidateCameras(const Scene& scene, const ViewTable&) {
     used_poses.insert(view.pose_id);
   }
   for (const auto& [id, intrinsic] : scene.intrinsics) {
-    const std::string place = ItemPlace("intrinsics", id);
+    const std::string place = ItemPlace("intrinsics", id.value());
     if (id == kInvalidId) return Invalid("this id is reserved", place);
     if (used_intrinsics.count(id) == 0) {
       return Invalid("no view uses this intrinsic", place);
@@ -56,16 +57,17 @@ Status ValidateCameras(const Scene& scene, const ViewTable&) {
   }
   for (const auto& [id, given] : scene.given_intrinsics) {
     const std::string place =
-        OwnItemPlace("given_intrinsics", "id", std::to_string(id));
+        OwnItemPlace("given_intrinsics", "id", std::to_string(id.value()));
     if (scene.intrinsics.count(id) == 0) {
-      return Invalid("there is no intrinsic " + std::to_string(id), place);
+      return Invalid("there is no intrinsic " + std::to_string(id.value()),
+                     place);
     }
     if (const Status status = given.Validate(); !status) {
       return Invalid(status.error().message, place);
     }
   }
   for (const auto& [id, pose] : scene.poses) {
-    const std::string place = ItemPlace("extrinsics", id);
+    const std::string place = ItemPlace("extrinsics", id.value());
     if (id == kInvalidId) return Invalid("this id is reserved", place);
     if (used_poses.count(id) == 0) {
       return Invalid("no view uses this pose", place);
@@ -80,4 +82,4 @@ Status ValidateCameras(const Scene& scene, const ViewTable&) {
   return {};
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/internal/validation_parts.h"
 #include "lowlap/scene/validation.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 // Where the first non-finite feature of a view stands in its flat arrays.
@@ -125,16 +125,16 @@ Status ValidateRelativePose(const ViewTable& views, const RelativePose& edge,
 
 }  // namespace
 
-}  // namespace lowlap::internal
+}  // namespace lowlap
 
 namespace lowlap {
 
 Status ValidateRelativePose(const RelativePose& pose) {
-  if (Status status = internal::ValidateMotion(pose, {}); !status) {
+  if (Status status = ValidateMotion(pose, {}); !status) {
     return status;
   }
   for (const AlternativeMotion& other : pose.alternatives) {
-    if (Status status = internal::ValidateMotion(other, {}); !status) {
+    if (Status status = ValidateMotion(other, {}); !status) {
       return status;
     }
   }
@@ -143,12 +143,12 @@ Status ValidateRelativePose(const RelativePose& pose) {
 
 }  // namespace lowlap
 
-namespace lowlap::internal {
+namespace lowlap {
 
 Status ValidateFeatures(const Scene& scene, const ViewTable& views) {
   for (const auto& [view, features] : scene.features) {
     const std::string place =
-        OwnItemPlace("features", "view", std::to_string(view));
+        OwnItemPlace("features", "view", std::to_string(view.value()));
     if (!views.Find(view)) return Invalid(UnknownView(view), place);
     if (Status status = ValidateViewFeatures(features, place); !status) {
       return status;
@@ -159,9 +159,10 @@ Status ValidateFeatures(const Scene& scene, const ViewTable& views) {
 
 Status ValidateRelativePoses(const Scene& scene, const ViewTable& views) {
   for (const auto& [pair, edge] : scene.relative_poses) {
-    const std::string place = OwnItemPlace(
-        "relative_poses", "views",
-        std::to_string(pair.first) + "," + std::to_string(pair.second));
+    const std::string place =
+        OwnItemPlace("relative_poses", "views",
+                     std::to_string(pair.first.value()) + "," +
+                         std::to_string(pair.second.value()));
     if (pair != edge.views) {
       return Invalid("is stored under other views than its own",
                      place + ".views");
@@ -190,7 +191,7 @@ Status ValidateTrack(const ViewTable& views, const Track& track,
     const std::size_t count =
         kind == FeatureKind::kPoint ? view->points : view->segments;
     if (ref.feature >= count) {
-      return invalid("view " + std::to_string(ref.view) + " has only " +
+      return invalid("view " + std::to_string(ref.view.value()) + " has only " +
                          std::to_string(count) + " features of this kind",
                      2 * n + 1);
     }
@@ -199,9 +200,9 @@ Status ValidateTrack(const ViewTable& views, const Track& track,
       return invalid("observations must be sorted by view", 2 * n);
     }
     if (kind == FeatureKind::kPoint) {
-      return invalid(
-          "view " + std::to_string(ref.view) + " appears twice in one track",
-          2 * n);
+      return invalid("view " + std::to_string(ref.view.value()) +
+                         " appears twice in one track",
+                     2 * n);
     }
     ascending = ascending && track[n - 1].feature < ref.feature;
   }
@@ -211,7 +212,7 @@ Status ValidateTrack(const ViewTable& views, const Track& track,
     const auto repeated = std::adjacent_find(sorted.begin(), sorted.end());
     if (repeated != sorted.end()) {
       return Invalid("segment " + std::to_string(repeated->feature) +
-                         " of view " + std::to_string(repeated->view) +
+                         " of view " + std::to_string(repeated->view.value()) +
                          " is repeated",
                      place + ".observations");
     }
@@ -226,8 +227,8 @@ Status ValidateTracks(const Scene& scene, const ViewTable& views) {
       // The place is spelt out only on failure: scenes have many tracks.
       if (Status status = ValidateTrack(views, track, kind, {}); !status) {
         Error error = status.error();
-        error.place =
-            OwnItemPlace(section, "id", std::to_string(id)) + error.place;
+        error.place = OwnItemPlace(section, "id", std::to_string(id.value())) +
+                      error.place;
         return tl::unexpected<Error>(std::move(error));
       }
     }
@@ -241,4 +242,4 @@ Status ValidateTracks(const Scene& scene, const ViewTable& views) {
   return validate(scene.line_tracks, "line_tracks", FeatureKind::kSegment);
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

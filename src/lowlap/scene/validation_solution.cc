@@ -6,7 +6,7 @@
 
 #include "lowlap/scene/internal/validation_parts.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 Status ValidateSupport(const KindSupport& support, const std::string& place) {
@@ -47,8 +47,9 @@ Status ValidateScaleRatio(const Scene& scene, const ViewTable& views,
   for (const ViewId neighbour : {first, last}) {
     if (scene.FindRelativePose(neighbour, middle) == nullptr) {
       return Invalid("there is no relative pose of views " +
-                         std::to_string(std::min(neighbour, middle)) + " and " +
-                         std::to_string(std::max(neighbour, middle)),
+                         std::to_string(std::min(neighbour, middle).value()) +
+                         " and " +
+                         std::to_string(std::max(neighbour, middle).value()),
                      place + ".views");
     }
   }
@@ -106,8 +107,8 @@ Status ValidateLandmark(const ViewTable& views, const Landmark& landmark,
   const PointObservation* previous = nullptr;
   for (const PointObservation& observation : landmark.observations) {
     const auto place = [&](const char* member) {
-      return ".observations[key=" + std::to_string(observation.view) + "]" +
-             member;
+      return ".observations[key=" + std::to_string(observation.view.value()) +
+             "]" + member;
     };
     const ViewTable::Entry* view = views.Find(observation.view);
     if (!view) {
@@ -164,7 +165,7 @@ Status ValidateStructure(const Scene& scene, const ViewTable& views) {
     if (status && landmark.observations.size() < 2) {
       status = Invalid("needs at least two observations", ".observations");
     }
-    if (!status) return Within(ItemPlace("structure", id), status);
+    if (!status) return Within(ItemPlace("structure", id.value()), status);
   }
   for (const auto& [id, point] : scene.control_points) {
     if (Status status = ValidateLandmark(views, point, false); !status) {
@@ -178,10 +179,10 @@ Status ValidateScaleRatios(const Scene& scene, const ViewTable& views) {
   std::set<std::tuple<ViewId, ViewId, ViewId>> seen;
   for (const ScaleRatio& ratio : scene.scale_ratios) {
     const auto& [first, middle, last] = ratio.views;
-    const std::string place =
-        OwnItemPlace("scale_ratios", "views",
-                     std::to_string(first) + "," + std::to_string(middle) +
-                         "," + std::to_string(last));
+    const std::string place = OwnItemPlace(
+        "scale_ratios", "views",
+        std::to_string(first.value()) + "," + std::to_string(middle.value()) +
+            "," + std::to_string(last.value()));
     if (Status status = ValidateScaleRatio(scene, views, ratio, place);
         !status) {
       return status;
@@ -198,8 +199,9 @@ Status ValidateScaleRatios(const Scene& scene, const ViewTable& views) {
 Status ValidateLineStructure(const Scene& scene, const ViewTable& views) {
   for (const auto& [id, line] : scene.line_structure) {
     if (Status status = ValidateLine(views, line); !status) {
-      return Within(OwnItemPlace("line_structure", "id", std::to_string(id)),
-                    status);
+      return Within(
+          OwnItemPlace("line_structure", "id", std::to_string(id.value())),
+          status);
     }
   }
   std::set<CoplanarPair> seen;
@@ -209,11 +211,11 @@ Status ValidateLineStructure(const Scene& scene, const ViewTable& views) {
       return "$.lowlap.coplanar_pairs" + IndexPlace(flat_index);
     };
     if (scene.line_structure.count(pair.first) == 0) {
-      return Invalid("there is no line " + std::to_string(pair.first),
+      return Invalid("there is no line " + std::to_string(pair.first.value()),
                      place(2 * n));
     }
     if (scene.line_structure.count(pair.second) == 0) {
-      return Invalid("there is no line " + std::to_string(pair.second),
+      return Invalid("there is no line " + std::to_string(pair.second.value()),
                      place(2 * n + 1));
     }
     if (!(pair.first < pair.second)) {
@@ -226,4 +228,4 @@ Status ValidateLineStructure(const Scene& scene, const ViewTable& views) {
   return {};
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -4,8 +4,8 @@
 #include <iterator>
 #include <utility>
 
-#include "lowlap/core/graph_blocks.h"
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/graph_blocks.h"
+#include "lowlap/core/internal/union_find.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {

@@ -6,6 +6,7 @@
 
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/averaging/scene_poses.h"
+#include "lowlap/study/internal/consistency.h"
 
 namespace lowlap {
 namespace {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <string>
@@ -9,12 +10,10 @@
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
-#include "lowlap/evaluation/ground_truth.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/pipeline/stage_log.h"
 #include "lowlap/scene/scene.h"
-#include "lowlap/study/consistency.h"
 
 namespace lowlap {
 
@@ -34,6 +33,22 @@ struct CompareOptions {
 
   /// The known strategies are listed for an unknown one.
   Status Validate() const;
+};
+
+/// How well poses and structure agree with what they were computed from: what
+/// can be said without true cameras.
+struct Consistency {
+  /// Angles between the direction of a relative pose (i, j) and that of the
+  /// solved baseline, R_j (C_i - C_j), in degrees.
+  ErrorStatistics direction_deg;
+  double mean_baseline = 0;  // of the same relative poses, world units
+  /// | log(|C_k - C_j| / |C_j - C_i|) - log ratio | of the meaningful scale
+  /// ratios (i, j, k); 0.01 is about 1 per cent of scale. Parts that were put
+  /// together at an arbitrary scale show here, and not in the directions.
+  ErrorStatistics abs_log_ratio;
+  /// Of the points of the structure, over all their observations, pixels.
+  std::size_t num_points = 0;
+  double reprojection_rmse_px = 0;
 };
 
 /// A solution at one point of the way: as averaged, or as adjusted.

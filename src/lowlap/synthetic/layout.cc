@@ -3,8 +3,8 @@
 #include <array>
 #include <cmath>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/synthetic/internal/world.h"
 
 namespace lowlap {

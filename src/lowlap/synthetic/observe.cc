@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/synthetic/internal/wrong_match.h"
 
 namespace lowlap {
@@ -39,7 +39,7 @@ Sightings<Image> RightSightings(const std::vector<Camera>& cameras,
                                 const Shape& shape) {
   Sightings<Image> sightings;
   for (const ViewId view : views) {
-    sightings.images[view] = *cameras[view].Project(shape);
+    sightings.images[view] = *cameras[view.value()].Project(shape);
   }
   sightings.matches = graph.PairsAmong(views);
   return sightings;

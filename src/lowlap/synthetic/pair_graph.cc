@@ -60,8 +60,8 @@ PairGraph::PairGraph(const PairRule& rule, int num_views,
   std::sort(pairs_.begin(), pairs_.end());
   pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
   for (const ViewPair& pair : pairs_) {
-    neighbors_[pair.first].push_back(pair.second);
-    neighbors_[pair.second].push_back(pair.first);
+    neighbors_[pair.first.value()].push_back(pair.second);
+    neighbors_[pair.second.value()].push_back(pair.first);
   }
   for (std::vector<ViewId>& list : neighbors_) {
     std::sort(list.begin(), list.end());
@@ -69,7 +69,8 @@ PairGraph::PairGraph(const PairRule& rule, int num_views,
 }
 
 bool PairGraph::AreConnected(ViewId a, ViewId b) const {
-  return std::binary_search(neighbors_[a].begin(), neighbors_[a].end(), b);
+  return std::binary_search(neighbors_[a.value()].begin(),
+                            neighbors_[a.value()].end(), b);
 }
 
 std::vector<ViewPair> PairGraph::PairsAmong(

@@ -7,8 +7,8 @@
 #include <map>
 #include <optional>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::uint64_t kWrongPoseStream = 10'000'000'000;
 constexpr double kPriorRad = 0.3;
 
 std::uint64_t Stream(std::uint64_t base, const ViewPair& pair) {
-  return base + pair.first * 1'000'003ull + pair.second;
+  return base + pair.first.value() * 1'000'003ull + pair.second.value();
 }
 
 Vec3 DrawDirection(Random* random) {

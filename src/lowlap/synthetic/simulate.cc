@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/synthetic/internal/coplanar_truth.h"
 #include "lowlap/synthetic/internal/observe.h"
 #include "lowlap/synthetic/internal/pair_graph.h"
@@ -25,16 +25,16 @@ void AddViews(const SyntheticOptions& options, const World& world,
   scene.intrinsics[0] = intrinsic;
   for (ViewId id = 0; id < world.poses.size(); ++id) {
     char name[32];
-    std::snprintf(name, sizeof(name), "%06u.png", id);
+    std::snprintf(name, sizeof(name), "%06u.png", id.value());
     View view;
     view.filename = name;
     view.width_px = options.width_px;
     view.height_px = options.height_px;
     view.intrinsic_id = 0;
-    view.pose_id = id;
+    view.pose_id = id.value();
     scene.views[id] = view;
     scene.features[id];  // a view may see nothing
-    synthetic->true_poses[id] = world.poses[id];
+    synthetic->true_poses[id] = world.poses[id.value()];
   }
 }
 
@@ -78,13 +78,14 @@ void AddRelativePoses(const SyntheticOptions& options,
                       const PairGraph& graph, SyntheticScene* synthetic) {
   for (const ViewPair& pair : graph.Pairs()) {
     const RigidTransform cam2_from_cam1 =
-        cameras[pair.second].cam_from_world *
-        cameras[pair.first].cam_from_world.Inverse();
+        cameras[pair.second.value()].cam_from_world *
+        cameras[pair.first.value()].cam_from_world.Inverse();
     const Vec3 baseline = synthetic->true_poses.at(pair.second).center -
                           synthetic->true_poses.at(pair.first).center;
     synthetic->true_baselines[pair] = baseline.norm();
-    Random random(options.seed,
-                  kPoseStream + pair.first * 1'000'003ull + pair.second);
+    Random random(
+        options.seed,
+        kPoseStream + pair.first.value() * 1'000'003ull + pair.second.value());
     RigidTransform exact = cam2_from_cam1;
     if (baseline.isZero(0)) exact.translation.setZero();
     synthetic->scene.relative_poses[pair] =

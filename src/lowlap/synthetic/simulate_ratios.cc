@@ -1,4 +1,4 @@
-#include "lowlap/synthetic/simulate_ratios.h"
+#include "lowlap/synthetic/internal/simulate_ratios.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -16,8 +16,8 @@ namespace {
 constexpr std::uint64_t kRatioStream = 9'000'000'000;
 
 std::uint64_t Stream(const ViewTriplet& views) {
-  return kRatioStream + views.first * 1'000'000'000'039ull +
-         views.middle * 1'000'003ull + views.last;
+  return kRatioStream + views.first.value() * 1'000'000'000'039ull +
+         views.middle.value() * 1'000'003ull + views.last.value();
 }
 
 // Of the relative poses whose rotation is not the true one.

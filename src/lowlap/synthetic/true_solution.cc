@@ -20,7 +20,9 @@ std::optional<double> SyntheticScene::TrueLogRatio(
 
 Scene TrueSolution(const SyntheticScene& synthetic) {
   Scene scene = synthetic.scene;
-  scene.poses = synthetic.true_poses;
+  for (const auto& [view, pose] : synthetic.true_poses) {
+    scene.poses[scene.views.at(view).pose_id] = pose;
+  }
   for (const ViewTriplet& triplet : FindTriplets(ViewGraph(scene))) {
     const std::optional<double> log_ratio = synthetic.TrueLogRatio(triplet);
     if (!log_ratio) continue;

@@ -118,8 +118,8 @@ std::vector<std::vector<ViewId>> ViewsOfPoints(
     const WorldPoint& point = world.points[i];
     for (const ViewId view : wall_views[point.wall]) {
       if (Faces(world.walls[point.wall], world.max_range,
-                world.poses[view].center, point.position) &&
-          cameras[view].Project(point.position)) {
+                world.poses[view.value()].center, point.position) &&
+          cameras[view.value()].Project(point.position)) {
         views[i].push_back(view);
       }
     }
@@ -135,8 +135,9 @@ std::vector<std::vector<ViewId>> ViewsOfLines(
     const WorldLine& line = world.lines[i];
     for (const ViewId view : wall_views[line.wall]) {
       if (Faces(world.walls[line.wall], world.max_range,
-                world.poses[view].center, 0.5 * (line.start + line.end)) &&
-          cameras[view].Project(Segment3{line.start, line.end})) {
+                world.poses[view.value()].center,
+                0.5 * (line.start + line.end)) &&
+          cameras[view.value()].Project(Segment3{line.start, line.end})) {
         views[i].push_back(view);
       }
     }

@@ -80,16 +80,19 @@ Sightings<Image> Wrong(const SyntheticOptions& options,
   const double min_displacement = std::max(6.0, 6 * options.noise_px);
   Sightings<Image> sightings;
   std::map<ViewId, Shape> shown = {{views.front(), truth}};
-  sightings.images[views.front()] = *cameras[views.front()].Project(truth);
+  sightings.images[views.front()] =
+      *cameras[views.front().value()].Project(truth);
   for (const auto& [parent, child] : SpanningTree(graph, views)) {
     if (sightings.images.count(parent) == 0) continue;  // left out
     std::optional<Image> image;
     if (options.wrong_fits_epipolar) {
       const Shape& believed = shown.at(parent);
-      const std::optional<Image> right = cameras[child].Project(believed);
+      const std::optional<Image> right =
+          cameras[child.value()].Project(believed);
       for (int attempt = 0; attempt < kMaxAttempts && !image; ++attempt) {
-        const Shape wrong = AtWrongDepth(cameras[parent], believed, random);
-        image = cameras[child].Project(wrong);
+        const Shape wrong =
+            AtWrongDepth(cameras[parent.value()], believed, random);
+        image = cameras[child.value()].Project(wrong);
         if (image && right && Displacement(*right, *image) < min_displacement) {
           image.reset();
         }
@@ -97,7 +100,7 @@ Sightings<Image> Wrong(const SyntheticOptions& options,
       }
       if (!image) continue;
     } else {
-      DrawAnywhere(cameras[child].intrinsic, random, &image.emplace());
+      DrawAnywhere(cameras[child.value()].intrinsic, random, &image.emplace());
     }
     sightings.images[child] = *image;
     sightings.matches.push_back(

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/triangulation.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/triangulation.h"
 #include "lowlap/scale/evidence/internal/coplanar_ratio.h"
 #include "lowlap/scale/evidence/internal/line_in_middle.h"
 #include "lowlap/scale/evidence/internal/trifocal_line.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/scale/evidence/internal/coplanar_ratio.h"
 #include "lowlap/scale/evidence/internal/line_in_middle.h"
 #include "scale/rig.h"

@@ -1,6 +1,8 @@
 // A kind of evidence from outside: odometry knows the lengths of some
 // baselines, with a relative deviation, and nothing of images.
 
+#include "lowlap/scale/evidence/evidence_kind.h"
+
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include <string>
 #include <utility>
 
-#include "lowlap/scale/evidence/evidence.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "scale/row_of_views.h"
 #include "scale/synthetic_triplet.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "lowlap/geometry/triangulation.h"
+#include "lowlap/geometry/internal/triangulation.h"
 #include "scale/rig.h"
 
 namespace lowlap {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/scale/evidence/internal/coplanar_lines.h"
 #include "lowlap/scale/evidence/internal/trifocal_line.h"
 #include "lowlap/scale/evidence/internal/trifocal_point.h"

@@ -1,7 +1,7 @@
 #include "third_party_adapters/onedsfm/internal/bundle_file.h"
 
 #include "lowlap/core/internal/token_reader.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap::onedsfm {
 
@@ -9,7 +9,7 @@ Result<std::map<ViewId, Pose>> ParseBundlePoses(std::string_view text,
                                                 const std::string& file) {
   TokenReader reader(text, file);
   if (text.substr(0, 1) == "#") reader.RestOfLine();
-  const auto num_cameras = reader.Next<ViewId>("the number of cameras");
+  const auto num_cameras = reader.Next<std::uint32_t>("the number of cameras");
   reader.Next<std::size_t>("the number of points");
   std::map<ViewId, Pose> poses;
   for (ViewId n = 0; n < num_cameras && reader.status(); ++n) {
@@ -30,7 +30,7 @@ Result<std::map<ViewId, Pose>> ParseBundlePoses(std::string_view text,
     if (focal == 0 && rotation.isZero(0)) continue;
     const Mat3 nearest = NearestRotation(rotation);
     if (!((nearest - rotation).cwiseAbs().maxCoeff() < 1e-3)) {
-      reader.Fail("the matrix of camera " + std::to_string(n) +
+      reader.Fail("the matrix of camera " + std::to_string(n.value()) +
                   " is no rotation");
       break;
     }

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "lowlap/core/internal/token_reader.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap::onedsfm {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "third_party_adapters/onedsfm/problem.h"
+#include "third_party_adapters/onedsfm/internal/problem.h"
 
 namespace lowlap::onedsfm {
 

@@ -1,6 +1,6 @@
 #include "third_party_adapters/openmvg/internal/feat.h"
 
-#include "lowlap/core/atomic_file.h"
+#include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/token_reader.h"
 
 namespace lowlap::openmvg {

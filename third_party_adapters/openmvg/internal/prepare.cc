@@ -9,7 +9,7 @@ namespace lowlap::openmvg {
 namespace {
 
 template <class Map>
-std::size_t DropUnused(Map& map, const std::set<std::uint32_t>& used) {
+std::size_t DropUnused(Map& map, const std::set<typename Map::key_type>& used) {
   std::size_t dropped = 0;
   for (auto entry = map.begin(); entry != map.end();) {
     if (used.count(entry->first)) {
@@ -39,7 +39,8 @@ PreparedScene PrepareForOpenMvg(const Scene& scene) {
   out.poses = scene.poses;
   out.control_points = scene.control_points;
 
-  std::set<std::uint32_t> used_intrinsics, used_poses;
+  std::set<IntrinsicId> used_intrinsics;
+  std::set<PoseId> used_poses;
   for (const auto& [id, view] : out.views) {
     used_intrinsics.insert(view.intrinsic_id);
     used_poses.insert(view.pose_id);

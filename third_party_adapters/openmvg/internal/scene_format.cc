@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "lowlap/io/scene_json.h"
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/io/internal/json/scene_json.h"
 #include "lowlap/scene/validation.h"
 #include "third_party_adapters/openmvg/internal/prepare.h"
 #include "third_party_adapters/openmvg/internal/sfm_data_bin.h"

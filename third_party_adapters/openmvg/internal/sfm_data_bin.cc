@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "lowlap/core/atomic_file.h"
+#include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/scene/validation.h"
 #include "third_party_adapters/openmvg/internal/archive_reader.h"
 #include "third_party_adapters/openmvg/internal/polymorphic.h"
@@ -111,8 +111,8 @@ class SfmDataReader {
     const ViewId own_id = in_.U32();
     if (in_.ok() && own_id != id) {
       in_.FailAt(id_place,
-                 "id_view " + std::to_string(own_id) +
-                     " differs from the key " + std::to_string(id),
+                 "id_view " + std::to_string(own_id.value()) +
+                     " differs from the key " + std::to_string(id.value()),
                  ErrorCode::kInvalidScene);
     }
     view.intrinsic_id = in_.U32();

@@ -93,7 +93,8 @@ class SfmDataWriter {
     WriteReals(pose.center.data(), 3);
   }
 
-  void WriteLandmarks(const std::map<std::uint32_t, Landmark>& landmarks) {
+  template <class Landmarks>
+  void WriteLandmarks(const Landmarks& landmarks) {
     WriteCount(landmarks.size());
     for (const auto& [id, landmark] : landmarks) {
       out_.Integer(id);

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "lowlap/core/atomic_file.h"
-#include "lowlap/io/scene_json.h"
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/io/internal/json/scene_json.h"
 #include "third_party_adapters/openmvg/internal/xml_structure.h"
 
 namespace lowlap::openmvg {

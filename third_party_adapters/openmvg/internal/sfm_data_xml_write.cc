@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "lowlap/io/scene_json.h"
+#include "lowlap/io/internal/json/scene_json.h"
 #include "third_party_adapters/openmvg/internal/sfm_data_xml.h"
 
 namespace lowlap::openmvg {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace lowlap::internal {
+namespace lowlap {
 
 void IntrinsicState::ParametersFromValue() {
   parameters.fill(0);
@@ -86,4 +86,4 @@ void CameraSet::WriteTo(Scene* scene) const {
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -7,7 +7,7 @@
 
 #include "lowlap/scene/scene.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// fx, fy, ppx, ppy, then the distortion coefficients.
 inline constexpr int kMaxIntrinsicParameters = 9;
@@ -69,4 +69,4 @@ struct CameraSet {
   void WriteTo(Scene* scene) const;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -1,8 +1,9 @@
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <string>
@@ -100,11 +101,12 @@ std::optional<std::size_t> BestRejectedRatio(const Scene& scene,
 // The views of two sets whose ids are nearest.
 void FindNearest(const std::vector<ViewId>& group,
                  const std::vector<ViewId>& part, FloatingPart* floating) {
-  ViewId least = kInvalidId;
+  std::uint32_t least = std::numeric_limits<std::uint32_t>::max();
   for (const ViewId a : group) {
     const auto above = std::lower_bound(part.begin(), part.end(), a);
     const auto consider = [&](ViewId b) {
-      const ViewId distance = std::max(a, b) - std::min(a, b);
+      const std::uint32_t distance =
+          std::max(a, b).value() - std::min(a, b).value();
       if (distance >= least) return;
       least = distance;
       floating->near_group = a;
@@ -217,9 +219,10 @@ Result<ScaleDiagnosis> DiagnoseScales(const ViewGraph& graph,
     for (const ViewId outer : {v.first, v.last}) {
       if (graph.FindPair(outer, v.middle)) continue;
       return MakeError(ErrorCode::kInvalidScene,
-                       "the scale ratio of views " + std::to_string(v.first) +
-                           "-" + std::to_string(v.middle) + "-" +
-                           std::to_string(v.last) +
+                       "the scale ratio of views " +
+                           std::to_string(v.first.value()) + "-" +
+                           std::to_string(v.middle.value()) + "-" +
+                           std::to_string(v.last.value()) +
                            " is without one of its relative poses");
     }
   }

@@ -7,8 +7,8 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/core/graph_blocks.h"
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/graph_blocks.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/types.h"
 
 namespace lowlap {

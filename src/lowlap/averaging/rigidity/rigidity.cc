@@ -1,4 +1,4 @@
-#include "lowlap/averaging/rigidity/rigidity.h"
+#include "lowlap/averaging/rigidity/internal/rigidity.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "lowlap/averaging/rigidity/internal/rigid_parts.h"
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "lowlap/averaging/rigidity/internal/rigid_parts.h"
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {

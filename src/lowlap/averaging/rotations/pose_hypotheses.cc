@@ -1,4 +1,4 @@
-#include "lowlap/averaging/rotations/pose_hypotheses.h"
+#include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,9 @@
 #include <map>
 #include <utility>
 
-#include "lowlap/core/parallel.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/averaging/rotations/internal/rotation_averaging.h"
+#include "lowlap/core/internal/parallel.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {
@@ -31,7 +32,7 @@ std::vector<Choice> AllChoices(const Scene& scene,
   for (const ViewPair& views : pairs) {
     std::vector<Choice> longer;
     for (const Choice& choice : choices) {
-      for (std::size_t n = 0; n < NumMotions(scene.relative_poses.at(views));
+      for (std::size_t n = 0; n < NumHypotheses(scene.relative_poses.at(views));
            ++n) {
         longer.push_back(choice);
         longer.back()[views] = n;
@@ -48,7 +49,7 @@ std::vector<Choice> ChoicesToTry(const Scene& scene) {
   const std::vector<ViewPair> pairs = UndecidedPairs(scene);
   std::size_t count = 1;
   for (const ViewPair& views : pairs) {
-    count *= NumMotions(scene.relative_poses.at(views));
+    count *= NumHypotheses(scene.relative_poses.at(views));
     if (count > kMaxChoices) break;
   }
   if (count <= kMaxChoices) return AllChoices(scene, pairs);
@@ -70,8 +71,8 @@ class ChoiceCosts {
     const double floor_rad =
         RadFromDeg(options.least_false_deg) / options.outlier_reach;
     for (const auto& [views, pose] : scene.relative_poses) {
-      for (std::size_t n = 0; n < NumMotions(pose); ++n) {
-        const RelativePose motion = WithMotion(pose, n);
+      for (std::size_t n = 0; n < NumHypotheses(pose); ++n) {
+        const RelativePose motion = WithHypothesis(pose, n);
         RotationMeasurement m;
         m.first = index_.emplace(views.first, index_.size()).first->second;
         m.second = index_.emplace(views.second, index_.size()).first->second;
@@ -135,7 +136,7 @@ Result<std::map<ViewPair, std::vector<double>>> LeastCosts(
     if (!results[n]) return tl::unexpected<Error>(results[n].error());
     for (const auto& [views, motion] : choices[n]) {
       std::vector<double>& of_pair = least[views];
-      of_pair.resize(NumMotions(scene.relative_poses.at(views)),
+      of_pair.resize(NumHypotheses(scene.relative_poses.at(views)),
                      std::numeric_limits<double>::infinity());
       of_pair[motion] = std::min(of_pair[motion], *results[n]);
     }
@@ -145,23 +146,23 @@ Result<std::map<ViewPair, std::vector<double>>> LeastCosts(
 
 }  // namespace
 
-const char* MotionGroundsName(MotionGrounds grounds) {
+const char* HypothesisGroundsName(HypothesisGrounds grounds) {
   switch (grounds) {
-    case MotionGrounds::kNone:
+    case HypothesisGrounds::kNone:
       return "none";
-    case MotionGrounds::kCycles:
+    case HypothesisGrounds::kCycles:
       return "cycles";
-    case MotionGrounds::kTriplets:
+    case HypothesisGrounds::kTriplets:
       return "triplets";
   }
   return "";
 }
 
-std::size_t NumMotions(const RelativePose& pose) {
+std::size_t NumHypotheses(const RelativePose& pose) {
   return 1 + pose.alternatives.size();
 }
 
-RelativePose WithMotion(const RelativePose& pose, std::size_t n) {
+RelativePose WithHypothesis(const RelativePose& pose, std::size_t n) {
   RelativePose result = pose;
   result.alternatives.clear();
   if (n == 0) return result;
@@ -173,28 +174,29 @@ RelativePose WithMotion(const RelativePose& pose, std::size_t n) {
   return result;
 }
 
-MotionDecision ChooseMotion(const std::vector<double>& costs, double margin,
-                            MotionGrounds grounds, RelativePose* pose) {
+HypothesisDecision ChooseHypothesis(const std::vector<double>& costs,
+                                    double margin, HypothesisGrounds grounds,
+                                    RelativePose* pose) {
   const auto best = std::min_element(costs.begin(), costs.end());
   double next = std::numeric_limits<double>::infinity();
   for (auto cost = costs.begin(); cost != costs.end(); ++cost) {
     if (cost != best) next = std::min(next, *cost);
   }
-  MotionDecision decision;
+  HypothesisDecision decision;
   decision.views = pose->views;
   decision.margin = next - *best;
   if (!(decision.margin >= margin)) return decision;
   decision.grounds = grounds;
   decision.replaced = best != costs.begin();
-  *pose = WithMotion(*pose, static_cast<std::size_t>(best - costs.begin()));
+  *pose = WithHypothesis(*pose, static_cast<std::size_t>(best - costs.begin()));
   return decision;
 }
 
-Result<std::vector<MotionDecision>> DecideMotionsByCycles(
+Result<std::vector<HypothesisDecision>> DecideHypothesesByCycles(
     Scene* scene, const PoseOptions& options, const RunContext& context) {
   const double margin =
       std::log1p(options.outlier_reach * options.outlier_reach);
-  std::vector<MotionDecision> decisions;
+  std::vector<HypothesisDecision> decisions;
   std::map<ViewPair, RelativePose> undecided;
   for (const ViewPair& views : UndecidedPairs(*scene)) {
     undecided.emplace(views, scene->relative_poses.at(views));
@@ -210,10 +212,10 @@ Result<std::vector<MotionDecision>> DecideMotionsByCycles(
       return tl::unexpected<Error>(costs.error());
     }
     for (const auto& [views, of_pair] : *costs) {
-      const MotionDecision decision =
-          ChooseMotion(of_pair, margin, MotionGrounds::kCycles,
-                       &scene->relative_poses.at(views));
-      if (decision.grounds == MotionGrounds::kNone) continue;
+      const HypothesisDecision decision =
+          ChooseHypothesis(of_pair, margin, HypothesisGrounds::kCycles,
+                           &scene->relative_poses.at(views));
+      if (decision.grounds == HypothesisGrounds::kNone) continue;
       decisions.push_back(decision);
       changed = true;
     }

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/rotations/rotation_averaging.h"
+#include "lowlap/averaging/rotations/internal/rotation_averaging.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/averaging/rotations/internal/cycle_support.h"
-#include "lowlap/core/random.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/robust/median_deviation.h"
-#include "lowlap/robust/robust_loss.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/median_deviation.h"
+#include "lowlap/robust/internal/robust_loss.h"
 
 namespace lowlap {
 namespace {

@@ -5,10 +5,11 @@
 #include <set>
 
 #include "lowlap/averaging/rotations/internal/bridges.h"
+#include "lowlap/averaging/rotations/internal/rotation_averaging.h"
 #include "lowlap/averaging/translation_problem.h"
-#include "lowlap/core/median.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/robust/median_deviation.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {

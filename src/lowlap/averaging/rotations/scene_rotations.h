@@ -1,16 +1,27 @@
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <vector>
 
-#include "lowlap/averaging/rotations/rotation_averaging.h"
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
+
+struct RotationAveragingOptions {
+  int max_iterations = 100;
+  double tolerance_rad = 1e-9;
+  /// Spanning trees tried at most; fewer on graphs of thousands of edges.
+  int max_starts = 8;
+  /// Of the trees that are drawn at random.
+  std::uint64_t seed = 0;
+
+  Status Validate() const;
+};
 
 enum class OutlierReason {
   kRotation,      // its rotation is not the averaged one
@@ -51,6 +62,28 @@ struct ContestedLink {
   ViewPair edge;
   std::vector<ViewPair> contradictions;
   std::vector<ViewId> views;
+};
+
+/// What told the motions of a pair apart, whose matches allow several
+/// (RelativePose::alternatives).
+enum class HypothesisGrounds {
+  kNone,      // nothing did
+  kCycles,    // the rotations of the cycles through the pair
+  kTriplets,  // the scale ratios of the triplets through the pair
+};
+
+/// "none", "cycles", "triplets".
+const char* HypothesisGroundsName(HypothesisGrounds grounds);
+
+/// Which motion of a pair was taken, and why.
+struct HypothesisDecision {
+  ViewPair views;
+  HypothesisGrounds grounds = HypothesisGrounds::kNone;
+  /// Not the motion that the pair came with.
+  bool replaced = false;
+  /// By how much the best motion is ahead of the next: robust cost of the
+  /// rotations (see DecideHypothesesByCycles), or log10 NFA of the ratios.
+  double margin = 0;
 };
 
 struct SceneRotations {

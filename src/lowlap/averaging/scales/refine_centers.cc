@@ -6,9 +6,9 @@
 
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
-#include "lowlap/core/median.h"
-#include "lowlap/robust/median_deviation.h"
-#include "lowlap/robust/robust_loss.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/robust/internal/median_deviation.h"
+#include "lowlap/robust/internal/robust_loss.h"
 
 namespace lowlap {
 namespace {

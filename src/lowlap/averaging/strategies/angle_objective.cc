@@ -5,7 +5,7 @@
 
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/direction_system.h"
-#include "lowlap/robust/robust_loss.h"
+#include "lowlap/robust/internal/robust_loss.h"
 
 namespace lowlap {
 

@@ -9,7 +9,7 @@
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/bounded_directions.h"
 #include "lowlap/averaging/strategies/internal/component_closure.h"
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {

@@ -8,7 +8,7 @@
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/positioning_solver.h"
 #include "lowlap/averaging/strategies/internal/track_groups.h"
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {

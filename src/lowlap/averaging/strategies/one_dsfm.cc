@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "lowlap/averaging/strategies/internal/vertex_order.h"
-#include "lowlap/core/parallel.h"
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {

@@ -8,7 +8,7 @@
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/averaging/strategies/internal/block_matrix.h"
-#include "lowlap/robust/robust_loss.h"
+#include "lowlap/robust/internal/robust_loss.h"
 
 namespace lowlap {
 namespace {

@@ -7,7 +7,7 @@
 #include "lowlap/averaging/strategies/internal/angle_objective.h"
 #include "lowlap/averaging/strategies/internal/direction_system.h"
 #include "lowlap/averaging/strategies/internal/revised_lud.h"
-#include "lowlap/robust/robust_loss.h"
+#include "lowlap/robust/internal/robust_loss.h"
 
 namespace lowlap {
 namespace {

@@ -8,8 +8,8 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/core/union_find.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/core/internal/union_find.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <type_traits>
 
-#include "lowlap/core/format.h"
+#include "lowlap/core/internal/format.h"
 #include "lowlap/core/result.h"
 
 namespace lowlap {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "lowlap/scene/normalized_features.h"
+#include "lowlap/scene/features.h"
 
 namespace lowlap {
 namespace {

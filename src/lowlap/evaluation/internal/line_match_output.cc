@@ -33,7 +33,8 @@ Json ToJsonValue(const LineMatchCounts& counts) {
 }
 
 std::string PairName(const ViewPair& views) {
-  return std::to_string(views.first) + "-" + std::to_string(views.second);
+  return std::to_string(views.first.value()) + "-" +
+         std::to_string(views.second.value());
 }
 
 }  // namespace

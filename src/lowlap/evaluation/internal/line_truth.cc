@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "lowlap/core/atomic_file.h"
+#include "lowlap/core/internal/atomic_file.h"
 
 namespace lowlap {
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
-#include "lowlap/evaluation/ground_truth.h"
+#include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/geometry/types.h"
 #include "lowlap/scene/scene.h"
 

@@ -51,10 +51,11 @@ Status PairEvaluationOptions::Validate() const {
   }
   for (const ViewPair& views : expected) {
     if (!(views.first < views.second)) {
-      return MakeError(ErrorCode::kInvalidArgument,
-                       "evaluation of pairs: " + std::to_string(views.first) +
-                           "-" + std::to_string(views.second) +
-                           " is not a pair, the smaller view first");
+      return MakeError(
+          ErrorCode::kInvalidArgument,
+          "evaluation of pairs: " + std::to_string(views.first.value()) + "-" +
+              std::to_string(views.second.value()) +
+              " is not a pair, the smaller view first");
     }
   }
   return {};
@@ -88,7 +89,8 @@ Result<PairEvaluation> EvaluatePairs(const Scene& scene,
     for (const ViewId view : {views.first, views.second}) {
       if (truth.count(view) == 0) {
         return MakeError(ErrorCode::kInvalidArgument,
-                         "evaluation of pairs: view " + std::to_string(view) +
+                         "evaluation of pairs: view " +
+                             std::to_string(view.value()) +
                              " of an expected pair has no true pose");
       }
     }

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
-#include "lowlap/evaluation/ground_truth.h"
+#include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {

@@ -1,7 +1,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "lowlap/core/format.h"
+#include "lowlap/core/internal/format.h"
 #include "lowlap/evaluation/internal/pair_errors.h"
 
 namespace lowlap {
@@ -48,7 +48,7 @@ std::string ToText(const PairEvaluation& evaluation) {
              "rotation_deg", "direction_deg", "points", "lines", "log10_nfa");
   for (const PairError& pair : evaluation.pairs) {
     const std::string name =
-        Format("%u-%u", pair.views.first, pair.views.second);
+        Format("%u-%u", pair.views.first.value(), pair.views.second.value());
     text += Format("%-12s %4s ", name.c_str(), pair.consecutive ? "*" : "");
     text += pair.has_pose ? Format("%13s %14s %7d %6d %10.1f",
                                    Angle(pair.rotation_error_deg).c_str(),

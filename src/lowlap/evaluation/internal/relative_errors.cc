@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/evaluation/ground_truth.h"
-#include "lowlap/evaluation/statistics.h"
+#include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {

@@ -2,7 +2,7 @@
 
 #include <mutex>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 std::mutex g_mutex;
@@ -23,4 +23,4 @@ SingleThreadedOpenCv::~SingleThreadedOpenCv() {
   if (--g_num_holders == 0) cv::setNumThreads(g_threads_before);
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "lowlap/core/result.h"
-#include "lowlap/features/image.h"
+#include "lowlap/features/internal/image.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// A view of the image's pixels, not a copy; OpenCV has no const matrix, so
 /// the caller must not write to it.
@@ -40,4 +40,4 @@ auto CatchOpenCv(const std::string& what, Function&& function)
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -74,8 +74,8 @@ Result<UndistortedImage> UndistortedImage::Make(const GrayImage& distorted,
       static_cast<int>(std::ceil(extent.high_px.y() + origin_px.y()));
   image.pixels.resize(static_cast<std::size_t>(image.width) * image.height);
   UndistortedImage result(std::move(image), intrinsic, origin_px);
-  const Status done = internal::CatchOpenCv("undistortion", [&]() -> Status {
-    const internal::SingleThreadedOpenCv single_threaded;
+  const Status done = CatchOpenCv("undistortion", [&]() -> Status {
+    const SingleThreadedOpenCv single_threaded;
     const cv::Size size(result.image_.width, result.image_.height);
     cv::Mat map(size, CV_32FC2);
     for (int y = 0; y < size.height; ++y) {
@@ -87,8 +87,8 @@ Result<UndistortedImage> UndistortedImage::Make(const GrayImage& distorted,
     }
     cv::Mat target(size, CV_8UC1, result.image_.pixels.data());
     // Repeated border pixels make no edge along the border.
-    cv::remap(internal::AsMat(distorted), target, map, cv::noArray(),
-              cv::INTER_LINEAR, cv::BORDER_REPLICATE);
+    cv::remap(AsMat(distorted), target, map, cv::noArray(), cv::INTER_LINEAR,
+              cv::BORDER_REPLICATE);
     return {};
   });
   if (!done) return tl::unexpected<Error>(done.error());

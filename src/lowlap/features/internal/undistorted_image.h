@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "lowlap/core/result.h"
-#include "lowlap/features/image.h"
+#include "lowlap/features/internal/image.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/intrinsic.h"
 

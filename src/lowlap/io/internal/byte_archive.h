@@ -7,6 +7,7 @@
 #include <string_view>
 #include <type_traits>
 
+#include "lowlap/core/ids.h"
 #include "lowlap/io/internal/failure.h"
 
 namespace lowlap {
@@ -29,6 +30,10 @@ class ByteWriter {
       encoded[n] = static_cast<char>(value >> (8 * n));
     }
     bytes_.append(encoded, sizeof(Unsigned));
+  }
+  template <class Thing>
+  void Integer(Id<Thing> id) {
+    Integer(id.value());
   }
   void Count(int value) { Integer(static_cast<std::uint32_t>(value)); }
   void Real(double value) {
@@ -73,6 +78,12 @@ class ByteReader {
   void Integer(Unsigned& value) {
     static_assert(std::is_unsigned_v<Unsigned>);
     value = Decoded<Unsigned>(Take(sizeof(Unsigned)).data());
+  }
+  template <class Thing>
+  void Integer(Id<Thing>& id) {
+    std::uint32_t value = 0;
+    Integer(value);
+    id = value;
   }
   void Count(int& value) {
     std::uint32_t stored = 0;

@@ -4,7 +4,7 @@
 #include <map>
 #include <string>
 
-#include "lowlap/io/internal/json_value.h"
+#include "lowlap/io/internal/json/json_value.h"
 
 namespace lowlap {
 

@@ -1,9 +1,8 @@
-#include "lowlap/scale/evidence/evidence.h"
-
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/robust/nfa.h"
+#include "lowlap/robust/internal/nfa.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
 
 namespace lowlap {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
-#include "lowlap/scale/evidence/evidence.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
 
 namespace lowlap {
 

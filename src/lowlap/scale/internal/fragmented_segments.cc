@@ -4,7 +4,7 @@
 #include <map>
 #include <utility>
 
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {

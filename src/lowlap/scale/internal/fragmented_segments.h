@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "lowlap/core/ids.h"
-#include "lowlap/scale/triplet_geometry.h"
+#include "lowlap/scale/triplet_view.h"
 
 namespace lowlap {
 

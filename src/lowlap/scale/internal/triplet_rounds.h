@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/core/parallel.h"
+#include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
-#include "lowlap/scale/evidence/evidence.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
 #include "lowlap/scale/triplet_view.h"
 #include "lowlap/scene/scale_ratio.h"
 #include "lowlap/scene/scene.h"

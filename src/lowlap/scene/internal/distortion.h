@@ -4,7 +4,7 @@
 
 #include "lowlap/scene/intrinsic.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Distort for plain numbers and dual ones: undistorted (x, y) -> distorted.
 /// `k` holds the model's coefficients.
@@ -49,4 +49,4 @@ void DistortPoint(CameraModel model, const T* k, const T& x, const T& y,
   *y_distorted = y * radial;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

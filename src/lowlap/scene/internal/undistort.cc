@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 // c[0] + c[1] s + c[2] s^2 + ...
@@ -156,4 +156,4 @@ std::optional<Vec2> Undistort(CameraModel model,
   return std::nullopt;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

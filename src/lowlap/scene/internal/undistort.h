@@ -6,7 +6,7 @@
 #include "lowlap/geometry/types.h"
 #include "lowlap/scene/intrinsic.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// The inverse of Distort on the range around the axis where it is one to one.
 ///
@@ -19,4 +19,4 @@ std::optional<Vec2> Undistort(CameraModel model,
                               const std::vector<double>& coefficients,
                               const Vec2& distorted);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -9,7 +9,7 @@
 #include "lowlap/core/result.h"
 #include "lowlap/scene/scene.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Every view with the numbers of its points and segments, quick to look up.
 class ViewTable {
@@ -63,4 +63,4 @@ enum class FeatureKind { kPoint, kSegment };
 Status ValidateTrack(const ViewTable& views, const Track& track,
                      FeatureKind kind, const std::string& place);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

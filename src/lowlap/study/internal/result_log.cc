@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "lowlap/core/atomic_file.h"
+#include "lowlap/core/internal/atomic_file.h"
 
 namespace lowlap {
 namespace {

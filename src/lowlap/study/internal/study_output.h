@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
-#include "lowlap/evaluation/statistics.h"
+#include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/pipeline/stage_log.h"
 #include "lowlap/report/internal/svg_plot.h"
 #include "lowlap/report/internal/table_text.h"

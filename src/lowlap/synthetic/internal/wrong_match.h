@@ -3,7 +3,7 @@
 #include <map>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/synthetic/internal/pair_graph.h"
 #include "lowlap/synthetic/internal/visibility.h"
 

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/robust/a_contrario.h"
-#include "lowlap/two_view/internal/essential_kernel.h"
+#include "lowlap/robust/internal/a_contrario.h"
+#include "lowlap/two_view/internal/kernels/essential_kernel.h"
 
 namespace lowlap {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "lowlap/core/ids.h"
-#include "lowlap/scene/normalized_features.h"
+#include "lowlap/scene/features.h"
 
 namespace lowlap {
 

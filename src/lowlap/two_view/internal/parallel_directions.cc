@@ -6,7 +6,7 @@
 #include <map>
 #include <utility>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {

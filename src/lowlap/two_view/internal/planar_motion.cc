@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/robust/a_contrario_ransac.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/a_contrario_ransac.h"
 
 namespace lowlap {
 namespace {

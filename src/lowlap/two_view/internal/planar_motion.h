@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/two_view/internal/point_pairs.h"
+#include "lowlap/two_view/internal/kernels/point_pairs.h"
 
 namespace lowlap {
 

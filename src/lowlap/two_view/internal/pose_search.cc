@@ -4,14 +4,14 @@
 #include <cmath>
 #include <utility>
 
-#include "lowlap/core/median.h"
-#include "lowlap/geometry/epipolar.h"
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/robust/a_contrario_ransac.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/geometry/internal/epipolar.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/a_contrario_ransac.h"
 #include "lowlap/two_view/internal/chance_support.h"
-#include "lowlap/two_view/internal/five_point.h"
+#include "lowlap/two_view/internal/kernels/five_point.h"
+#include "lowlap/two_view/internal/kernels/two_point_kernel.h"
 #include "lowlap/two_view/internal/sharpen_pose.h"
-#include "lowlap/two_view/internal/two_point_kernel.h"
 
 namespace lowlap {
 namespace {

@@ -3,13 +3,13 @@
 #include <optional>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/robust/a_contrario.h"
-#include "lowlap/two_view/internal/essential_kernel.h"
+#include "lowlap/robust/internal/a_contrario.h"
+#include "lowlap/two_view/internal/kernels/essential_kernel.h"
 #include "lowlap/two_view/internal/parallel_directions.h"
 #include "lowlap/two_view/internal/refine_relative_pose.h"
-#include "lowlap/two_view/relative_pose_estimator.h"
+#include "lowlap/two_view/internal/relative_pose_estimator.h"
 
 namespace lowlap {
 

@@ -3,8 +3,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "lowlap/geometry/epipolar.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/epipolar.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {

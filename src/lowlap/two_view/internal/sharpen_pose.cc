@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "lowlap/robust/a_contrario_ransac.h"
+#include "lowlap/robust/internal/a_contrario_ransac.h"
 #include "lowlap/two_view/internal/refine_relative_pose.h"
 
 namespace lowlap {

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/two_view/internal/essential_kernel.h"
+#include "lowlap/two_view/internal/kernels/essential_kernel.h"
 
 namespace lowlap {
 

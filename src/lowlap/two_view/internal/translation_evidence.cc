@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstddef>
 
-#include "lowlap/geometry/rotation.h"
-#include "lowlap/robust/log_combinatorics.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/log_combinatorics.h"
 #include "lowlap/two_view/internal/chance_support.h"
 #include "lowlap/two_view/internal/refine_relative_pose.h"
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/two_view/internal/point_pairs.h"
+#include "lowlap/two_view/internal/kernels/point_pairs.h"
 
 namespace lowlap {
 

@@ -3,9 +3,9 @@
 #include <Eigen/Geometry>
 
 #include "lowlap/adjustment/internal/costs/jacobian_map.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 using Row3 = Eigen::RowVector3d;
@@ -105,4 +105,4 @@ bool CoplanarImageDistanceCost::Evaluate(const double* const* parameters,
   return true;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -6,7 +6,7 @@
 
 #include "lowlap/geometry/types.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// The point of the line `on` that is closest to the line `to`; each line is
 /// (point, direction). With n = d_on x d_to, D = p_to - p_on:
@@ -47,4 +47,4 @@ class CoplanarImageDistanceCost final
   double scale_px_;  // w f
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

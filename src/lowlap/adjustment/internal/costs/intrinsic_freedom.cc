@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 // Where it stands among the parameters of an intrinsic.
@@ -77,4 +77,4 @@ bool PrincipalPointCost::Evaluate(double const* const* parameters,
   return true;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

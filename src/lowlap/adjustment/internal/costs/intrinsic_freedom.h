@@ -7,7 +7,7 @@
 #include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/adjustment/internal/camera_set.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// What of an intrinsic is unknown: what refine_intrinsics says of it, and its
 /// principal point if there is a principal_point_stddev.
@@ -35,4 +35,4 @@ class PrincipalPointCost : public ceres::CostFunction {
   double stddev_px_;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

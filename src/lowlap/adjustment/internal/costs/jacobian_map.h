@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// A Jacobian block of the solver, which is row major.
 template <int Rows, int Cols>
@@ -20,4 +20,4 @@ JacobianMap(double* block, int cols) {
                                                                     cols);
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

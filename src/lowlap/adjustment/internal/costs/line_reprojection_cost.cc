@@ -3,7 +3,7 @@
 #include "lowlap/adjustment/internal/costs/jacobian_map.h"
 #include "lowlap/adjustment/internal/costs/quaternion.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 using Mat23 = Eigen::Matrix<double, 2, 3>;
@@ -77,4 +77,4 @@ bool LineReprojectionCost::Evaluate(const double* const* parameters,
   return true;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

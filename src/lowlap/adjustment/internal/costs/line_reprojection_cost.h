@@ -4,7 +4,7 @@
 
 #include "lowlap/adjustment/internal/costs/segment_rays.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// A line as the solver sees it: a point p and a unit direction d, six numbers
 /// on ceres::LineManifold<3>, which has four degrees of freedom. p is kept near
@@ -32,4 +32,4 @@ class LineReprojectionCost final : public ceres::CostFunction {
   IntrinsicParameters linearised_at_;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

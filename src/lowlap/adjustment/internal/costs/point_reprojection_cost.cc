@@ -4,7 +4,7 @@
 #include "lowlap/adjustment/internal/costs/projection.h"
 #include "lowlap/adjustment/internal/costs/quaternion.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 PointReprojectionCost::PointReprojectionCost(const IntrinsicState* intrinsic,
                                              bool refine_intrinsic,
@@ -62,4 +62,4 @@ bool PointReprojectionCost::Evaluate(const double* const* parameters,
   return true;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -4,7 +4,7 @@
 
 #include "lowlap/adjustment/internal/camera_set.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// The error of a point that is behind its camera, in place of a projection
 /// that means nothing; the loss then treats the observation as an outlier.
@@ -31,4 +31,4 @@ class PointReprojectionCost final : public ceres::CostFunction {
   Mat2 whitening_;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -7,7 +7,7 @@
 
 #include "lowlap/scene/internal/distortion.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 template <class T>
@@ -95,4 +95,4 @@ Vec2 ProjectPoint(
   return pixel_px;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -6,7 +6,7 @@
 #include "lowlap/adjustment/internal/camera_set.h"
 #include "lowlap/geometry/types.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 using Mat23 = Eigen::Matrix<double, 2, 3>;
 
@@ -32,4 +32,4 @@ Vec2 ProjectPoint(
     Mat23* by_point,
     Eigen::Matrix<double, 2, kMaxIntrinsicParameters>* by_intrinsic);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

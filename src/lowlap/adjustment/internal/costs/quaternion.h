@@ -2,10 +2,10 @@
 
 #include <Eigen/Geometry>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/geometry/types.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Rotation by a quaternion (u, w), stored x y z w as in Eigen, as a polynomial
 /// of its four numbers (the rotation itself on the unit sphere):
@@ -33,4 +33,4 @@ struct QuaternionRotation {
   }
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -3,7 +3,7 @@
 #include "lowlap/adjustment/internal/costs/jacobian_map.h"
 #include "lowlap/adjustment/internal/costs/quaternion.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 bool RelativePoseCost::Evaluate(const double* const* parameters,
                                 double* residuals, double** jacobians) const {
@@ -59,4 +59,4 @@ bool RelativePoseCost::Evaluate(const double* const* parameters,
   return true;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

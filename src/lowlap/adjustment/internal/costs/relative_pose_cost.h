@@ -6,7 +6,7 @@
 
 #include "lowlap/geometry/types.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// A measured relative pose, and how well it is known.
 struct MeasuredRelativePose {
@@ -33,4 +33,4 @@ class RelativePoseCost final : public ceres::SizedCostFunction<5, 4, 3, 4, 3> {
   MeasuredRelativePose measured_;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

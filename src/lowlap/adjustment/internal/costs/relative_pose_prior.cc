@@ -3,9 +3,9 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 const double kRotationFloorRad = RadFromDeg(0.1);
@@ -56,4 +56,4 @@ std::vector<RelativePosePrior> LoadRelativePosePriors(
   return priors;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -5,7 +5,7 @@
 #include "lowlap/adjustment/internal/camera_set.h"
 #include "lowlap/adjustment/internal/costs/relative_pose_cost.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// A measured relative pose of two poses of the set.
 struct RelativePosePrior {
@@ -25,4 +25,4 @@ struct RelativePosePrior {
 std::vector<RelativePosePrior> LoadRelativePosePriors(const Scene& scene,
                                                       const CameraSet& cameras);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

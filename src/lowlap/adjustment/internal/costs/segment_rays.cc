@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 std::optional<Vec3> Ray(const Intrinsic& intrinsic, const Vec2& pixel_px) {
@@ -82,4 +82,4 @@ double EndPointDistancePx(const EndPointRay& end, const Vec3& normal,
   return product / length;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

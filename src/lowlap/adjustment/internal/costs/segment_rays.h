@@ -7,7 +7,7 @@
 #include "lowlap/adjustment/internal/camera_set.h"
 #include "lowlap/scene/features.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// The viewing ray of a segment's end point, (x, y, 1) for perspective models,
 /// with its derivatives, which say what a distance on the ray is in raw pixels.
@@ -36,4 +36,4 @@ std::optional<SegmentRays> MakeSegmentRays(const LineSegment& segment,
 double EndPointDistancePx(const EndPointRay& end, const Vec3& normal,
                           Eigen::RowVector3d* by_normal);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

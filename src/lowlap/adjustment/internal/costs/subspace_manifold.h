@@ -4,7 +4,7 @@
 
 #include <Eigen/Dense>
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Parameters that move along the columns of a basis B (n x k, full rank) only:
 ///   x plus d = x + B d.
@@ -53,4 +53,4 @@ class SubspaceManifold final : public ceres::Manifold {
   Eigen::MatrixXd inverse_;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

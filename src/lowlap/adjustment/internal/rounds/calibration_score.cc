@@ -11,9 +11,9 @@
 #include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
 #include "lowlap/adjustment/internal/rounds/linearised_problem.h"
 #include "lowlap/adjustment/internal/rounds/quiet_logging.h"
-#include "lowlap/robust/chi_square.h"
+#include "lowlap/robust/internal/chi_square.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 using MatX = Eigen::MatrixXd;
@@ -388,4 +388,4 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
   return preferences;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -6,7 +6,7 @@
 #include "lowlap/adjustment/adjustment_summary.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Which held parts of the calibration the images contradict, at an adjusted
 /// state: a score test of every part. With the gradient g and the Hessian H of
@@ -32,4 +32,4 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
     const AdjustmentOptions& options, const NoiseLevels& noise,
     CameraSet cameras, StructureState state);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

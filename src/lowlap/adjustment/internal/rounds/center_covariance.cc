@@ -4,7 +4,7 @@
 
 #include "lowlap/adjustment/internal/rounds/linearised_problem.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 using MatX = Eigen::MatrixXd;
@@ -53,4 +53,4 @@ std::map<PoseId, Mat3> CenterCovariances(
   return result;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

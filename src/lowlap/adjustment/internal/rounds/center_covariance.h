@@ -5,7 +5,7 @@
 
 #include "lowlap/adjustment/internal/rounds/problem_builder.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Covariances of the camera centres in world units, from the Hessian J^T J of
 /// the problem at its present values with points and lines marginalised:
@@ -19,4 +19,4 @@ std::map<PoseId, Mat3> CenterCovariances(
     const std::vector<PoseState>& saved_references, const CameraSet& cameras,
     ProblemBuilder* builder);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

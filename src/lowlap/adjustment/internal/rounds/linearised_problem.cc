@@ -3,7 +3,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 
-namespace lowlap::internal {
+namespace lowlap {
 
 Eigen::MatrixXd PseudoInverse(const Eigen::MatrixXd& matrix) {
   const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(matrix);
@@ -84,4 +84,4 @@ LinearisedProblem::SparseMat LinearisedProblem::SchurComplement(
   return SparseMat(hessian.block(first, first, rest, rest)) - explained;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -6,7 +6,7 @@
 
 #include "lowlap/adjustment/internal/rounds/problem_builder.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// The problem at its present values to first order: the weighted and
 /// robustified residuals r and their Jacobian J, so that the noise levels are
@@ -42,4 +42,4 @@ struct LinearisedProblem {
 /// Of a symmetric positive semidefinite matrix.
 Eigen::MatrixXd PseudoInverse(const Eigen::MatrixXd& matrix);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

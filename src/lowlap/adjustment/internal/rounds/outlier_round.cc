@@ -9,9 +9,9 @@
 #include "lowlap/adjustment/internal/rounds/pair_gap.h"
 #include "lowlap/adjustment/internal/rounds/pair_selection.h"
 #include "lowlap/adjustment/internal/rounds/problem_selection.h"
-#include "lowlap/core/parallel.h"
+#include "lowlap/core/internal/parallel.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 template <class Track>
@@ -227,4 +227,4 @@ Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
   return changes;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

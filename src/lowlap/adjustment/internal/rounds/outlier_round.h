@@ -5,7 +5,7 @@
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Triangulates anew what the solver leaves out (SelectForSolve): tracks of
 /// kinds that are not used, and lines of two views without a pair. They follow
@@ -35,4 +35,4 @@ Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
                                               const CameraSet& cameras,
                                               StructureState* state);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -4,9 +4,9 @@
 #include <map>
 #include <optional>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 PairGap ComputePairGap(const LineEstimate& a, const LineEstimate& b) {
   const Vec3 cross = a.direction.cross(b.direction);
@@ -67,4 +67,4 @@ NoiseScale EstimatePairNoise(const CameraSet& cameras,
   return noise;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -5,7 +5,7 @@
 
 #include "lowlap/adjustment/internal/structure/structure_state.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// How far two lines are from meeting, as each is estimated from its own
 /// segments, whatever it was adjusted to. With the common normal n, P_a = p_a +
@@ -34,4 +34,4 @@ NoiseScale EstimatePairNoise(const CameraSet& cameras,
                              const NoiseScale& line_noise,
                              const NoiseBounds& bounds);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -7,7 +7,7 @@
 #include "lowlap/adjustment/internal/rounds/pair_gap.h"
 #include "lowlap/adjustment/internal/rounds/pair_terms.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr int kMaxTimesDropped = 2;  // in and out for ever helps nobody
@@ -66,4 +66,4 @@ std::size_t SelectPairs(const AdjustmentOptions& options,
   return changed;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

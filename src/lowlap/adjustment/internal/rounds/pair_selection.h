@@ -5,7 +5,7 @@
 #include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Decides which pairs have residuals in the next solve, and returns for how
 /// many that changed.
@@ -21,4 +21,4 @@ std::size_t SelectPairs(const AdjustmentOptions& options,
                         const CameraSet& cameras, double threshold_px,
                         bool take_new, StructureState* state);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

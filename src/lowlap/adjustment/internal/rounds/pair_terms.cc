@@ -8,7 +8,7 @@
 #include "lowlap/adjustment/internal/costs/line_reprojection_cost.h"
 #include "lowlap/adjustment/internal/rounds/problem_selection.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -68,4 +68,4 @@ double PairErrorPx(const CameraSet& cameras, const StructureState& state,
   return std::isfinite(error) ? error : kInfinity;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -5,7 +5,7 @@
 #include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// One residual of a coplanar pair: a view, and the indices of the line that
 /// the meeting point is taken on and of the line it is compared with.
@@ -26,4 +26,4 @@ std::vector<PairTerm> PairTerms(const StructureState& state,
 double PairErrorPx(const CameraSet& cameras, const StructureState& state,
                    const PairState& pair, AdjustedCoplanarResidual residual);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

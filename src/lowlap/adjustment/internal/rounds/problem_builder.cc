@@ -13,7 +13,7 @@
 #include "lowlap/adjustment/internal/costs/subspace_manifold.h"
 #include "lowlap/adjustment/internal/rounds/pair_terms.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr int kPoseSize = 4 + 3;
@@ -313,4 +313,4 @@ void ProblemBuilder::TakeResults() {
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

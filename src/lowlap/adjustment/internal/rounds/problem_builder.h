@@ -11,7 +11,7 @@
 #include "lowlap/adjustment/internal/rounds/problem_selection.h"
 #include "lowlap/adjustment/internal/rounds/solve.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// A ceres::Problem over copies of the selected poses, intrinsics, lines and
 /// points, in the frames of their components. Owns what the problem points to.
@@ -64,4 +64,4 @@ class ProblemBuilder {
   std::unique_ptr<ceres::Problem> problem_;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

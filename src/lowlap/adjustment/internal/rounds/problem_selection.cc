@@ -4,9 +4,9 @@
 #include <map>
 #include <set>
 
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/union_find.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 template <class Track>
@@ -184,4 +184,4 @@ void LeaveComponentFrame(const Component& component,
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -5,7 +5,7 @@
 #include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// What takes part in a solve: indices into the tracks and pairs of the state.
 /// Lines of two poses without a pair in use constrain nothing and are left out.
@@ -50,4 +50,4 @@ void LeaveComponentFrame(const Component& component,
                          const PoseState& saved_reference, CameraSet* cameras,
                          StructureState* state);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -4,7 +4,7 @@
 
 #include <mutex>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 std::mutex g_mutex;
@@ -25,4 +25,4 @@ QuietLogging::~QuietLogging() {
   if (--g_depth == 0) FLAGS_minloglevel = g_saved_level;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// While one exists, the solver's own log (glog, a process-wide switch) is
 /// silent below fatal errors: the library writes to no stream, what matters of
@@ -13,4 +13,4 @@ class QuietLogging {
   QuietLogging& operator=(const QuietLogging&) = delete;
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -9,7 +9,7 @@
 #include "lowlap/adjustment/internal/rounds/problem_builder.h"
 #include "lowlap/adjustment/internal/rounds/quiet_logging.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 class ProgressCallback final : public ceres::IterationCallback {
@@ -148,4 +148,4 @@ Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
   return outcome;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

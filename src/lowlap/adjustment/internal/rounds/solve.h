@@ -9,7 +9,7 @@
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 struct SolveRequest {
   std::string stage;
@@ -34,4 +34,4 @@ Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
                                const RunContext& context, CameraSet* cameras,
                                StructureState* state);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

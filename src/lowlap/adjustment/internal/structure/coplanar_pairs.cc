@@ -4,7 +4,7 @@
 #include <cmath>
 #include <set>
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 // Lines by the segments that observe them. A segment belongs to more than one
@@ -68,4 +68,4 @@ std::vector<CoplanarPair> CollectCoplanarPairs(
   return {pairs.begin(), pairs.end()};
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

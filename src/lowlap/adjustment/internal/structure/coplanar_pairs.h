@@ -3,9 +3,9 @@
 #include <map>
 #include <vector>
 
-#include "lowlap/adjustment/structure_builder.h"
+#include "lowlap/adjustment/bundle_adjuster.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// The coplanar inliers of the meaningful ratios as pairs of line landmarks:
 /// each line is the one that holds the inlier's segment of the middle view.
@@ -15,4 +15,4 @@ std::vector<CoplanarPair> CollectCoplanarPairs(
     const std::map<LineTrackId, LineLandmark>& lines, double min_angle_rad,
     StructureSummary* summary);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// What became of a track.
 enum class LandmarkStatus {
@@ -12,4 +12,4 @@ enum class LandmarkStatus {
   kImplausible,
 };
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -2,9 +2,9 @@
 
 #include <Eigen/Dense>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 double LineNormalEquations(const std::vector<LineMeasurement>& measurements,
                            const Vec3& point, const Vec3& direction,
@@ -72,4 +72,4 @@ void RefineLine(const std::vector<LineMeasurement>& measurements, Vec3* point,
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -6,7 +6,7 @@
 #include "lowlap/adjustment/internal/costs/segment_rays.h"
 #include "lowlap/geometry/rigid_transform.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// A segment in a posed camera.
 struct LineMeasurement {
@@ -27,4 +27,4 @@ double LineNormalEquations(const std::vector<LineMeasurement>& measurements,
 void RefineLine(const std::vector<LineMeasurement>& measurements, Vec3* point,
                 Vec3* direction);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

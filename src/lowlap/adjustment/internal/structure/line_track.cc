@@ -8,9 +8,9 @@
 
 #include "lowlap/adjustment/internal/structure/line_refinement.h"
 #include "lowlap/adjustment/internal/structure/pair_sampling.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -262,7 +262,7 @@ void TriangulateLineTrack(const CameraSet& cameras,
   Vec3 point, direction;
   Agreement best;
   bool degenerate = false;
-  for (const auto& [a, b] : SamplePairs(candidates.size(), track->id)) {
+  for (const auto& [a, b] : SamplePairs(candidates.size(), track->id.value())) {
     const LineCandidate &first = candidates[a], &second = candidates[b];
     if (cameras.views[first.view].pose == cameras.views[second.view].pose) {
       continue;
@@ -324,4 +324,4 @@ void TriangulateLineTrack(const CameraSet& cameras,
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

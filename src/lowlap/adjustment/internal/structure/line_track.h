@@ -8,7 +8,7 @@
 #include "lowlap/adjustment/internal/structure/landmark_status.h"
 #include "lowlap/geometry/plucker_line.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// One segment that may show a line.
 struct LineCandidate {
@@ -83,4 +83,4 @@ std::optional<LineEstimate> EstimateFromSegments(const CameraSet& cameras,
 /// `point` to their middle. Rays almost along the line have no say.
 void UpdateLineExtent(const CameraSet& cameras, LineTrackState* track);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <utility>
 
-#include "lowlap/core/median.h"
+#include "lowlap/core/internal/median.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 NoiseScale EstimateNoise(const std::vector<double>& errors_px,
                          const BackgroundLaw& law, double unit_median,
@@ -40,4 +40,4 @@ NoiseScale EstimateNoise(const std::vector<double>& errors_px,
   return bounded({Median(std::move(inliers)) / unit_median, score.threshold});
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "lowlap/robust/a_contrario.h"
+#include "lowlap/robust/internal/a_contrario.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Noise level of one kind of residual, and the error at which an observation
 /// of the kind is no longer believed.
@@ -38,4 +38,4 @@ NoiseScale EstimateNoise(const std::vector<double>& errors_px,
 inline constexpr double kUnitMedian1 = 0.674490;
 inline constexpr double kUnitMedian2 = 1.177410;
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/random.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// Pairs (a < b) of `count` observations: all up to ten observations, else 45
 /// of them drawn with a generator of the track's own, so that the result does
@@ -35,4 +35,4 @@ inline std::vector<std::pair<std::size_t, std::size_t>> SamplePairs(
   return pairs;
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

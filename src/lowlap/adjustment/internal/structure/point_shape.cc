@@ -7,7 +7,7 @@
 
 #include "lowlap/adjustment/internal/structure/point_track.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr int kMinPoses = 3;
@@ -84,4 +84,4 @@ void WhitenPoints(double exponent, std::vector<PointTrackState>* points) {
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -5,7 +5,7 @@
 #include "lowlap/adjustment/internal/camera_set.h"
 #include "lowlap/geometry/types.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 struct PointTrackState;
 
@@ -35,4 +35,4 @@ double EstimateShapeExponent(const CameraSet& cameras,
 /// Sets the whitening of every candidate.
 void WhitenPoints(double exponent, std::vector<PointTrackState>* points);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -7,9 +7,9 @@
 
 #include "lowlap/adjustment/internal/costs/projection.h"
 #include "lowlap/adjustment/internal/structure/pair_sampling.h"
-#include "lowlap/geometry/triangulation.h"
+#include "lowlap/geometry/internal/triangulation.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -181,7 +181,7 @@ std::optional<Vec3> FromBestPair(const std::vector<Observation>& observations,
                                  bool* behind) {
   std::optional<Vec3> best_position;
   Agreement best;
-  for (const auto& [a, b] : SamplePairs(observations.size(), id)) {
+  for (const auto& [a, b] : SamplePairs(observations.size(), id.value())) {
     const Observation &first = observations[a], &second = observations[b];
     if (first.pose == second.pose || first.bearing.isZero() ||
         second.bearing.isZero()) {
@@ -287,4 +287,4 @@ void TriangulatePointTrack(const CameraSet& cameras,
   }
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

@@ -8,7 +8,7 @@
 #include "lowlap/adjustment/internal/structure/landmark_status.h"
 #include "lowlap/adjustment/internal/structure/point_shape.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 /// One feature that may show a point.
 struct PointCandidate {
@@ -61,4 +61,4 @@ void TriangulatePointTrack(const CameraSet& cameras,
                            const PointTriangulationLimits& limits,
                            PointTrackState* track);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

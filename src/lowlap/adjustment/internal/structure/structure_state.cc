@@ -6,10 +6,10 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/core/median.h"
-#include "lowlap/core/parallel.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/core/internal/parallel.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 namespace {
 
 constexpr double kDefaultSegmentStddevPx = 0.5;
@@ -285,4 +285,4 @@ Status TriangulateLines(const CameraSet& cameras,
   });
 }
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

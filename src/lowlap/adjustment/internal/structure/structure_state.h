@@ -10,7 +10,7 @@
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 
-namespace lowlap::internal {
+namespace lowlap {
 
 struct PairState {
   int first = -1;  // indices into StructureState::lines
@@ -89,4 +89,4 @@ Status TriangulateLines(const CameraSet& cameras,
                         const std::vector<std::size_t>& which,
                         std::vector<LineTrackState>* lines);
 
-}  // namespace lowlap::internal
+}  // namespace lowlap

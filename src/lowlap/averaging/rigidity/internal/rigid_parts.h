@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "lowlap/core/ids.h"
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lowlap/averaging/rotations/rotation_averaging.h"
+#include "lowlap/averaging/rotations/internal/rotation_averaging.h"
 
 namespace lowlap {
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/robust/nfa.h"
+#include "lowlap/robust/internal/nfa.h"
 #include "lowlap/scale/evidence/internal/coplanar_candidates.h"
 #include "lowlap/scale/evidence/internal/coplanar_ratio.h"
 #include "lowlap/scale/evidence/internal/coplanar_residuals.h"

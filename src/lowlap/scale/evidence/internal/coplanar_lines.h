@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "lowlap/scale/evidence/evidence.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
 
 namespace lowlap {
 

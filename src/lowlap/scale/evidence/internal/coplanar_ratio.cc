@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "lowlap/scale/internal/candidate_limits.h"
+
 namespace lowlap {
 namespace {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <optional>
 
-#include "lowlap/scale/triplet_geometry.h"
+#include "lowlap/scale/triplet_view.h"
 
 namespace lowlap {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lowlap/scale/evidence/internal/residual_arrays.h"
-#include "lowlap/scale/triplet_geometry.h"
+#include "lowlap/scale/triplet_view.h"
 
 namespace lowlap {
 

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "lowlap/geometry/plucker_line.h"
-#include "lowlap/scale/triplet_geometry.h"
+#include "lowlap/scale/triplet_view.h"
 
 namespace lowlap {
 

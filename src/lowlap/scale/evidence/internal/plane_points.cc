@@ -5,9 +5,10 @@
 #include <map>
 #include <utility>
 
-#include "lowlap/core/union_find.h"
+#include "lowlap/core/internal/union_find.h"
 #include "lowlap/scale/evidence/internal/residual_evidence.h"
 #include "lowlap/scale/evidence/internal/triplet_points.h"
+#include "lowlap/scale/internal/candidate_limits.h"
 
 namespace lowlap {
 namespace {

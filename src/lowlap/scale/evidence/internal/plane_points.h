@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/scale/evidence/evidence.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
 #include "lowlap/scale/internal/planes/planes_by_pair.h"
 
 namespace lowlap {

@@ -4,11 +4,12 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/geometry/closest_direction.h"
-#include "lowlap/robust/nfa.h"
+#include "lowlap/geometry/internal/closest_direction.h"
+#include "lowlap/robust/internal/nfa.h"
 #include "lowlap/scale/evidence/internal/line_in_middle.h"
 #include "lowlap/scale/evidence/internal/residual_arrays.h"
 #include "lowlap/scale/evidence/internal/residual_evidence.h"
+#include "lowlap/scale/internal/candidate_limits.h"
 
 namespace lowlap {
 namespace {

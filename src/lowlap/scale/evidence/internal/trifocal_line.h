@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "lowlap/scale/evidence/evidence.h"
-#include "lowlap/scale/triplet_geometry.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
+#include "lowlap/scale/triplet_view.h"
 
 namespace lowlap {
 

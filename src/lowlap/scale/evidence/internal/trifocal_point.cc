@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lowlap/robust/nfa.h"
+#include "lowlap/robust/internal/nfa.h"
 #include "lowlap/scale/evidence/internal/residual_evidence.h"
 #include "lowlap/scale/evidence/internal/triplet_points.h"
 

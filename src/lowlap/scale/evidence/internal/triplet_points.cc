@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "lowlap/geometry/closest_direction.h"
+#include "lowlap/geometry/internal/closest_direction.h"
+#include "lowlap/scale/internal/candidate_limits.h"
 
 namespace lowlap {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <optional>
 
-#include "lowlap/geometry/triangulation.h"
+#include "lowlap/geometry/internal/triangulation.h"
 #include "lowlap/scale/evidence/internal/residual_arrays.h"
-#include "lowlap/scale/triplet_geometry.h"
+#include "lowlap/scale/triplet_view.h"
 
 namespace lowlap {
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <vector>
 
-#include "lowlap/robust/nfa.h"
+#include "lowlap/robust/internal/nfa.h"
 #include "lowlap/scale/internal/criterion/ratio_density.h"
 #include "lowlap/scale/internal/criterion/ratio_support.h"
 #include "lowlap/scale/scale_options.h"

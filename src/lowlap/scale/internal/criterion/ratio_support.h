@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lowlap/robust/threshold_ladder.h"
-#include "lowlap/scale/evidence/evidence.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
 
 namespace lowlap {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "lowlap/geometry/closest_direction.h"
+#include "lowlap/geometry/internal/closest_direction.h"
 
 namespace lowlap {
 namespace {

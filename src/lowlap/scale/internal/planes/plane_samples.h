@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lowlap/scale/triplet_geometry.h"
+#include "lowlap/scale/triplet_view.h"
 
 namespace lowlap {
 

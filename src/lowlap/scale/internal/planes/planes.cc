@@ -7,7 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include "lowlap/robust/log_combinatorics.h"
+#include "lowlap/robust/internal/log_combinatorics.h"
 
 namespace lowlap {
 namespace {

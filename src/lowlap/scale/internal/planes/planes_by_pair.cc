@@ -2,7 +2,7 @@
 
 #include <Eigen/Geometry>
 
-#include "lowlap/core/parallel.h"
+#include "lowlap/core/internal/parallel.h"
 
 namespace lowlap {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
-#include "lowlap/scale/evidence/evidence.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
 #include "lowlap/scale/internal/criterion/ratio_nfa.h"
 #include "lowlap/scale/triplet_view.h"
 #include "lowlap/scene/scale_ratio.h"

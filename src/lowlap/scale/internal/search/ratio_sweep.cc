@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/robust/interval_sweep.h"
+#include "lowlap/robust/internal/interval_sweep.h"
 #include "lowlap/scale/internal/search/candidate_intervals.h"
 #include "lowlap/scale/internal/search/second_mode.h"
 

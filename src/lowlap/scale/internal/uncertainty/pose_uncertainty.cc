@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {

@@ -5,7 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/core/median.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/scale/internal/candidate_limits.h"
 #include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
 #include "lowlap/scale/internal/uncertainty/ratio_refinement.h"
 

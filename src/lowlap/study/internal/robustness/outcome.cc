@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <utility>
 
-#include "lowlap/core/median.h"
-#include "lowlap/core/random.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "lowlap/pipeline/output_folder.h"
+#include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/report/internal/svg_plot.h"
 #include "lowlap/report/internal/table_text.h"
 #include "lowlap/study/internal/robustness/summary.h"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "lowlap/averaging/scene_poses.h"
-#include "lowlap/geometry/rotation.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/scale_ratios.h"
 
 namespace lowlap {

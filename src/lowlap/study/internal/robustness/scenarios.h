@@ -5,7 +5,7 @@
 
 #include "lowlap/core/result.h"
 #include "lowlap/scale/scale_options.h"
-#include "lowlap/synthetic/simulate_ratios.h"
+#include "lowlap/synthetic/internal/simulate_ratios.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
 namespace lowlap {

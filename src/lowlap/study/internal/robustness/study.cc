@@ -11,7 +11,7 @@
 #include <tuple>
 #include <utility>
 
-#include "lowlap/core/parallel.h"
+#include "lowlap/core/internal/parallel.h"
 #include "lowlap/study/internal/robustness/problem.h"
 
 namespace lowlap {

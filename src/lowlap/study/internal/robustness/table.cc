@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/core/median.h"
+#include "lowlap/core/internal/median.h"
 #include "lowlap/report/internal/table_text.h"
 
 namespace lowlap {

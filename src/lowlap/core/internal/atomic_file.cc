@@ -1,0 +1,229 @@
+#include "lowlap/core/internal/atomic_file.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+namespace lowlap {
+namespace {
+
+namespace fs = std::filesystem;
+
+tl::unexpected<Error> SystemError(const std::string& what,
+                                  const std::string& path, int reason = errno) {
+  return MakeError(ErrorCode::kIo,
+                   what + ": " + std::generic_category().message(reason), path);
+}
+
+int Open(const std::string& path, int flags) {
+  constexpr mode_t kMode = 0666;  // less the umask
+  int file = -1;
+  do {
+    file = ::open(path.c_str(), flags | O_CLOEXEC, kMode);
+  } while (file < 0 && errno == EINTR);
+  return file;
+}
+
+bool WriteAll(int file, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(file, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    content.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+/// Where a path leads, and how it is to be written.
+struct Target {
+  std::string path;
+  bool is_direct = false;
+};
+
+Result<Target> FollowLinks(const std::string& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    if (errno == ELOOP) {
+      return SystemError("cannot be opened for writing", path);
+    }
+  } else if (!S_ISREG(status.st_mode)) {
+    return Target{path, !S_ISDIR(status.st_mode)};
+  }
+  fs::path target = path;
+  std::error_code error;
+  while (fs::is_symlink(target, error)) {
+    // /dev/stdout, say: the file that is open, which need not have the name
+    // that the link gives.
+    if (target.string().rfind("/proc/", 0) == 0) return Target{path, true};
+    const fs::path link = fs::read_symlink(target, error);
+    if (error) break;
+    target = target.parent_path() / link;
+  }
+  return Target{target.string(), false};
+}
+
+/// Locks a file that was opened under `name`; false if another writer has it,
+/// or has renamed or removed it.
+bool Lock(int file, const std::string& name) {
+  if (::flock(file, LOCK_EX | LOCK_NB) != 0) return false;
+  struct stat opened {
+  }, named{};
+  if (::fstat(file, &opened) == 0 && ::stat(name.c_str(), &named) == 0 &&
+      opened.st_ino == named.st_ino && opened.st_dev == named.st_dev) {
+    return true;
+  }
+  errno = EWOULDBLOCK;
+  return false;
+}
+
+/// Removes NAME.tmpN, NAME.tmp(N+1), ... as far as nobody writes to them.
+void RemoveStale(const std::string& target, int n) {
+  for (;; ++n) {
+    const std::string name = target + ".tmp" + std::to_string(n);
+    const int file = Open(name, O_WRONLY | O_NOFOLLOW);
+    if (file < 0) return;
+    if (Lock(file, name)) ::unlink(name.c_str());
+    ::close(file);
+  }
+}
+
+/// Opens an empty temporary file beside `target`; -1 and errno on failure.
+int OpenTemporary(const std::string& target, std::string* name) {
+  constexpr int kMaxWriters = 10000;
+  for (int n = 0; n < kMaxWriters; ++n) {
+    *name = target + ".tmp" + std::to_string(n);
+    const int file = Open(*name, O_WRONLY | O_CREAT | O_NOFOLLOW);
+    if (file < 0) {
+      const int reason = errno;
+      std::error_code ignored;
+      // Somebody else's: the next name.
+      if (fs::exists(fs::symlink_status(*name, ignored))) continue;
+      errno = reason;
+      return -1;
+    }
+    if (Lock(file, *name)) {
+      if (::ftruncate(file, 0) == 0) {
+        RemoveStale(target, n + 1);
+        return file;
+      }
+    }
+    const bool is_taken = errno == EWOULDBLOCK;
+    ::close(file);
+    if (!is_taken) {  // a file system without locks
+      static std::atomic<unsigned> call{0};
+      *name = target + ".tmp" + std::to_string(static_cast<long>(::getpid())) +
+              "-" + std::to_string(call.fetch_add(1));
+      return Open(*name, O_WRONLY | O_CREAT | O_EXCL);
+    }
+  }
+  errno = EBUSY;
+  return -1;
+}
+
+}  // namespace
+
+FileSet::~FileSet() {
+  for (const Output& output : outputs_) {
+    if (output.file < 0) continue;
+    ::unlink(output.temporary.c_str());
+    ::close(output.file);
+  }
+}
+
+Status FileSet::Add(const std::string& path, std::string_view content) {
+  const Result<Target> followed = FollowLinks(path);
+  if (!followed) return tl::unexpected<Error>(followed.error());
+  const Target& target = *followed;
+  if (target.is_direct) {
+    outputs_.push_back({path, target.path, {}, std::string(content), -1});
+    return {};
+  }
+  std::error_code ignored;
+  if (fs::is_directory(target.path, ignored)) {
+    return SystemError("cannot be opened for writing", path, EISDIR);
+  }
+  Output output{path, target.path, {}, {}, -1};
+  output.file = OpenTemporary(target.path, &output.temporary);
+  if (output.file < 0) {
+    return SystemError("cannot be opened for writing", path);
+  }
+  outputs_.push_back(std::move(output));
+  const int file = outputs_.back().file;
+  // Some file systems tell when a file is closed that the disk is full.
+  if (!WriteAll(file, content) || ::close(::dup(file)) != 0) {
+    return SystemError("cannot be written", path);
+  }
+  return {};
+}
+
+Status FileSet::Commit() {
+  for (const Output& output : outputs_) {
+    if (!output.temporary.empty()) continue;
+    const int file = Open(output.target, O_WRONLY | O_APPEND | O_NOCTTY);
+    if (file < 0) {
+      return SystemError("cannot be opened for writing", output.path);
+    }
+    const bool is_written = WriteAll(file, output.content);
+    const int reason = errno;
+    ::close(file);
+    if (!is_written) {
+      return SystemError("cannot be written", output.path, reason);
+    }
+  }
+  for (Output& output : outputs_) {
+    if (output.temporary.empty()) continue;
+    if (::rename(output.temporary.c_str(), output.target.c_str()) != 0) {
+      return SystemError("cannot be replaced", output.path);
+    }
+    ::close(std::exchange(output.file, -1));
+  }
+  outputs_.clear();
+  return {};
+}
+
+Status WriteFileAtomically(const std::string& path, std::string_view content) {
+  FileSet files;
+  Status status = files.Add(path, content);
+  return status ? files.Commit() : status;
+}
+
+Result<std::string> ReadWholeFile(const std::string& path) {
+  const int file = Open(path, O_RDONLY);
+  if (file < 0) {
+    if (errno == ENOENT || errno == ENOTDIR) {
+      return MakeError(ErrorCode::kNotFound, "no such file", path);
+    }
+    return SystemError("cannot be opened", path);
+  }
+  struct stat status {};
+  std::string content;
+  std::array<char, 1 << 16> buffer;
+  ssize_t count = 0;
+  // The size is a hint: a pipe has none.
+  if (::fstat(file, &status) == 0 && S_ISREG(status.st_mode)) {
+    content.reserve(static_cast<std::size_t>(status.st_size));
+  }
+  do {
+    count = ::read(file, buffer.data(), buffer.size());
+    if (count > 0) {
+      content.append(buffer.data(), static_cast<std::size_t>(count));
+    }
+  } while (count > 0 || (count < 0 && errno == EINTR));
+  const int reason = errno;
+  ::close(file);
+  if (count == 0) return content;
+  if (reason == EISDIR) {
+    return MakeError(ErrorCode::kIo, "is a folder, not a file", path);
+  }
+  return SystemError("cannot be read", path, reason);
+}
+
+}  // namespace lowlap

@@ -1,0 +1,46 @@
+#include "lowlap/core/internal/parallel.h"
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace lowlap {
+
+Status ParallelFor(const RunContext& context, const std::string& stage,
+                   std::size_t count,
+                   const std::function<void(std::size_t)>& body) {
+  std::atomic<std::size_t> next{0};
+  std::atomic<bool> cancelled{false};
+  std::mutex progress_mutex;
+  std::size_t done = 0;
+  const auto report = [&](std::size_t step) {
+    if (stage.empty()) return;
+    const std::lock_guard<std::mutex> lock(progress_mutex);
+    done += step;
+    if (!context.Progress(stage, done, count)) cancelled = true;
+  };
+  const auto work = [&] {
+    while (!cancelled) {
+      const std::size_t i = next.fetch_add(1);
+      if (i >= count) return;
+      body(i);
+      report(1);
+    }
+  };
+
+  report(0);
+  const std::size_t num_threads = std::min(
+      count, static_cast<std::size_t>(std::max(1, context.ThreadCount())));
+  std::vector<std::thread> threads;
+  for (std::size_t t = 1; t < num_threads; ++t) threads.emplace_back(work);
+  work();
+  for (std::thread& thread : threads) thread.join();
+  if (cancelled) {
+    return MakeError(ErrorCode::kCancelled, "stopped on request", {}, stage);
+  }
+  return {};
+}
+
+}  // namespace lowlap

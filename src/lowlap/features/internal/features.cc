@@ -1,0 +1,196 @@
+#include "lowlap/features/internal/features.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/parallel.h"
+#include "lowlap/features/internal/image_memory.h"
+#include "lowlap/features/internal/undistorted_image.h"
+
+namespace lowlap {
+namespace {
+
+// SIFT's pyramid: 4 times the pixels, 11 images of 4 bytes, octaves 4/3.
+constexpr double kBytesPerPixel = 240;
+
+double MachineMemoryGb() {
+  return 1e-9 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
+         static_cast<double>(sysconf(_SC_PAGESIZE));
+}
+
+Status AddPoints(const GrayImage& image, const FeatureOptions& options,
+                 DetectedFeatures* detected) {
+  Result<PointFeatures> points = DetectPoints(image, options.points);
+  if (!points) return tl::unexpected<Error>(points.error());
+  for (const Keypoint& keypoint : points->keypoints) {
+    detected->features.points_px.push_back(keypoint.position_px);
+    const Mat2& shape = keypoint.covariance;
+    detected->features.point_covariances.emplace_back(shape(0, 0), shape(0, 1),
+                                                      shape(1, 1));
+  }
+  detected->keypoints = std::move(points->keypoints);
+  detected->point_descriptors = std::move(points->descriptors);
+  return {};
+}
+
+Status AddLines(const GrayImage& image, const FeatureOptions& options,
+                DetectedFeatures* detected) {
+  Result<std::vector<LineSegment>> segments = DetectLines(image, options.lines);
+  if (!segments) return tl::unexpected<Error>(segments.error());
+  Result<std::vector<LineDescriptor>> descriptors =
+      DescribeLines(image, *segments);
+  if (!descriptors) return tl::unexpected<Error>(descriptors.error());
+  detected->features.segments = std::move(*segments);
+  detected->line_descriptors = std::move(*descriptors);
+  return {};
+}
+
+Status AddUndistortedLines(const GrayImage& image, const Intrinsic& intrinsic,
+                           const FeatureOptions& options,
+                           DetectedFeatures* detected) {
+  const Result<UndistortedImage> undistorted =
+      UndistortedImage::Make(image, intrinsic);
+  if (!undistorted) return tl::unexpected<Error>(undistorted.error());
+  DetectedFeatures found;
+  const Status added = AddLines(undistorted->image(), options, &found);
+  if (!added) return added;
+  for (std::size_t i = 0; i < found.features.segments.size(); ++i) {
+    const std::optional<LineSegment> segment =
+        undistorted->ToDistorted(found.features.segments[i]);
+    if (!segment) continue;
+    detected->features.segments.push_back(*segment);
+    detected->line_descriptors.push_back(found.line_descriptors[i]);
+  }
+  return {};
+}
+
+}  // namespace
+
+Status FeatureOptions::Validate() const {
+  if (!(max_memory_gb > 0 && std::isfinite(max_memory_gb))) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "max_memory_gb must be positive");
+  }
+  if (const Status s = points.Validate(); !s) return s;
+  return lines.Validate();
+}
+
+Result<DetectedFeatures> DetectFeatures(const GrayImage& image,
+                                        const FeatureOptions& options) {
+  Intrinsic undistorted;
+  undistorted.width_px = image.width;
+  undistorted.height_px = image.height;
+  return DetectFeatures(image, undistorted, options);
+}
+
+Result<DetectedFeatures> DetectFeatures(const GrayImage& image,
+                                        const Intrinsic& intrinsic,
+                                        const FeatureOptions& options) {
+  Status status = options.Validate();
+  DetectedFeatures detected;
+  if (status && options.detect_points) {
+    status = AddPoints(image, options, &detected);
+  }
+  if (status && options.detect_lines &&
+      intrinsic.model != CameraModel::kSpherical) {
+    status = intrinsic.HasDistortion()
+                 ? AddUndistortedLines(image, intrinsic, options, &detected)
+                 : AddLines(image, options, &detected);
+  }
+  if (!status) return tl::unexpected<Error>(status.error());
+  return detected;
+}
+
+Result<DetectedFeatures> DetectFeaturesOfView(const Scene& scene, ViewId id,
+                                              const std::string& image_bytes,
+                                              const FeatureOptions& options) {
+  const std::string path = scene.ImagePath(id);
+  const Result<GrayImage> image = DecodeGrayImage(image_bytes, path);
+  if (!image) return tl::unexpected<Error>(image.error());
+  const double needed_gb =
+      1e-9 * kBytesPerPixel * static_cast<double>(image->pixels.size());
+  if (options.detect_points && needed_gb > MachineMemoryGb()) {
+    return MakeError(
+        ErrorCode::kUnsupported,
+        Format("the points of an image of %d x %d pixels take "
+               "about %.0f GB of memory, this machine has %.0f",
+               image->width, image->height, needed_gb, MachineMemoryGb()),
+        path);
+  }
+  const View& view = scene.views.at(id);
+  if (image->width != view.width_px || image->height != view.height_px) {
+    return MakeError(ErrorCode::kInvalidScene,
+                     "the image has " + std::to_string(image->width) + " x " +
+                         std::to_string(image->height) + " pixels, its view " +
+                         std::to_string(view.width_px) + " x " +
+                         std::to_string(view.height_px),
+                     path, "view " + std::to_string(id.value()));
+  }
+  const Intrinsic* intrinsic = scene.FindIntrinsic(id);
+  Result<DetectedFeatures> features =
+      intrinsic ? DetectFeatures(*image, *intrinsic, options)
+                : DetectFeatures(*image, options);
+  if (!features && features.error().file.empty()) features.error().file = path;
+  return features;
+}
+
+int DetectionThreads(const Scene& scene, const FeatureOptions& options,
+                     const RunContext& context) {
+  if (!options.detect_points) return context.ThreadCount();
+  double largest_px = 1;
+  for (const auto& [id, view] : scene.views) {
+    largest_px = std::max(largest_px,
+                          static_cast<double>(view.width_px) * view.height_px);
+  }
+  const double fit =
+      options.max_memory_gb * 1e9 / (kBytesPerPixel * largest_px);
+  return static_cast<int>(
+      std::clamp(fit, 1.0, static_cast<double>(context.ThreadCount())));
+}
+
+Result<std::map<ViewId, DetectedFeatures>> DetectFeatures(
+    const Scene& scene, const FeatureOptions& options,
+    const RunContext& context, std::map<ViewId, Error>* failed) {
+  if (const Status s = options.Validate(); !s) {
+    return tl::unexpected<Error>(s.error());
+  }
+  std::vector<ViewId> ids;
+  for (const auto& [id, view] : scene.views) ids.push_back(id);
+  std::vector<std::optional<Result<DetectedFeatures>>> results(ids.size());
+  RunContext limited = context;
+  limited.num_threads = DetectionThreads(scene, options, context);
+  const ReusedImageMemory reused_memory;
+  const Status done =
+      ParallelFor(limited, "features", ids.size(), [&](std::size_t i) {
+        const Result<std::string> bytes =
+            ReadWholeFile(scene.ImagePath(ids[i]));
+        if (bytes) {
+          results[i] = DetectFeaturesOfView(scene, ids[i], *bytes, options);
+        } else {
+          results[i] = tl::unexpected<Error>(bytes.error());
+        }
+      });
+  if (!done) return tl::unexpected<Error>(done.error());
+
+  std::map<ViewId, DetectedFeatures> features;
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    Result<DetectedFeatures>& result = *results[i];
+    if (result) {
+      features.emplace(ids[i], std::move(*result));
+    } else if (failed != nullptr) {
+      failed->emplace(ids[i], result.error());
+    } else {
+      return tl::unexpected<Error>(result.error());
+    }
+  }
+  return features;
+}
+
+}  // namespace lowlap

@@ -1,0 +1,65 @@
+#include "lowlap/io/internal/json/scene_json.h"
+
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/io/internal/json/json_tree.h"
+#include "lowlap/io/internal/json/json_value.h"
+#include "lowlap/io/internal/json/scene_json_sections.h"
+#include "lowlap/scene/validation.h"
+
+namespace lowlap {
+namespace {
+
+Result<Scene> SceneFromTree(const JsonTree& tree) {
+  try {
+    const JsonValue root(tree, 0);
+    Scene scene = ReadOpenMvgSections(root);
+    if (const auto own = root.Find("lowlap")) {
+      ReadOwnSections(*own, scene);
+    }
+    return scene;
+  } catch (Failure& failure) {
+    return tl::unexpected<Error>(std::move(failure.error));
+  }
+}
+
+}  // namespace
+
+Result<Scene> ParseSceneJson(const std::string& text, const std::string& file) {
+  Result<Scene> scene = ParseJson(text).and_then(SceneFromTree);
+  if (scene) {
+    if (Status valid = ValidateScene(*scene); !valid) {
+      scene = tl::unexpected<Error>(std::move(valid).error());
+    }
+  }
+  if (!scene) scene.error().file = file;
+  return scene;
+}
+
+Result<Scene> ReadSceneJson(const std::string& path) {
+  const Result<std::string> text = ReadWholeFile(path);
+  if (!text) return tl::unexpected<Error>(text.error());
+  return ParseSceneJson(*text, path);
+}
+
+Result<std::string> FormatSceneJson(const Scene& scene) {
+  if (Status valid = ValidateScene(scene); !valid) {
+    return tl::unexpected<Error>(std::move(valid).error());
+  }
+  std::string text = "{\n";
+  AppendOpenMvgSections(scene, text);
+  text += ",\n\"lowlap\": {\n";
+  AppendOwnSections(scene, text);
+  text += "\n}\n}\n";
+  return text;
+}
+
+Status WriteSceneJson(const Scene& scene, const std::string& path) {
+  Result<std::string> text = FormatSceneJson(scene);
+  if (!text) {
+    text.error().file = path;
+    return tl::unexpected<Error>(std::move(text).error());
+  }
+  return WriteFileAtomically(path, *text);
+}
+
+}  // namespace lowlap

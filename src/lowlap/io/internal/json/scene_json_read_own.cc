@@ -1,0 +1,319 @@
+#include <map>
+
+#include "lowlap/io/internal/json/scene_json_sections.h"
+#include "lowlap/io/internal/old_scale_ratios.h"
+
+namespace lowlap {
+namespace {
+
+// Version 3 had no given intrinsics, version 2 no second modes and shares of
+// information either.
+constexpr std::uint32_t kVersion = 4, kOldestVersion = 2;
+// Scale ratios had members for three fixed kinds before this version.
+constexpr std::uint32_t kFirstWithKinds = 4;
+
+// Calls `add(a, b)` for the pairs of a flat array of ids.
+template <class Add>
+void ReadIdPairs(const JsonValue& flat, const Add& add) {
+  flat.FlatSize(2);
+  std::uint32_t first = 0;
+  bool is_second = false;
+  for (const JsonValue element : flat.Elements()) {
+    if (is_second) {
+      add(first, element.Id());
+    } else {
+      first = element.Id();
+    }
+    is_second = !is_second;
+  }
+}
+
+template <int kCount, class Add>
+void ReadReals(const JsonValue& flat, const Add& add) {
+  flat.FlatSize(kCount);
+  double numbers[kCount];
+  int n = 0;
+  for (const JsonValue element : flat.Elements()) {
+    numbers[n++] = element.Real();
+    if (n < kCount) continue;
+    add(numbers);
+    n = 0;
+  }
+}
+
+std::vector<FeatureMatch> ReadMatches(const JsonValue& flat) {
+  std::vector<FeatureMatch> matches;
+  matches.reserve(flat.FlatSize(2) / 2);
+  ReadIdPairs(flat, [&](std::uint32_t first, std::uint32_t second) {
+    matches.push_back({first, second});
+  });
+  return matches;
+}
+
+Track ReadTrack(const JsonValue& flat) {
+  Track track;
+  track.reserve(flat.FlatSize(2) / 2);
+  ReadIdPairs(flat, [&](std::uint32_t view, std::uint32_t feature) {
+    track.push_back({view, feature});
+  });
+  return track;
+}
+
+ViewFeatures ReadFeatures(const JsonValue& record) {
+  record.AllowOnly({"view", "points", "point_covariances", "segments"});
+  ViewFeatures features;
+  const JsonValue points = record.At("points");
+  features.points_px.reserve(points.FlatSize(2) / 2);
+  ReadReals<2>(points, [&](const double* v) {
+    features.points_px.emplace_back(v[0], v[1]);
+  });
+  if (const auto shapes = record.Find("point_covariances")) {
+    features.point_covariances.reserve(shapes->FlatSize(3) / 3);
+    ReadReals<3>(*shapes, [&](const double* v) {
+      features.point_covariances.emplace_back(v[0], v[1], v[2]);
+    });
+  }
+  const JsonValue segments = record.At("segments");
+  features.segments.reserve(segments.FlatSize(5) / 5);
+  ReadReals<5>(segments, [&](const double* v) {
+    features.segments.push_back({{v[0], v[1]}, {v[2], v[3]}, v[4]});
+  });
+  return features;
+}
+
+ViewPair ReadViewPair(const JsonValue& value) {
+  ViewPair views;
+  if (value.FlatSize(1) != 2) value.Fail("must be two view ids");
+  ReadIdPairs(value, [&](ViewId first, ViewId second) {
+    views = {first, second};
+  });
+  return views;
+}
+
+void ReadMotion(const JsonValue& record, Mat3* rotation, Vec3* direction,
+                double* log10_nfa,
+                std::optional<Eigen::Matrix<double, 5, 5>>* covariance) {
+  *rotation = record.At("rotation").Matrix<3, 3>();
+  *direction = record.At("direction").Vector<3>();
+  *log10_nfa = record.At("log10_nfa").Real();
+  if (const auto found = record.Find("covariance")) {
+    *covariance = found->Matrix<5, 5>();
+  }
+}
+
+RelativePose ReadRelativePose(const JsonValue& record) {
+  record.AllowOnly({"views", "rotation", "direction", "point_inliers",
+                    "line_inliers", "log10_nfa", "point_threshold_px",
+                    "covariance", "alternatives"});
+  RelativePose edge;
+  edge.views = ReadViewPair(record.At("views"));
+  ReadMotion(record, &edge.rotation, &edge.direction, &edge.log10_nfa,
+             &edge.covariance);
+  edge.point_threshold_px = record.At("point_threshold_px").Real();
+  edge.point_inliers = ReadMatches(record.At("point_inliers"));
+  edge.line_inliers = ReadMatches(record.At("line_inliers"));
+  if (const auto list = record.Find("alternatives")) {
+    for (const JsonValue alternative : list->Elements()) {
+      alternative.AllowOnly(
+          {"rotation", "direction", "log10_nfa", "covariance"});
+      AlternativeMotion& motion = edge.alternatives.emplace_back();
+      ReadMotion(alternative, &motion.rotation, &motion.direction,
+                 &motion.log10_nfa, &motion.covariance);
+    }
+  }
+  return edge;
+}
+
+KindSupport ReadSupport(const JsonValue& record) {
+  KindSupport support;
+  support.candidates = record.At("candidates").Count();
+  support.inliers = record.At("inliers").Count();
+  support.log10_nfa = record.At("log10_nfa").Real();
+  support.threshold_px = record.At("threshold_px").Real();
+  if (const auto share = record.Find("information_share")) {
+    support.information_share = share->Real();
+  }
+  return support;
+}
+
+void ReadKinds(const JsonValue& record, ScaleRatio* ratio) {
+  record.AllowOnly({"views", "verdict", "log_ratio", "log_ratio_stddev",
+                    "log10_nfa", "second_mode", "kinds",
+                    "num_rejected_negative", "coplanar_inliers"});
+  for (const JsonValue kind : record.At("kinds").Elements()) {
+    kind.AllowOnly({"kind", "candidates", "inliers", "log10_nfa",
+                    "threshold_px", "information_share", "min_agreeing"});
+    KindSupport& support = ratio->kinds.emplace_back(ReadSupport(kind));
+    support.kind = kind.At("kind").String();
+    support.min_agreeing = kind.At("min_agreeing").Count();
+  }
+}
+
+void ReadOldKinds(const JsonValue& record, ScaleRatio* ratio) {
+  record.AllowOnly({"views", "verdict", "log_ratio", "log_ratio_stddev",
+                    "log10_nfa", "second_mode", kOldKinds[0].name,
+                    kOldKinds[1].name, kOldKinds[2].name,
+                    "num_rejected_negative", "coplanar_inliers"});
+  for (const OldKind& old : kOldKinds) {
+    const JsonValue kind = record.At(old.name);
+    kind.AllowOnly({"candidates", "inliers", "log10_nfa", "threshold_px",
+                    "information_share"});
+    KindSupport& support = ratio->kinds.emplace_back(ReadSupport(kind));
+    support.kind = old.name;
+    support.min_agreeing = old.min_agreeing;
+  }
+}
+
+RatioVerdict ReadVerdict(const JsonValue& value) {
+  for (const RatioVerdict verdict :
+       {RatioVerdict::kMeaningful, RatioVerdict::kNotMeaningful,
+        RatioVerdict::kNoCandidates}) {
+    if (value.String() == RatioVerdictName(verdict)) return verdict;
+  }
+  value.Fail("verdict \"" + value.String() + "\" is not known");
+}
+
+ScaleRatio ReadScaleRatio(const JsonValue& record, std::uint32_t version) {
+  ScaleRatio ratio;
+  const JsonValue views = record.At("views");
+  if (views.FlatSize(1) != 3) views.Fail("must be three view ids");
+  auto view = views.Elements().begin();
+  ratio.views.first = (*view).Id();
+  ratio.views.middle = (*++view).Id();
+  ratio.views.last = (*++view).Id();
+  ratio.verdict = ReadVerdict(record.At("verdict"));
+  ratio.log_ratio = record.At("log_ratio").Real();
+  ratio.log_ratio_stddev = record.At("log_ratio_stddev").Real();
+  ratio.log10_nfa = record.At("log10_nfa").Real();
+  if (const auto mode = record.Find("second_mode")) {
+    mode->AllowOnly({"log_ratio", "log10_nfa"});
+    ratio.second_mode =
+        RatioMode{mode->At("log_ratio").Real(), mode->At("log10_nfa").Real()};
+  }
+  version < kFirstWithKinds ? ReadOldKinds(record, &ratio)
+                            : ReadKinds(record, &ratio);
+  ratio.num_rejected_negative = record.At("num_rejected_negative").Count();
+  ReadIdPairs(record.At("coplanar_inliers"),
+              [&](FeatureIndex in_first, FeatureIndex in_last) {
+                ratio.coplanar_inliers.push_back({in_first, in_last});
+              });
+  return ratio;
+}
+
+Intrinsic ReadGivenIntrinsic(const JsonValue& record) {
+  record.AllowOnly({"id", "model", "width", "height", "fx", "fy",
+                    "principal_point", "distortion"});
+  const JsonValue name = record.At("model");
+  const std::optional<CameraModel> model = CameraModelFromName(name.String());
+  if (!model) {
+    name.Fail("camera model \"" + name.String() + "\" is not known",
+              ErrorCode::kUnsupported);
+  }
+  Intrinsic intrinsic;
+  intrinsic.model = *model;
+  intrinsic.width_px = record.At("width").Count();
+  intrinsic.height_px = record.At("height").Count();
+  intrinsic.fx_px = record.At("fx").Real();
+  intrinsic.fy_px = record.At("fy").Real();
+  intrinsic.principal_point_px = record.At("principal_point").Vector<2>();
+  const JsonValue distortion = record.At("distortion");
+  for (const JsonValue coefficient : distortion.Elements()) {
+    intrinsic.distortion.push_back(coefficient.Real());
+  }
+  return intrinsic;
+}
+
+LineLandmark ReadLine(const JsonValue& record) {
+  record.AllowOnly(
+      {"id", "direction", "moment", "start", "end", "observations"});
+  LineLandmark landmark;
+  landmark.line.direction = record.At("direction").Vector<3>();
+  landmark.line.moment = record.At("moment").Vector<3>();
+  landmark.start = record.At("start").Vector<3>();
+  landmark.end = record.At("end").Vector<3>();
+  landmark.observations = ReadTrack(record.At("observations"));
+  return landmark;
+}
+
+template <class TrackId>
+void ReadTracks(const JsonValue& list, std::map<TrackId, Track>& tracks) {
+  for (const JsonValue record : list.Elements()) {
+    record.AllowOnly({"id", "observations"});
+    const JsonValue id = record.At("id");
+    if (!tracks.emplace(id.Id(), ReadTrack(record.At("observations"))).second) {
+      id.Fail("id " + std::to_string(id.Id()) + " is repeated",
+              ErrorCode::kInvalidScene);
+    }
+  }
+}
+
+}  // namespace
+
+void ReadOwnSections(const JsonValue& own, Scene& scene) {
+  const JsonValue version = own.At("version");
+  if (version.Id() < kOldestVersion || version.Id() > kVersion) {
+    version.Fail("version " + std::to_string(version.Id()) + " is not " +
+                     std::to_string(kOldestVersion) + " to " +
+                     std::to_string(kVersion),
+                 ErrorCode::kUnsupported);
+  }
+  own.AllowOnly({"version", "given_intrinsics", "features", "relative_poses",
+                 "point_tracks", "line_tracks", "scale_ratios",
+                 "line_structure", "coplanar_pairs"});
+  // A section that is missing is empty.
+  if (const auto list = own.Find("given_intrinsics")) {
+    for (const JsonValue record : list->Elements()) {
+      const JsonValue id = record.At("id");
+      if (!scene.given_intrinsics.emplace(id.Id(), ReadGivenIntrinsic(record))
+               .second) {
+        id.Fail("id " + std::to_string(id.Id()) + " is repeated",
+                ErrorCode::kInvalidScene);
+      }
+    }
+  }
+  if (const auto list = own.Find("features")) {
+    for (const JsonValue record : list->Elements()) {
+      const JsonValue view = record.At("view");
+      if (!scene.features.emplace(view.Id(), ReadFeatures(record)).second) {
+        view.Fail("view " + std::to_string(view.Id()) + " is repeated",
+                  ErrorCode::kInvalidScene);
+      }
+    }
+  }
+  if (const auto list = own.Find("relative_poses")) {
+    for (const JsonValue record : list->Elements()) {
+      RelativePose edge = ReadRelativePose(record);
+      const ViewPair views = edge.views;
+      if (!scene.relative_poses.emplace(views, std::move(edge)).second) {
+        record.Fail("the pair of views is repeated", ErrorCode::kInvalidScene);
+      }
+    }
+  }
+  if (const auto list = own.Find("point_tracks")) {
+    ReadTracks(*list, scene.point_tracks);
+  }
+  if (const auto list = own.Find("line_tracks")) {
+    ReadTracks(*list, scene.line_tracks);
+  }
+  if (const auto list = own.Find("scale_ratios")) {
+    for (const JsonValue record : list->Elements()) {
+      scene.scale_ratios.push_back(ReadScaleRatio(record, version.Id()));
+    }
+  }
+  if (const auto list = own.Find("line_structure")) {
+    for (const JsonValue record : list->Elements()) {
+      const JsonValue id = record.At("id");
+      if (!scene.line_structure.emplace(id.Id(), ReadLine(record)).second) {
+        id.Fail("id " + std::to_string(id.Id()) + " is repeated",
+                ErrorCode::kInvalidScene);
+      }
+    }
+  }
+  if (const auto pairs = own.Find("coplanar_pairs")) {
+    ReadIdPairs(*pairs, [&](LineTrackId first, LineTrackId second) {
+      scene.coplanar_pairs.push_back({first, second});
+    });
+  }
+}
+
+}  // namespace lowlap

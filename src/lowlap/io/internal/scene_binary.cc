@@ -1,0 +1,203 @@
+#include "lowlap/io/internal/scene_binary.h"
+
+#include <zlib.h>
+
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/io/internal/byte_archive.h"
+#include "lowlap/io/internal/old_scale_ratios.h"
+#include "lowlap/io/internal/scale_ratio_records.h"
+#include "lowlap/io/internal/scene_records.h"
+#include "lowlap/io/internal/transfer.h"
+#include "lowlap/scene/validation.h"
+
+namespace lowlap {
+namespace {
+
+// Like PNG's, the first byte is not text and the last ones show a file that was
+// sent as text.
+constexpr std::string_view kMagic("\x89LOWLAP\n", 8);
+constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kOldestVersion = 2;
+// Scale ratios had kinds of evidence of their own before this version.
+constexpr std::uint32_t kFirstWithKinds = 4;
+
+// In the order of the file; all are always there, and then a last one.
+constexpr std::array<std::string_view, 13> kSections = {
+    "ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT",
+    "RELP", "PTRK", "LTRK", "RATI", "LINE", "COPL"};
+
+// The sections of a version, in their order.
+std::vector<std::string_view> SectionsOf(std::uint32_t version) {
+  std::vector<std::string_view> sections(kSections.begin(), kSections.end());
+  if (version == 3) sections.push_back("RATD");
+  if (version == 4) sections.push_back("GIVN");
+  return sections;
+}
+
+std::uint32_t Crc32(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+template <class Archive, class SceneType>
+void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
+  if (tag == "ROOT") {
+    archive.Text(scene.root_path);
+  } else if (tag == "VIEW") {
+    TransferMap(archive, scene.views, kTransferView);
+  } else if (tag == "INTR") {
+    TransferMap(archive, scene.intrinsics, kTransferIntrinsic);
+  } else if (tag == "POSE") {
+    TransferMap(archive, scene.poses, kTransferPose);
+  } else if (tag == "STRU") {
+    TransferMap(archive, scene.structure, kTransferLandmark);
+  } else if (tag == "CTRL") {
+    TransferMap(archive, scene.control_points, kTransferLandmark);
+  } else if (tag == "FEAT") {
+    TransferMap(archive, scene.features, kTransferFeatures);
+  } else if (tag == "RELP") {
+    TransferRelativePoses(archive, scene.relative_poses);
+  } else if (tag == "PTRK") {
+    TransferMap(archive, scene.point_tracks, kTransferTrack);
+  } else if (tag == "LTRK") {
+    TransferMap(archive, scene.line_tracks, kTransferTrack);
+  } else if (tag == "RATI") {
+    TransferVector(archive, scene.scale_ratios, kScaleRatioMinBytes,
+                   kTransferScaleRatio);
+  } else if (tag == "LINE") {
+    TransferMap(archive, scene.line_structure, kTransferLine);
+  } else if (tag == "COPL") {
+    TransferVector(archive, scene.coplanar_pairs, 8, kTransferMatch);
+  } else if (tag == "GIVN") {
+    TransferMap(archive, scene.given_intrinsics, kTransferIntrinsic);
+  }
+}
+
+void ReadPayload(std::string_view tag, std::uint32_t version,
+                 ByteReader& section, Scene& scene) {
+  if (tag == "RATD") {
+    ReadOldRatioDetails(section, scene.scale_ratios);
+  } else if (tag == "RATI" && version < kFirstWithKinds) {
+    ReadOldScaleRatios(section, scene.scale_ratios);
+  } else {
+    TransferSection(tag, section, scene);
+  }
+}
+
+void ReadSection(std::string_view tag, std::uint32_t version, ByteReader& file,
+                 std::size_t size, Scene& scene) {
+  const std::string_view stored_tag = file.Take(tag.size());
+  const std::string name(tag);
+  if (stored_tag != tag) file.Fail("section " + name + " is missing");
+  std::uint32_t checksum = 0;
+  std::uint64_t length = 0;
+  file.Integer(checksum);
+  file.Integer(length);
+  if (length > file.BytesLeft()) {
+    file.Fail("section " + name + " ends early");
+  }
+  const std::size_t offset = size - file.BytesLeft();
+  const std::string_view payload = file.Take(length);
+  if (Crc32(payload) != checksum) {
+    file.Fail("section " + name + " is damaged: its checksum is wrong");
+  }
+  ByteReader section(payload, "section " + name + ", ", offset);
+  ReadPayload(tag, version, section, scene);
+  if (section.BytesLeft() > 0) section.Fail("the section is too long");
+}
+
+Scene ReadSections(const std::string& bytes) {
+  ByteReader file(bytes, {}, 0);
+  if (file.BytesLeft() < kMagic.size() || file.Take(kMagic.size()) != kMagic) {
+    file.Fail("this is not a .lowlap file");
+  }
+  std::uint32_t version = 0, section_count = 0;
+  file.Integer(version);
+  if (version < kOldestVersion || version > kVersion) {
+    throw Failure{Error{ErrorCode::kUnsupported,
+                        "version " + std::to_string(version) + " is not " +
+                            std::to_string(kOldestVersion) + " to " +
+                            std::to_string(kVersion),
+                        {},
+                        "byte " + std::to_string(kMagic.size())}};
+  }
+  file.Integer(section_count);
+  const std::vector<std::string_view> sections = SectionsOf(version);
+  if (section_count != sections.size()) {
+    file.Fail("the number of sections is wrong");
+  }
+  Scene scene;
+  for (const std::string_view tag : sections) {
+    ReadSection(tag, version, file, bytes.size(), scene);
+  }
+  if (file.BytesLeft() > 0) file.Fail("something follows the last section");
+  return scene;
+}
+
+template <class Unsigned>
+std::string Encoded(Unsigned value) {
+  std::string bytes;
+  ByteWriter(bytes).Integer(value);
+  return bytes;
+}
+
+}  // namespace
+
+Result<Scene> ParseSceneBinary(const std::string& bytes,
+                               const std::string& file) {
+  Result<Scene> scene;
+  try {
+    scene = ReadSections(bytes);
+  } catch (Failure& failure) {
+    scene = tl::unexpected<Error>(std::move(failure.error));
+  }
+  if (scene) {
+    if (Status valid = ValidateScene(*scene); !valid) {
+      scene = tl::unexpected<Error>(std::move(valid).error());
+    }
+  }
+  if (!scene) scene.error().file = file;
+  return scene;
+}
+
+Result<Scene> ReadSceneBinary(const std::string& path) {
+  const Result<std::string> bytes = ReadWholeFile(path);
+  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  return ParseSceneBinary(*bytes, path);
+}
+
+Result<std::string> FormatSceneBinary(const Scene& scene) {
+  if (Status valid = ValidateScene(scene); !valid) {
+    return tl::unexpected<Error>(std::move(valid).error());
+  }
+  std::string bytes(kMagic);
+  bytes += Encoded(kVersion);
+  const std::vector<std::string_view> sections = SectionsOf(kVersion);
+  bytes += Encoded(static_cast<std::uint32_t>(sections.size()));
+  std::string payload;
+  for (const std::string_view tag : sections) {
+    payload.clear();
+    ByteWriter writer(payload);
+    TransferSection(tag, writer, scene);
+    bytes += tag;
+    bytes += Encoded(Crc32(payload));
+    bytes += Encoded(static_cast<std::uint64_t>(payload.size()));
+    bytes += payload;
+  }
+  return bytes;
+}
+
+Status WriteSceneBinary(const Scene& scene, const std::string& path) {
+  Result<std::string> bytes = FormatSceneBinary(scene);
+  if (!bytes) {
+    bytes.error().file = path;
+    return tl::unexpected<Error>(std::move(bytes).error());
+  }
+  return WriteFileAtomically(path, *bytes);
+}
+
+}  // namespace lowlap

@@ -1,0 +1,62 @@
+#include "lowlap/pipeline/internal/measure/pair_report.h"
+
+#include <algorithm>
+#include <tuple>
+#include <utility>
+
+#include "lowlap/core/internal/format.h"
+
+namespace lowlap {
+namespace {
+
+int NumMatches(const PairReport& pair) {
+  return pair.num_point_matches + pair.num_line_matches;
+}
+
+}  // namespace
+
+std::string ExplainNoPose(const std::vector<PairReport>& pairs) {
+  const std::string none = "no pair of views has a relative pose";
+  if (pairs.empty()) return none + ", for none has matches";
+  const PairReport& best = *std::max_element(
+      pairs.begin(), pairs.end(), [](const PairReport& a, const PairReport& b) {
+        return NumMatches(a) < NumMatches(b);
+      });
+  return none +
+         Format(
+             "; of %zu, views %u and %u match most (%d points, %d "
+             "lines): ",
+             pairs.size(), static_cast<unsigned>(best.views.first),
+             static_cast<unsigned>(best.views.second), best.num_point_matches,
+             best.num_line_matches) +
+         best.reason;
+}
+
+std::vector<UnrelatedView> FindUnrelatedViews(
+    const std::vector<PairReport>& pairs,
+    const std::map<ViewId, Error>& failed) {
+  // Of every view: related, or the pair that says most.
+  std::map<ViewId, const PairReport*> best;
+  for (const PairReport& pair : pairs) {
+    for (const ViewId view : {pair.views.first, pair.views.second}) {
+      const PairReport*& known = best[view];
+      const auto rank = [](const PairReport& p) {
+        return std::make_tuple(p.accepted, p.no_parallax, NumMatches(p));
+      };
+      if (known == nullptr || rank(*known) < rank(pair)) known = &pair;
+    }
+  }
+  std::map<ViewId, UnrelatedView> views;
+  for (const auto& [view, pair] : best) {
+    if (pair->accepted) continue;
+    views[view] = {view, pair->no_parallax, pair->reason};
+  }
+  for (const auto& [view, error] : failed) {
+    views[view] = {view, false, error.message};
+  }
+  std::vector<UnrelatedView> result;
+  for (auto& entry : views) result.push_back(std::move(entry.second));
+  return result;
+}
+
+}  // namespace lowlap

@@ -1,0 +1,164 @@
+#include "lowlap/pipeline/internal/measure/relative_poses.h"
+
+#include <utility>
+
+#include "lowlap/core/internal/parallel.h"
+
+namespace lowlap {
+namespace {
+
+// Of all views of the pairs.
+Result<std::map<ViewId, ViewMeasurements>> MeasureViews(
+    const Scene& scene, const std::vector<ViewPair>& pairs,
+    const std::map<ViewId, DetectedFeatures>* detected,
+    const VanishingOptions& options, const RunContext& context) {
+  std::map<ViewId, ViewMeasurements> measurements;
+  for (const ViewPair& pair : pairs) {
+    measurements[pair.first];
+    measurements[pair.second];
+  }
+  std::vector<ViewId> views;
+  for (const auto& entry : measurements) {
+    const ViewId view = entry.first;
+    if (scene.FindIntrinsic(view) == nullptr ||
+        scene.features.count(view) == 0) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "view " + std::to_string(view.value()) +
+                           " is matched but has no intrinsic or no features");
+    }
+    views.push_back(view);
+  }
+  const Status done = ParallelFor(
+      context, "vanishing directions", views.size(), [&](std::size_t n) {
+        const DetectedFeatures* of_view =
+            detected != nullptr && detected->count(views[n]) > 0
+                ? &detected->at(views[n])
+                : nullptr;
+        measurements.at(views[n]) = MeasureView(
+            scene.features.at(views[n]), *scene.FindIntrinsic(views[n]),
+            Vec2(scene.views.at(views[n]).width_px,
+                 scene.views.at(views[n]).height_px),
+            of_view, options);
+      });
+  if (!done) return tl::unexpected<Error>(done.error());
+  return measurements;
+}
+
+PairReport Report(const ViewPair& views, const PairMatches& matches,
+                  const PairEstimate& estimate) {
+  PairReport report;
+  report.views = views;
+  report.accepted = estimate.pose.has_value();
+  report.no_parallax = estimate.no_parallax;
+  report.reason = estimate.reason;
+  if (estimate.geometry) {
+    report.geometry = TwoViewGeometryName(*estimate.geometry);
+  }
+  report.num_point_matches = static_cast<int>(matches.points.size());
+  report.num_line_matches = static_cast<int>(matches.lines.size());
+  report.num_point_inliers = estimate.num_point_inliers;
+  if (estimate.pose) {
+    report.num_line_inliers =
+        static_cast<int>(estimate.pose->line_inliers.size());
+  }
+  report.log10_nfa = estimate.log10_nfa;
+  return report;
+}
+
+void LogPairsWithoutParallax(const Scene& scene,
+                             const std::vector<PairReport>& reports,
+                             const RunContext& context) {
+  constexpr int kMaxNamed = 5;
+  int count = 0;
+  std::string names;
+  for (const PairReport& report : reports) {
+    if (!report.no_parallax || ++count > kMaxNamed) continue;
+    const ViewPair& views = report.views;
+    names += (count > 1 ? ", " : "") + scene.views.at(views.first).filename +
+             " - " + scene.views.at(views.second).filename;
+  }
+  if (count == 0) return;
+  context.Log(LogLevel::kWarning,
+              "no parallax in " + std::to_string(count) +
+                  (count == 1 ? " pair, which is" : " pairs, which are") +
+                  " left out, since views that differ by a rotation only show "
+                  "no direction: " +
+                  names + (count > kMaxNamed ? ", ..." : ""));
+}
+
+}  // namespace
+
+Status RelativePoseOptions::Validate() const {
+  if (const Status valid = pair.Validate(); !valid) return valid;
+  return line_tracks.Validate();
+}
+
+Result<std::vector<PairReport>> EstimateRelativePoses(
+    Scene* scene, const std::map<ViewPair, PairMatches>& matches,
+    const std::map<ViewId, DetectedFeatures>* detected,
+    const RelativePoseOptions& options, const RunContext& context) {
+  if (const Status valid = options.Validate(); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  std::vector<ViewPair> pairs;
+  for (const auto& entry : matches) pairs.push_back(entry.first);
+  const auto measurements =
+      MeasureViews(*scene, pairs, detected, options.vanishing, context);
+  if (!measurements) return tl::unexpected<Error>(measurements.error());
+
+  std::vector<PairEstimate> estimates(pairs.size());
+  const Status done =
+      ParallelFor(context, "relative poses", pairs.size(), [&](std::size_t n) {
+        // A stream of its own per pair, whatever else is in the run.
+        const std::uint64_t pair_seed =
+            context.seed * 0x9E3779B97F4A7C15ull +
+            (static_cast<std::uint64_t>(pairs[n].first.value()) << 32) +
+            pairs[n].second.value();
+        estimates[n] =
+            EstimatePair(pairs[n], measurements->at(pairs[n].first),
+                         measurements->at(pairs[n].second),
+                         matches.at(pairs[n]), options.pair, pair_seed);
+      });
+  if (!done) return tl::unexpected<Error>(done.error());
+
+  scene->relative_poses.clear();
+  std::vector<PairReport> reports;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    reports.push_back(Report(pairs[n], matches.at(pairs[n]), estimates[n]));
+    if (estimates[n].pose) {
+      scene->relative_poses[pairs[n]] = std::move(*estimates[n].pose);
+    }
+  }
+  LogPairsWithoutParallax(*scene, reports, context);
+  scene->point_tracks = BuildPointTracks(*scene);
+  scene->line_tracks = BuildLineTracks(*scene, options.line_tracks);
+  return reports;
+}
+
+Status RefineRelativePoses(Scene* scene,
+                           const std::map<ViewId, DetectedFeatures>& detected,
+                           const RelativePoseOptions& options,
+                           const RunContext& context) {
+  if (const Status valid = options.Validate(); !valid) return valid;
+  std::vector<RelativePose*> poses;
+  std::vector<ViewPair> pairs;
+  for (auto& [views, pose] : scene->relative_poses) {
+    poses.push_back(&pose);
+    pairs.push_back(views);
+  }
+  const auto measurements =
+      MeasureViews(*scene, pairs, &detected, options.vanishing, context);
+  if (!measurements) return tl::unexpected<Error>(measurements.error());
+  const Status done =
+      ParallelFor(context, "relative poses", poses.size(), [&](std::size_t n) {
+        RelativePose& pose = *poses[n];
+        pose = RefinePair(pose, measurements->at(pose.views.first),
+                          measurements->at(pose.views.second), options.pair);
+      });
+  if (!done) return done;
+  scene->point_tracks = BuildPointTracks(*scene);
+  scene->line_tracks = BuildLineTracks(*scene, options.line_tracks);
+  return {};
+}
+
+}  // namespace lowlap

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/features/internal/features.h"
+#include "lowlap/matching/internal/matching.h"
+#include "lowlap/matching/internal/tracks.h"
+#include "lowlap/pipeline/internal/measure/pair_report.h"
+#include "lowlap/pipeline/measure_images.h"
+#include "lowlap/scene/scene.h"
+#include "lowlap/two_view/internal/pair_estimator.h"
+
+namespace lowlap {
+
+/// Fills scene->relative_poses, point_tracks and line_tracks from putative
+/// matches of the scene's features: EstimatePair for every pair, then tracks.
+/// Pairs that fail get no relative pose; the report says why, and pairs without
+/// parallax are named in the log. `detected` as in MeasureView, for all views;
+/// null: matches are all there is.
+///
+/// The result does not depend on the number of threads.
+Result<std::vector<PairReport>> EstimateRelativePoses(
+    Scene* scene, const std::map<ViewPair, PairMatches>& matches,
+    const std::map<ViewId, DetectedFeatures>* detected,
+    const RelativePoseOptions& options, const RunContext& context);
+
+/// The relative poses refined once more, each on its inliers, after features
+/// have moved; tracks are built anew. `detected` as above.
+Status RefineRelativePoses(Scene* scene,
+                           const std::map<ViewId, DetectedFeatures>& detected,
+                           const RelativePoseOptions& options,
+                           const RunContext& context);
+
+}  // namespace lowlap

@@ -1,0 +1,93 @@
+#include "lowlap/pipeline/internal/output/output_folder.h"
+
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <system_error>
+
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/io/internal/json/scene_json.h"
+#include "lowlap/io/internal/ply.h"
+#include "lowlap/io/internal/scene_binary.h"
+#include "lowlap/pipeline/internal/output/run_report.h"
+
+namespace lowlap {
+namespace fs = std::filesystem;
+
+Status CheckOutputFolder(const std::string& folder) {
+  if (folder.empty()) {
+    return MakeError(ErrorCode::kIo, "the output folder has an empty name");
+  }
+  std::error_code error;
+  // The folder, or the nearest one above it that exists.
+  fs::path existing = fs::absolute(folder, error).lexically_normal();
+  while (!fs::exists(existing, error) && existing.has_relative_path()) {
+    existing = existing.parent_path();
+  }
+  if (!fs::is_directory(existing, error)) {
+    return MakeError(
+        ErrorCode::kIo,
+        "cannot be made a folder: " + existing.string() + " is a file", folder);
+  }
+  if (::access(existing.c_str(), W_OK | X_OK) != 0) {
+    return MakeError(
+        ErrorCode::kIo,
+        "cannot be written to: " + std::generic_category().message(errno) +
+            " (" + existing.string() + ")",
+        folder);
+  }
+  return {};
+}
+
+Status PrepareOutputFolder(const std::string& folder) {
+  if (Status possible = CheckOutputFolder(folder); !possible) return possible;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder, error)) {
+    return MakeError(ErrorCode::kIo,
+                     "cannot be made a folder" +
+                         (error ? ": " + error.message() : std::string()),
+                     folder);
+  }
+  return {};
+}
+
+Status WriteOutputs(Scene scene, const RunSummary& summary,
+                    const std::string& folder) {
+  if (!scene.root_path.empty()) {
+    std::error_code error;
+    const fs::path absolute = fs::absolute(scene.root_path, error);
+    if (!error) scene.root_path = absolute.lexically_normal().string();
+  }
+  if (Status made = PrepareOutputFolder(folder); !made) return made;
+  FileSet files;
+  // One after the other, so that one content at a time is in memory.
+  const auto add = [&](const char* name, const Result<std::string>& content) {
+    if (!content) return Status(tl::unexpected<Error>(content.error()));
+    return files.Add((fs::path(folder) / name).string(), *content);
+  };
+  Status status = add("sfm_data.json", FormatSceneJson(scene));
+  if (status) status = add("scene.lowlap", FormatSceneBinary(scene));
+  if (status) status = add("cloud.ply", FormatPly(scene));
+  if (status) {
+    status =
+        add("report.html", FormatReport(scene, MakeReport(summary, scene)));
+  }
+  if (status) status = add("summary.json", ToJson(summary, scene) + "\n");
+  return status ? files.Commit() : status;
+}
+
+Status WriteTextFiles(
+    const std::vector<std::pair<std::string, std::string>>& files,
+    const std::string& folder) {
+  if (Status made = PrepareOutputFolder(folder); !made) return made;
+  FileSet set;
+  for (const auto& [name, content] : files) {
+    const Status added = set.Add((fs::path(folder) / name).string(), content);
+    if (!added) return added;
+  }
+  return set.Commit();
+}
+
+}  // namespace lowlap

@@ -1,0 +1,290 @@
+#include "lowlap/pipeline/internal/output/summary_json.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+
+namespace lowlap {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json ViewList(const std::vector<ViewId>& views) { return Json(views); }
+
+Json PairJson(const ViewPair& views) {
+  return Json::array({views.first, views.second});
+}
+
+Json KindJson(const KindSupport& kind) {
+  return {{"candidates", kind.candidates},
+          {"inliers", kind.inliers},
+          {"log10_nfa", kind.log10_nfa},
+          {"threshold_px", kind.threshold_px},
+          {"information_share", kind.information_share}};
+}
+
+Json RatioJson(const ScaleRatio& ratio) {
+  Json json = {
+      {"views", {ratio.views.first, ratio.views.middle, ratio.views.last}},
+      {"verdict", RatioVerdictName(ratio.verdict)},
+      {"log_ratio", ratio.log_ratio},
+      {"ratio", std::exp(ratio.log_ratio)},
+      {"log_ratio_stddev", ratio.log_ratio_stddev},
+      {"log_ratio_interval_95", {ratio.IntervalLow(), ratio.IntervalHigh()}},
+      {"log10_nfa", ratio.log10_nfa}};
+  for (const KindSupport& kind : ratio.kinds) json[kind.kind] = KindJson(kind);
+  json["rejected_negative"] = ratio.num_rejected_negative;
+  json["second_mode"] = nullptr;
+  if (ratio.second_mode) {
+    json["second_mode"] = {{"log_ratio", ratio.second_mode->log_ratio},
+                           {"ratio", std::exp(ratio.second_mode->log_ratio)},
+                           {"log10_nfa", ratio.second_mode->log10_nfa}};
+  }
+  return json;
+}
+
+Json AdjustedKindJson(const KindAdjustment& kind) {
+  return {{"landmarks", kind.landmarks},
+          {"observations_used", kind.observations_used},
+          {"observations_dropped", kind.observations_dropped},
+          {"initial_rmse_px", kind.initial_rmse_px},
+          {"final_rmse_px", kind.final_rmse_px},
+          {"threshold_px", kind.threshold_px}};
+}
+
+Json TriangulationJson(const TriangulationSummary& kind) {
+  return {{"tracks", kind.tracks},
+          {"landmarks", kind.landmarks},
+          {"two_view_landmarks", kind.two_view_landmarks},
+          {"too_few_views", kind.too_few_views},
+          {"inconsistent", kind.inconsistent},
+          {"behind_camera", kind.behind_camera},
+          {"uncertain", kind.uncertain},
+          {"implausible", kind.implausible},
+          {"threshold_px", kind.threshold_px}};
+}
+
+Json IntrinsicJson(const Intrinsic& intrinsic) {
+  return {
+      {"model", CameraModelName(intrinsic.model)},
+      {"fx", intrinsic.fx_px},
+      {"fy", intrinsic.fy_px},
+      {"principal_point",
+       {intrinsic.principal_point_px.x(), intrinsic.principal_point_px.y()}},
+      {"distortion", intrinsic.distortion}};
+}
+
+Json PreferencesJson(const AdjustmentSummary& adjustment) {
+  Json preferences = Json::array();
+  for (const CalibrationPreference& preference :
+       adjustment.calibration_preferences) {
+    preferences.push_back({{"intrinsics", preference.intrinsics},
+                           {"parts", DescribeParts(preference.parts)},
+                           {"deviations", preference.deviations},
+                           {"held", IntrinsicJson(preference.held)},
+                           {"preferred", IntrinsicJson(preference.preferred)}});
+  }
+  return preferences;
+}
+
+// What nothing confirms, or something contradicts.
+void AddDoubts(const PoseSummary& summary, Json* poses) {
+  Json loops = Json::array(), contested = Json::array();
+  for (const LoopClosing& loop : summary.loops) {
+    Json edges = Json::array();
+    for (const ViewPair& edge : loop.edges) edges.push_back(PairJson(edge));
+    Json entry = {{"edges", std::move(edges)},
+                  {"closing_deg", loop.closing_deg},
+                  {"expected_deg", loop.expected_deg}};
+    if (loop.left_out) entry["left_out"] = PairJson(*loop.left_out);
+    loops.push_back(std::move(entry));
+  }
+  for (const ContestedLink& link : summary.contested) {
+    Json contradictions = Json::array();
+    for (const ViewPair& edge : link.contradictions) {
+      contradictions.push_back(PairJson(edge));
+    }
+    contested.push_back({{"edge", PairJson(link.edge)},
+                         {"contradictions", std::move(contradictions)},
+                         {"views", ViewList(link.views)}});
+  }
+  Json unchecked = Json::array();
+  for (const ViewPair& edge : summary.unchecked) {
+    unchecked.push_back(PairJson(edge));
+  }
+  (*poses)["doubtful"] = summary.IsDoubtful();
+  (*poses)["open_loops"] = std::move(loops);
+  (*poses)["contested_links"] = std::move(contested);
+  (*poses)["unchecked_edges"] = std::move(unchecked);
+  Json weak = Json::array();
+  for (const ViewTriplet& views : summary.weak_ratios) {
+    weak.push_back({views.first, views.middle, views.last});
+  }
+  (*poses)["weak_ratios"] = std::move(weak);
+  Json doubts = Json::array();
+  for (const ReliabilityWarning& doubt : summary.reliability_warnings) {
+    Json entry = {{"views", ViewList(doubt.views)},
+                  {"reason", WarningReasonName(doubt.reason)}};
+    if (doubt.reason == WarningReason::kLostFeatures) {
+      entry["fitting_share"] = doubt.share;
+    }
+    for (const ViewPair& edge : doubt.against) {
+      entry["contradicted_by"].push_back(PairJson(edge));
+    }
+    for (const ViewTriplet& views : doubt.ratios) {
+      entry["ratios"].push_back({views.first, views.middle, views.last});
+    }
+    doubts.push_back(std::move(entry));
+  }
+  (*poses)["doubtful_views"] = std::move(doubts);
+}
+
+// Pairs whose matches allow several motions.
+Json MotionsJson(const std::vector<HypothesisDecision>& motions) {
+  int num_by_cycles = 0, num_by_triplets = 0, num_undecided = 0;
+  Json decisions = Json::array();
+  for (const HypothesisDecision& decision : motions) {
+    switch (decision.grounds) {
+      case HypothesisGrounds::kCycles:
+        ++num_by_cycles;
+        break;
+      case HypothesisGrounds::kTriplets:
+        ++num_by_triplets;
+        break;
+      case HypothesisGrounds::kNone:
+        ++num_undecided;
+        break;
+    }
+    Json entry = {{"views", PairJson(decision.views)},
+                  {"decided_by", HypothesisGroundsName(decision.grounds)},
+                  {"replaced", decision.replaced}};
+    if (decision.grounds != HypothesisGrounds::kNone) {
+      entry["margin"] = decision.margin;
+    }
+    decisions.push_back(std::move(entry));
+  }
+  return {{"pairs", motions.size()},
+          {"decided_by_cycles", num_by_cycles},
+          {"decided_by_triplets", num_by_triplets},
+          {"undecided", num_undecided},
+          {"decisions", std::move(decisions)}};
+}
+
+Json SolveJson(const SolveResult& solve) {
+  Json json;
+  json["ambiguous_motions"] = MotionsJson(solve.motions);
+  json["ratios"] = {{"triplets", solve.ratios.num_triplets},
+                    {"meaningful", solve.ratios.num_meaningful},
+                    {"not_meaningful", solve.ratios.num_not_meaningful},
+                    {"without_candidates", solve.ratios.num_without_candidates},
+                    {"rejected_negative", solve.ratios.num_rejected_negative}};
+  Json& poses = json["poses"];
+  poses["views"] = solve.poses.num_views;
+  poses["placed"] = solve.poses.num_placed;
+  poses["unplaced"] = ViewList(solve.poses.unplaced);
+  poses["components"] = Json::array();
+  for (const auto& component : solve.poses.components) {
+    poses["components"].push_back(ViewList(component));
+  }
+  poses["outlier_edges"] = Json::array();
+  for (const OutlierEdge& edge : solve.poses.outlier_edges) {
+    poses["outlier_edges"].push_back(
+        {{"views", PairJson(edge.views)},
+         {"reason", OutlierReasonName(edge.reason)},
+         {"error_deg", edge.error_deg}});
+  }
+  AddDoubts(solve.poses, &poses);
+  poses["median_rotation_residual_deg"] =
+      solve.poses.median_rotation_residual_deg;
+  json["structure"] = {{"points", TriangulationJson(solve.structure.points)},
+                       {"lines", TriangulationJson(solve.structure.lines)},
+                       {"coplanar_pairs", solve.structure.coplanar_pairs}};
+  if (solve.adjustment) {
+    const AdjustmentSummary& a = *solve.adjustment;
+    json["adjustment"] = {
+        {"initial_cost", a.initial_cost},
+        {"final_cost", a.final_cost},
+        {"iterations", a.iterations},
+        {"outlier_rounds", a.outlier_rounds},
+        {"point_shape_exponent", a.point_shape_exponent},
+        {"converged", a.converged},
+        {"poses_adjusted", a.poses_adjusted},
+        {"poses_without_observations", a.poses_without_observations},
+        {"points", AdjustedKindJson(a.points)},
+        {"lines", AdjustedKindJson(a.lines)},
+        {"coplanar", AdjustedKindJson(a.coplanar)},
+        {"calibration_preferences", PreferencesJson(a)}};
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string ToJson(const RunSummary& summary, const Scene& scene) {
+  Json json;
+  json["command"] = summary.command;
+  json["views"] = scene.views.size();
+  json["pairs"] = Json::array();
+  for (const PairReport& pair : summary.pairs) {
+    Json entry = {{"views", PairJson(pair.views)},
+                  {"accepted", pair.accepted},
+                  {"point_matches", pair.num_point_matches},
+                  {"point_inliers", pair.num_point_inliers},
+                  {"line_matches", pair.num_line_matches},
+                  {"line_inliers", pair.num_line_inliers},
+                  {"log10_nfa", pair.log10_nfa},
+                  {"geometry", pair.geometry},
+                  {"no_parallax", pair.no_parallax}};
+    if (!pair.accepted) entry["reason"] = pair.reason;
+    json["pairs"].push_back(std::move(entry));
+  }
+  json["unrelated_views"] = Json::array();
+  for (const UnrelatedView& view : summary.unrelated) {
+    json["unrelated_views"].push_back({{"view", view.view},
+                                       {"no_parallax", view.no_parallax},
+                                       {"reason", view.reason}});
+  }
+  if (summary.solve) json["solve"] = SolveJson(*summary.solve);
+  if (summary.evaluation_before_adjustment) {
+    json["evaluation_before_adjustment"] =
+        Json::parse(ToJson(*summary.evaluation_before_adjustment));
+  }
+  if (summary.evaluation) {
+    json["evaluation"] = Json::parse(ToJson(*summary.evaluation));
+  }
+  Json& cost = json["cost"];
+  cost["stages"] = Json::array();
+  for (const StageCost& stage : summary.stages) {
+    cost["stages"].push_back({{"name", stage.name},
+                              {"wall_s", stage.wall_s},
+                              {"cpu_s", stage.cpu_s}});
+  }
+  cost["peak_memory_mb"] = PeakMemoryMb();
+  return json.dump(2);
+}
+
+std::string ToJson(const std::vector<ScaleRatio>& ratios) {
+  Json json = Json::array();
+  for (const ScaleRatio& ratio : ratios) json.push_back(RatioJson(ratio));
+  return json.dump(2);
+}
+
+std::string ToJson(const RigidityReport& report) {
+  Json json;
+  json["connected_components"] = report.connected_components;
+  json["isolated_views"] = report.isolated_views;
+  json["groups"] = Json::array();
+  for (const RigidGroup& group : report.groups) {
+    Json edges = Json::array();
+    for (const ViewPair& edge : group.edges) edges.push_back(PairJson(edge));
+    json["groups"].push_back({{"views", group.views}, {"edges", edges}});
+  }
+  json["hinges"] = Json::array();
+  for (const ArticulationView& hinge : report.articulation_views) {
+    json["hinges"].push_back({{"view", hinge.view}, {"groups", hinge.groups}});
+  }
+  return json.dump(2);
+}
+
+}  // namespace lowlap

@@ -1,0 +1,186 @@
+#include "lowlap/study/internal/ablation.h"
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lowlap/evaluation/internal/relative_errors.h"
+#include "lowlap/report/internal/table_text.h"
+#include "lowlap/scale/evidence/evidence_registry.h"
+
+namespace lowlap {
+namespace {
+
+struct Features {
+  const char* name;
+  std::vector<std::string> words;
+};
+
+// The last is that of all.
+std::vector<Features> FeatureCases() {
+  return {{"points", {"points"}},
+          {"lines", {"lines"}},
+          {"points + lines", {"points", "lines"}},
+          {"coplanar", {"coplanar"}},
+          {"all", EvidenceRegistry::BuiltIn().Features()}};
+}
+
+AblationCase MakeCase(std::string name, const Features& features,
+                      ScaleCriterion criterion, ScaleOptions scale) {
+  AblationCase made;
+  made.name = std::move(name);
+  scale.features = features.words;
+  scale.criterion = criterion;
+  made.scale = scale;
+  return made;
+}
+
+/// Runs cases from a common start.
+class Runner {
+ public:
+  Runner(const Scene& scene, const SolveStart& start, const GroundTruth& truth,
+         const SolveOptions& options, const RunContext& context)
+      : scene_(scene),
+        start_(start),
+        truth_(truth),
+        options_(options),
+        context_(context) {}
+
+  /// Ratios and poses; returns the scene as solved.
+  Scene Run(AblationCase* entry) const {
+    Scene scene = scene_;
+    StageLog stages;
+    SolveOptions options = options_;
+    options.scale_estimator = MakeScaleEstimator(entry->scale);
+    const Status status = Solve(options, &scene, entry, &stages);
+    if (!status) entry->failure = status.error();
+    entry->costs = stages.stages();
+    return scene;
+  }
+
+  /// The bundle adjustment of a solved case.
+  AblationCase Adjust(const AblationCase& solved, Scene scene) const {
+    AblationCase entry = solved;
+    entry.name += " + adjustment";
+    entry.adjusted = true;
+    if (entry.failure) return entry;
+    StageLog stages;
+    SolveOptions options = options_;
+    options.adjust = true;
+    const auto refined = RefineSolution(&scene, options, context_, &stages);
+    if (refined) {
+      entry.errors = EvaluatePoses(scene, truth_);
+    } else {
+      entry.failure = refined.error();
+      entry.errors = {};
+      entry.num_placed = 0;
+    }
+    for (const StageCost& cost : stages.stages()) entry.costs.push_back(cost);
+    return entry;
+  }
+
+ private:
+  Status Solve(const SolveOptions& options, Scene* scene, AblationCase* entry,
+               StageLog* stages) const {
+    const auto ratios =
+        EstimateBelievedRatios(scene, start_, options, context_, stages);
+    if (!ratios) return tl::unexpected<Error>(ratios.error());
+    entry->ratios = *ratios;
+    entry->abs_log_ratio = EvaluateScaleRatios(*scene, truth_).abs_log_error;
+    const auto poses =
+        ComposePoses(scene, start_.rotations, options.poses, context_, stages);
+    if (!poses) return tl::unexpected<Error>(poses.error());
+    entry->num_placed = poses->num_placed;
+    entry->errors = EvaluatePoses(*scene, truth_);
+    return {};
+  }
+
+  const Scene& scene_;
+  const SolveStart& start_;
+  const GroundTruth& truth_;
+  const SolveOptions& options_;
+  const RunContext& context_;
+};
+
+bool IsCancelled(const AblationCase& entry) {
+  return entry.failure && entry.failure->code == ErrorCode::kCancelled;
+}
+
+}  // namespace
+
+Status AblationOptions::Validate() const {
+  if (const Status valid = solve.Validate(); !valid) return valid;
+  if (const Status valid = scale.Validate(); !valid) return valid;
+  for (const double threshold_px : thresholds_px) {
+    if (!(threshold_px > 0)) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "ablation: thresholds must be positive");
+    }
+  }
+  return {};
+}
+
+Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
+                        const AblationOptions& options,
+                        const RunContext& context) {
+  if (const Status valid = options.Validate(); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  std::size_t num_true = 0;
+  for (const auto& entry : scene.views) num_true += truth.count(entry.first);
+  if (num_true < 3) {
+    return MakeError(ErrorCode::kInsufficientData,
+                     "ablation: positions can be judged against three true "
+                     "cameras or more; there are " +
+                         std::to_string(num_true));
+  }
+  Scene start_scene = scene;
+  StageLog stages;
+  const auto start =
+      StartSolution(&start_scene, options.solve, context, &stages);
+  if (!start) return tl::unexpected<Error>(start.error());
+
+  const std::vector<Features> cases = FeatureCases();
+  const Features& all = cases.back();
+  Ablation ablation;
+  ablation.num_views = static_cast<int>(scene.views.size());
+  for (const double threshold_px : options.thresholds_px) {
+    ablation.criteria.push_back(MakeCase(NumberText(threshold_px, 6) + " px",
+                                         all, ScaleCriterion::kFixedThreshold,
+                                         options.scale));
+    ablation.criteria.back().scale.threshold_px = threshold_px;
+  }
+  for (const Features& features : cases) {
+    ablation.features.push_back(MakeCase(
+        features.name, features, ScaleCriterion::kAContrario, options.scale));
+  }
+
+  const Runner runner(start_scene, *start, truth, options.solve, context);
+  const std::size_t total =
+      ablation.criteria.size() + ablation.features.size() + 1;
+  std::size_t done = 0;
+  Scene solved;
+  for (std::vector<AblationCase>* table :
+       {&ablation.criteria, &ablation.features}) {
+    for (AblationCase& entry : *table) {
+      if (!context.Progress("cases", done++, total)) {
+        return MakeError(ErrorCode::kCancelled, "stopped", {}, "cases");
+      }
+      solved = runner.Run(&entry);
+      if (IsCancelled(entry)) return tl::unexpected<Error>(*entry.failure);
+    }
+  }
+  // The last case is the one with all features.
+  ablation.criteria.push_back(ablation.features.back());
+  ablation.criteria.back().name = "a contrario";
+  ablation.features.push_back(
+      runner.Adjust(ablation.features.back(), std::move(solved)));
+  if (IsCancelled(ablation.features.back())) {
+    return tl::unexpected<Error>(*ablation.features.back().failure);
+  }
+  context.Progress("cases", total, total);
+  return ablation;
+}
+
+}  // namespace lowlap

@@ -1,0 +1,202 @@
+#include "lowlap/two_view/internal/pair_estimator.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "lowlap/core/internal/format.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/scene/features.h"
+#include "lowlap/scene/validation.h"
+#include "lowlap/two_view/internal/pose_search.h"
+
+namespace lowlap {
+namespace {
+
+TwoViewInput MakeInput(const ViewPair& views, const ViewMeasurements& first,
+                       const ViewMeasurements& second) {
+  TwoViewInput input;
+  input.views = views;
+  input.features1 = &first.features;
+  input.features2 = &second.features;
+  input.directions1 = &first.directions;
+  input.directions2 = &second.directions;
+  if (!first.point_covariances.empty() && !second.point_covariances.empty()) {
+    input.point_covariances1 = &first.point_covariances;
+    input.point_covariances2 = &second.point_covariances;
+  }
+  input.image_size1_px = first.image_size_px;
+  input.image_size2_px = second.image_size_px;
+  return input;
+}
+
+// Adds the matches whose points have none yet.
+void AddMatches(const std::vector<FeatureMatch>& extra,
+                std::vector<FeatureMatch>* matches) {
+  std::set<FeatureIndex> used1, used2;
+  for (const FeatureMatch& match : *matches) {
+    used1.insert(match.first);
+    used2.insert(match.second);
+  }
+  for (const FeatureMatch& match : extra) {
+    if (used1.count(match.first) == 0 && used2.count(match.second) == 0) {
+      matches->push_back(match);
+    }
+  }
+  std::sort(matches->begin(), matches->end());
+}
+
+AlternativeMotion MotionOf(const RelativePose& pose) {
+  return {pose.rotation, pose.direction, pose.log10_nfa, pose.covariance};
+}
+
+RelativePose WithHypothesis(const RelativePose& pose,
+                            const AlternativeMotion& other) {
+  RelativePose result = pose;
+  result.rotation = other.rotation;
+  result.direction = other.direction;
+  result.log10_nfa = other.log10_nfa;
+  result.covariance = other.covariance;
+  result.alternatives.clear();
+  return result;
+}
+
+// The pose and its alternatives refined on the matches of `input`. These may
+// have been found with the pose, and draw an alternative over to it: that says
+// nothing, and the alternative stays as it was.
+RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
+                     const TwoViewOptions& options) {
+  RelativePose improved = ImproveRelativePose(input, pose, options);
+  const auto differs = [&](const RelativePose& other) {
+    return !SamePose(other.Cam2FromCam1(), improved.Cam2FromCam1());
+  };
+  std::vector<AlternativeMotion> alternatives;
+  for (const AlternativeMotion& other : pose.alternatives) {
+    const RelativePose before = WithHypothesis(pose, other);
+    const RelativePose after = ImproveRelativePose(input, before, options);
+    if (differs(after)) {
+      alternatives.push_back(MotionOf(after));
+    } else if (differs(before)) {
+      alternatives.push_back(other);
+    }
+  }
+  improved.alternatives = std::move(alternatives);
+  return improved;
+}
+
+// Matches again under the pose, and refines it on what that finds.
+void UseGuidedMatches(const ViewMeasurements& first,
+                      const ViewMeasurements& second,
+                      const PairOptions& options,
+                      std::vector<FeatureMatch>* line_matches,
+                      TwoViewInput* input, RelativePose* pose) {
+  const DetectedFeatures &d1 = *first.detected, &d2 = *second.detected;
+  input->point_matches = pose->point_inliers;
+  if (options.use_points &&
+      static_cast<int>(pose->point_inliers.size()) < options.starved_below) {
+    const std::vector<FeatureMatch> guided =
+        MatchPointsGuided({d1.keypoints, d1.point_descriptors, first.features},
+                          {d2.keypoints, d2.point_descriptors, second.features},
+                          pose->Cam2FromCam1(), 2 * pose->point_threshold_px,
+                          options.guided_points);
+    AddMatches(guided, &input->point_matches);
+  }
+  *line_matches =
+      MatchLinesGuided({d1.features.segments, d1.line_descriptors},
+                       {d2.features.segments, d2.line_descriptors},
+                       first.features, second.features, pose->Cam2FromCam1(),
+                       *line_matches, options.guided_lines);
+  if (options.use_lines) input->line_matches = *line_matches;
+  *pose = Improve(*input, *pose, options.two_view);
+}
+
+}  // namespace
+
+Status PairOptions::Validate() const {
+  for (const Status& valid :
+       {two_view.Validate(), guided_lines.Validate(), guided_points.Validate(),
+        line_filter.Validate()}) {
+    if (!valid) return valid;
+  }
+  if (!use_points && !use_lines) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "relative poses need points or lines");
+  }
+  return {};
+}
+
+ViewMeasurements MeasureView(const ViewFeatures& features,
+                             const Intrinsic& intrinsic,
+                             const Vec2& image_size_px,
+                             const DetectedFeatures* detected,
+                             const VanishingOptions& options) {
+  ViewMeasurements view;
+  view.features = NormalizeFeatures(features, intrinsic);
+  view.directions = FindVanishingDirections(view.features, options);
+  view.image_size_px = image_size_px;
+  view.detected = detected;
+  if (detected == nullptr) return view;
+  for (const Keypoint& keypoint : detected->keypoints) {
+    view.point_covariances.push_back(keypoint.covariance);
+  }
+  return view;
+}
+
+PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
+                          const ViewMeasurements& second,
+                          const PairMatches& putative,
+                          const PairOptions& options, std::uint64_t seed) {
+  PairEstimate estimate;
+  TwoViewInput input = MakeInput(views, first, second);
+  if (options.use_points) input.point_matches = putative.points;
+  if (options.use_lines) input.line_matches = putative.lines;
+  auto result = EstimateRelativePose(input, options.two_view, seed);
+  if (!result) {
+    estimate.reason = result.error().message;
+    return estimate;
+  }
+  RelativePose& pose = result->pose;
+  for (const RelativePose& other : result->alternatives) {
+    pose.alternatives.push_back(MotionOf(other));
+  }
+  estimate.geometry = result->geometry;
+  estimate.log10_nfa = pose.log10_nfa;
+  estimate.num_point_inliers = static_cast<int>(pose.point_inliers.size());
+  if (!result->HasDirection()) {
+    estimate.no_parallax = true;
+    estimate.reason = Format(
+        "no parallax: the views differ by a rotation of %.2f degrees only",
+        DegFromRad(RotationAngleBetween(pose.rotation, Mat3::Identity())));
+    return estimate;
+  }
+  std::vector<FeatureMatch> line_matches = putative.lines;
+  if (first.detected != nullptr && second.detected != nullptr) {
+    UseGuidedMatches(first, second, options, &line_matches, &input, &pose);
+  }
+  pose.line_inliers =
+      FilterLineMatches(line_matches, *input.features1, *input.features2,
+                        pose.Cam2FromCam1(), options.line_filter);
+  estimate.num_point_inliers = static_cast<int>(pose.point_inliers.size());
+  // One pair that cannot be used must not make the scene invalid.
+  if (const Status valid = ValidateRelativePose(pose); !valid) {
+    estimate.reason = "the estimate is not usable: " + valid.error().message;
+    return estimate;
+  }
+  estimate.pose = std::move(pose);
+  return estimate;
+}
+
+RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,
+                        const ViewMeasurements& second,
+                        const PairOptions& options) {
+  TwoViewInput input = MakeInput(pose.views, first, second);
+  if (options.use_points) input.point_matches = pose.point_inliers;
+  if (options.use_lines) input.line_matches = pose.line_inliers;
+  RelativePose refined = Improve(input, pose, options.two_view);
+  refined.line_inliers =
+      FilterLineMatches(pose.line_inliers, first.features, second.features,
+                        refined.Cam2FromCam1(), options.line_filter);
+  return ValidateRelativePose(refined) ? refined : pose;
+}
+
+}  // namespace lowlap

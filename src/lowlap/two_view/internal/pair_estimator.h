@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/features/internal/features.h"
+#include "lowlap/matching/internal/lines/guided_line_matching.h"
+#include "lowlap/matching/internal/lines/line_filter.h"
+#include "lowlap/matching/internal/matching.h"
+#include "lowlap/matching/internal/points/guided_point_matching.h"
+#include "lowlap/two_view/internal/relative_pose_estimator.h"
+#include "lowlap/two_view/two_view_options.h"
+
+namespace lowlap {
+
+/// What is known of one view, worked out once for all its pairs.
+struct ViewMeasurements {
+  NormalizedFeatures features;
+  std::vector<VanishingDirection> directions;
+  std::vector<Mat2> point_covariances;         // empty: unknown
+  const DetectedFeatures* detected = nullptr;  // not owned; null: see below
+  Vec2 image_size_px = Vec2::Zero();
+};
+
+/// With `detected`, what the detectors know of the same features (same order),
+/// the shapes of the points' errors count, and pairs can be matched again under
+/// their first pose. Null: matches are all there is.
+ViewMeasurements MeasureView(const ViewFeatures& features,
+                             const Intrinsic& intrinsic,
+                             const Vec2& image_size_px,
+                             const DetectedFeatures* detected,
+                             const VanishingOptions& options);
+
+struct PairEstimate {
+  std::optional<RelativePose> pose;
+  std::string reason;  // why there is none
+  /// No pose, since a rotation alone explains what the views see.
+  bool no_parallax = false;
+  /// Of the pose of least NFA, if any was meaningful.
+  std::optional<TwoViewGeometry> geometry;
+  double log10_nfa = 0;
+  int num_point_inliers = 0;
+};
+
+/// The relative pose of a pair from its putative matches (MatchPair), in four
+/// steps: estimate (EstimateRelativePose); guide, that is, match lines and, for
+/// starved pairs, points again under this pose; improve the pose on all of
+/// these (ImproveRelativePose), and its alternatives; keep the line matches
+/// that are plausible under it. Where two poses explain what the pair sees, the
+/// other is kept as an alternative. A pair whose direction is undetermined has
+/// none.
+PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
+                          const ViewMeasurements& second,
+                          const PairMatches& putative,
+                          const PairOptions& options, std::uint64_t seed);
+
+/// The pose improved once more on its inliers, after features have moved; as it
+/// was, where that leads nowhere.
+RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,
+                        const ViewMeasurements& second,
+                        const PairOptions& options);
+
+}  // namespace lowlap

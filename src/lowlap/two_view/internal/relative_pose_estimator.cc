@@ -1,0 +1,321 @@
+#include "lowlap/two_view/internal/relative_pose_estimator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/a_contrario.h"
+#include "lowlap/two_view/internal/line_crossings.h"
+#include "lowlap/two_view/internal/planar_motion.h"
+#include "lowlap/two_view/internal/pose_search.h"
+#include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/translation_evidence.h"
+
+namespace lowlap {
+namespace {
+
+constexpr int kMinMatches = 6;
+/// A plane that holds this share of the inliers is worth a second motion.
+constexpr double kPlaneShare = 0.5;
+/// Two motions are told apart by an advantage worth ten points that fit one
+/// perfectly and the other not at all, 10 log(10): noise alone reaches half.
+constexpr double kDecisiveScore = 23;
+
+/// The Sampson distance is the point's distance to its epipolar line divided by
+/// the square root of two (equal focal lengths), so that its law is that much
+/// steeper. The smaller image, where chance is larger, decides.
+BackgroundLaw SampsonLaw(const TwoViewInput& input) {
+  BackgroundLaw law;
+  for (const Vec2& size : {input.image_size1_px, input.image_size2_px}) {
+    law.coefficient = std::max(
+        law.coefficient,
+        BackgroundLaw::PointToLine(size.prod(), size.norm()).coefficient);
+  }
+  law.coefficient *= std::sqrt(2.0);
+  return law;
+}
+
+Status ValidateInput(const TwoViewInput& input) {
+  if (input.features1 == nullptr || input.features2 == nullptr) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "relative pose: a view has no features");
+  }
+  for (const Vec2& size : {input.image_size1_px, input.image_size2_px}) {
+    if (!(size.minCoeff() > 0) || !size.allFinite()) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "relative pose: an image has no size");
+    }
+  }
+  for (const double focal :
+       {input.features1->focal_px, input.features2->focal_px}) {
+    if (!(focal > 0) || !std::isfinite(focal)) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "relative pose: a focal length is not positive");
+    }
+  }
+  for (const FeatureMatch& match : input.point_matches) {
+    if (match.first >= input.features1->points.size() ||
+        match.second >= input.features2->points.size()) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "relative pose: match " + std::to_string(match.first) +
+                           "-" + std::to_string(match.second) +
+                           " refers to a point that does not exist");
+    }
+  }
+  for (const FeatureMatch& match : input.line_matches) {
+    if (match.first >= input.features1->segments.size() ||
+        match.second >= input.features2->segments.size()) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "relative pose: match " + std::to_string(match.first) +
+                           "-" + std::to_string(match.second) +
+                           " refers to a segment that does not exist");
+    }
+  }
+  return {};
+}
+
+/// The usable matches and the crossings of matched lines in random order.
+struct ShuffledMatches {
+  PointPairs pairs;
+  std::vector<int> match_of_pair;  // index into point_matches, or kCrossing
+};
+constexpr int kCrossing = -1;
+/// The variance of a segment's end point over that of a keypoint.
+constexpr double kLineVariance = 0.25;
+
+ShuffledMatches Shuffle(const TwoViewInput& input, Random& random) {
+  ShuffledMatches shuffled;
+  PointPairs& pairs = shuffled.pairs;
+  pairs.focal1_px = input.features1->focal_px;
+  pairs.focal2_px = input.features2->focal_px;
+  const auto add = [&](int match, const Vec3& x1, const Vec3& x2,
+                       const Mat2& covariance1, const Mat2& covariance2) {
+    shuffled.match_of_pair.push_back(match);
+    pairs.x1.push_back(x1);
+    pairs.x2.push_back(x2);
+    pairs.covariance1.push_back(covariance1);
+    pairs.covariance2.push_back(covariance2);
+  };
+  const auto shape = [](const std::vector<Mat2>* covariances, std::size_t n) {
+    return covariances == nullptr ? Mat2(Mat2::Identity()) : (*covariances)[n];
+  };
+  for (std::size_t m = 0; m < input.point_matches.size(); ++m) {
+    const FeatureMatch& match = input.point_matches[m];
+    const Vec3& x1 = input.features1->points[match.first];
+    const Vec3& x2 = input.features2->points[match.second];
+    if (x1.z() != 0 && x2.z() != 0) {
+      add(static_cast<int>(m), x1, x2,
+          shape(input.point_covariances1, match.first),
+          shape(input.point_covariances2, match.second));
+    }
+  }
+  for (const LineCrossing& crossing : FindLineCrossings(
+           *input.features1, *input.features2, input.line_matches)) {
+    add(kCrossing, crossing.x1, crossing.x2,
+        kLineVariance * crossing.covariance1,
+        kLineVariance * crossing.covariance2);
+  }
+  for (int n = pairs.size(); n > 1; --n) {
+    const auto k = random.Index(static_cast<std::uint32_t>(n));
+    std::swap(shuffled.match_of_pair[n - 1], shuffled.match_of_pair[k]);
+    std::swap(pairs.x1[n - 1], pairs.x1[k]);
+    std::swap(pairs.x2[n - 1], pairs.x2[k]);
+    std::swap(pairs.covariance1[n - 1], pairs.covariance1[k]);
+    std::swap(pairs.covariance2[n - 1], pairs.covariance2[k]);
+  }
+  return shuffled;
+}
+
+std::string Decimal(double value) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.1f", value);
+  return text;
+}
+
+RelativePose ToRelativePose(const TwoViewInput& input,
+                            const ShuffledMatches& matches,
+                            const PoseSearch& search,
+                            const PoseCandidate& candidate) {
+  RelativePose pose;
+  pose.views = input.views;
+  pose.rotation = candidate.pose.rotation;
+  pose.direction = candidate.pose.translation;
+  std::vector<int> inliers;
+  for (const int i : candidate.inliers) {
+    if (matches.match_of_pair[i] != kCrossing) {
+      inliers.push_back(matches.match_of_pair[i]);
+    }
+  }
+  std::sort(inliers.begin(), inliers.end());
+  for (const int m : inliers) {
+    pose.point_inliers.push_back(input.point_matches[m]);
+  }
+  pose.log10_nfa = candidate.support.log10_nfa;
+  pose.point_threshold_px = candidate.support.threshold;
+  pose.covariance =
+      RelativePoseCovariance(candidate.pose, matches.pairs, candidate.inliers,
+                             search.RefinementOptions(candidate));
+  return pose;
+}
+
+std::optional<ScenePlane> DominantPlaneOf(const PoseCandidate& candidate,
+                                          const PointPairs& pairs,
+                                          Random& random) {
+  // Transfer errors have two components, each with the noise of both views.
+  return DominantPlane(candidate.pose, pairs, candidate.inliers,
+                       3 * candidate.support.threshold, random);
+}
+
+/// The other explanation of a scene whose points lie mostly on `plane`.
+std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
+                                               const PointPairs& pairs,
+                                               const PoseCandidate& candidate,
+                                               const ScenePlane& plane) {
+  if (static_cast<double>(plane.inliers.size()) <
+      kPlaneShare * static_cast<double>(candidate.inliers.size())) {
+    return std::nullopt;
+  }
+  const std::optional<RigidTransform> motion = OtherPlanarMotion(
+      candidate.pose, plane.normal, pairs.x1[plane.inliers.front()]);
+  if (!motion) return std::nullopt;
+  return search.Finish(*motion);
+}
+
+std::vector<DirectionPair> CommonDirections(const TwoViewInput& input) {
+  if (input.directions1 == nullptr || input.directions2 == nullptr) return {};
+  return PairDirections(*input.features1, *input.features2, *input.directions1,
+                        *input.directions2, input.line_matches);
+}
+
+}  // namespace
+
+Status TwoViewOptions::Validate() const {
+  if (!(max_threshold_px > PoseSearch::kMinThresholdPx)) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "relative pose: max_threshold_px must exceed " +
+                         Decimal(PoseSearch::kMinThresholdPx));
+  }
+  if (max_samples < 1) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "relative pose: max_samples must be positive");
+  }
+  if (!(confidence > 0 && confidence < 1)) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "relative pose: confidence must lie between 0 and 1");
+  }
+  return {};
+}
+
+const char* TwoViewGeometryName(TwoViewGeometry geometry) {
+  switch (geometry) {
+    case TwoViewGeometry::kGeneral:
+      return "general";
+    case TwoViewGeometry::kPlanar:
+      return "planar";
+    case TwoViewGeometry::kAmbiguousPlane:
+      return "ambiguous_plane";
+    case TwoViewGeometry::kRotationOnly:
+      return "rotation_only";
+  }
+  return "unknown";
+}
+
+Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
+                                           const TwoViewOptions& options,
+                                           std::uint64_t seed) {
+  if (Status status = options.Validate(); !status) {
+    return tl::unexpected(status.error());
+  }
+  if (Status status = ValidateInput(input); !status) {
+    return tl::unexpected(status.error());
+  }
+  Random random(seed);
+  const ShuffledMatches matches = Shuffle(input, random);
+  const PointPairs& pairs = matches.pairs;
+  if (pairs.size() < kMinMatches) {
+    return MakeError(ErrorCode::kInsufficientData,
+                     "relative pose: " + std::to_string(pairs.size()) +
+                         " usable points and crossings of lines, " +
+                         std::to_string(kMinMatches) + " needed");
+  }
+  TwoViewResult result;
+  result.num_matches = pairs.size();
+  PoseSearch search(pairs, CommonDirections(input), SampsonLaw(input), options);
+  const std::vector<PoseCandidate> candidates =
+      search.Search(random, result.num_samples);
+  std::optional<PoseCandidate> best;
+  if (!candidates.empty()) best = candidates.front();
+  if (!best || !(best->support.log10_nfa < 0)) {
+    return MakeError(
+        ErrorCode::kInsufficientData,
+        "relative pose: no motion explains the " +
+            std::to_string(pairs.size()) +
+            " points and crossings of lines better than chance" +
+            (best ? " (log10 NFA " + Decimal(best->support.log10_nfa) + ")"
+                  : ""));
+  }
+  std::optional<ScenePlane> plane = DominantPlaneOf(*best, pairs, random);
+  std::optional<PoseCandidate> other;
+  if (plane) other = PlanarAlternative(search, pairs, *best, *plane);
+  if (other) {
+    const double scale_px = search.RefinementOptions(*best).loss_scale_px;
+    const double advantage =
+        search.CoreScore(best->pose, scale_px) -
+        search.CoreScore(other->pose, scale_px) +
+        std::log(10.0) * (other->direction_penalty - best->direction_penalty);
+    // Few matches may leave the other motion none in front of the cameras.
+    const bool meaningful = other->support.log10_nfa < 0;
+    if (meaningful && advantage < 0) {
+      std::swap(*best, *other);
+      plane = DominantPlaneOf(*best, pairs, random);
+    }
+    // Where both are one motion, the better optimum of it is kept.
+    if (!SamePose(best->pose, other->pose)) {
+      result.geometry = meaningful && std::abs(advantage) < kDecisiveScore
+                            ? TwoViewGeometry::kAmbiguousPlane
+                            : TwoViewGeometry::kPlanar;
+    }
+  }
+  if (plane) {
+    result.num_plane_inliers = static_cast<int>(plane->inliers.size());
+  }
+  const TranslationEvidence translation =
+      TestTranslation(pairs, best->pose, best->inliers, best->support.threshold,
+                      PoseSearch::kMinThresholdPx);
+  result.num_rotation_inliers = translation.num_rotation_inliers;
+  if (!translation.IsSeen()) {
+    result.geometry = TwoViewGeometry::kRotationOnly;
+  }
+  result.pose = ToRelativePose(input, matches, search, *best);
+  if (result.geometry == TwoViewGeometry::kAmbiguousPlane) {
+    result.alternatives.push_back(
+        ToRelativePose(input, matches, search, *other));
+  }
+  return result;
+}
+
+RelativePose ImproveRelativePose(const TwoViewInput& input,
+                                 const RelativePose& pose,
+                                 const TwoViewOptions& options) {
+  // No sample is drawn; the order only matters to the background of chance.
+  Random random(0);
+  const ShuffledMatches matches = Shuffle(input, random);
+  if (matches.pairs.size() < kMinMatches) return pose;
+  // The new matches were chosen by the pose: they do not widen its threshold.
+  TwoViewOptions bounded = options;
+  bounded.max_threshold_px =
+      std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
+  const PoseSearch search(matches.pairs, CommonDirections(input),
+                          SampsonLaw(input), bounded);
+  const PoseCandidate candidate = search.Finish(pose.Cam2FromCam1());
+  if (!std::isfinite(candidate.support.log10_nfa)) return pose;
+  RelativePose improved = ToRelativePose(input, matches, search, candidate);
+  improved.log10_nfa = pose.log10_nfa;
+  return improved;
+}
+
+}  // namespace lowlap

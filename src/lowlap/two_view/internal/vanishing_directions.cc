@@ -1,0 +1,266 @@
+#include "lowlap/two_view/internal/vanishing_directions.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include "lowlap/core/internal/median.h"
+#include "lowlap/geometry/internal/rotation.h"
+
+namespace lowlap {
+namespace {
+
+// Pairs of this many long segments propose directions.
+constexpr std::size_t kProposers = 80;
+constexpr double kThresholdsPx[] = {0.5, 1.0, 2.0};
+constexpr std::size_t kMinSegments = 3;
+
+struct Segment {
+  int index;
+  Vec3 moment;  // a x b
+  Vec3 middle;
+  double length_px;
+  Vec3 normal;  // unit
+};
+
+Segment MakeSegment(int index, const NormalizedSegment& s, double focal_px) {
+  return {index, s.start.cross(s.end), 0.5 * (s.start + s.end),
+          focal_px * (s.end - s.start).norm(), s.normal};
+}
+
+// d error / d (d . moment), in pixels; 0 if the midpoint is the vanishing
+// point.
+double Gain(const Segment& s, const Vec3& direction, double focal_px) {
+  const double norm = s.middle.cross(direction).head<2>().norm();
+  return norm > 1e-9 ? 0.5 * focal_px / norm : 0;
+}
+
+// +infinity for a segment whose midpoint is the vanishing point.
+double ErrorPx(const Segment& s, const Vec3& direction, double focal_px) {
+  const double gain = Gain(s, direction, focal_px);
+  return gain > 0 ? gain * s.moment.dot(direction)
+                  : std::numeric_limits<double>::infinity();
+}
+
+// The least-squares direction of segments, robust, from the given one on.
+class DirectionFit {
+ public:
+  DirectionFit(const Vec3& start, double focal_px,
+               const VanishingOptions& options)
+      : direction_(start), focal_px_(focal_px), options_(options) {}
+
+  const Vec3& direction() const { return direction_; }
+
+  // One step of iterated reweighting.
+  void Step(const std::vector<const Segment*>& members) {
+    const double parallel_rad = RadFromDeg(options_.parallel_stddev_deg);
+    information_.setZero();
+    std::vector<double> deviations;
+    for (const Segment* s : members) {
+      const double gain = Gain(*s, direction_, focal_px_);
+      const double parallel_px = gain * s->moment.norm() * parallel_rad;
+      const double variance =
+          options_.end_point_stddev_px * options_.end_point_stddev_px +
+          parallel_px * parallel_px;
+      const double r = gain * s->moment.dot(direction_) / std::sqrt(variance);
+      deviations.push_back(std::abs(r));
+      const double x = r / (2 * scatter_);
+      information_ += gain * gain / variance / ((1 + x * x) * (1 + x * x)) *
+                      s->moment * s->moment.transpose();
+    }
+    scatter_ = std::max(1.0, 1.4826 * Median(deviations));
+    const Eigen::SelfAdjointEigenSolver<Mat3> solver(information_);
+    direction_ = solver.eigenvectors().col(0);
+  }
+
+  // In the tangent plane; the common error of lines that people build parallel
+  // does not average out.
+  Mat3 Covariance() const {
+    const auto basis = TangentBasis(direction_);
+    const double parallel_rad = RadFromDeg(options_.parallel_stddev_deg);
+    const Mat2 tangent =
+        scatter_ * scatter_ *
+            (basis.transpose() * information_ * basis + 1e-6 * Mat2::Identity())
+                .inverse() +
+        2 * parallel_rad * parallel_rad * Mat2::Identity();
+    return basis * tangent * basis.transpose();
+  }
+
+ private:
+  Vec3 direction_;
+  double focal_px_;
+  VanishingOptions options_;
+  Mat3 information_ = Mat3::Zero();
+  double scatter_ = 1;
+};
+
+class Finder {
+ public:
+  Finder(const NormalizedFeatures& features, const VanishingOptions& options)
+      : options_(options),
+        focal_px_(features.focal_px),
+        max_sine_(std::sin(RadFromDeg(options.max_angle_deg))) {
+    for (std::size_t n = 0; n < features.segments.size(); ++n) {
+      const NormalizedSegment& s = features.segments[n];
+      if (!s.IsValid()) continue;
+      segments_.push_back(MakeSegment(static_cast<int>(n), s, focal_px_));
+    }
+    std::stable_sort(segments_.begin(), segments_.end(),
+                     [](const Segment& a, const Segment& b) {
+                       return a.length_px > b.length_px;
+                     });
+    free_.resize(segments_.size());
+    std::iota(free_.begin(), free_.end(), std::size_t{0});
+  }
+
+  std::optional<VanishingDirection> Next() {
+    const std::size_t count =
+        std::min(free_.size(), static_cast<std::size_t>(options_.max_segments));
+    const std::size_t proposers = std::min(count, kProposers);
+    if (count < kMinSegments) return std::nullopt;
+    const double log10_tests =
+        std::log10(0.5 * static_cast<double>(proposers * (proposers - 1)) *
+                   std::size(kThresholdsPx));
+    // Mean chance of the segments at each threshold.
+    double alpha[std::size(kThresholdsPx)] = {};
+    for (std::size_t t = 0; t < std::size(kThresholdsPx); ++t) {
+      for (std::size_t n = 0; n < count; ++n) {
+        alpha[t] += 2 / kPi *
+                    std::asin(MaxSine(segments_[free_[n]], kThresholdsPx[t])) /
+                    static_cast<double>(count);
+      }
+    }
+    double best_nfa = 0;
+    Vec3 best = Vec3::Zero();
+    for (std::size_t i = 0; i < proposers; ++i) {
+      for (std::size_t j = i + 1; j < proposers; ++j) {
+        const Vec3 crossing =
+            segments_[free_[i]].normal.cross(segments_[free_[j]].normal);
+        const double norm = crossing.norm();
+        if (norm < 1e-3) continue;  // collinear: any direction fits both
+        const Vec3 direction = crossing / norm;
+        std::size_t inliers[std::size(kThresholdsPx)] = {};
+        for (std::size_t n = 0; n < count; ++n) {
+          const double error_px =
+              std::abs(ErrorPx(segments_[free_[n]], direction, focal_px_));
+          for (std::size_t t = 0; t < std::size(kThresholdsPx); ++t) {
+            if (IsParallel(segments_[free_[n]], error_px, kThresholdsPx[t])) {
+              ++inliers[t];
+            }
+          }
+        }
+        for (std::size_t t = 0; t < std::size(kThresholdsPx); ++t) {
+          const double nfa =
+              log10_tests +
+              Log10Tail(count - 2,
+                        inliers[t] - std::min<std::size_t>(2, inliers[t]),
+                        alpha[t]);
+          if (inliers[t] >= kMinSegments && nfa < best_nfa) {
+            best_nfa = nfa;
+            best = direction;
+          }
+        }
+      }
+    }
+    if (!(best_nfa < 0)) return std::nullopt;
+    return Fit(best, best_nfa);
+  }
+
+ private:
+  // Greatest sine of the turn that keeps the error within the threshold.
+  double MaxSine(const Segment& s, double threshold_px) const {
+    return std::min(max_sine_, 2 * threshold_px / s.length_px);
+  }
+
+  bool IsParallel(const Segment& s, double error_px,
+                  double threshold_px) const {
+    return 2 * error_px <= MaxSine(s, threshold_px) * s.length_px;
+  }
+
+  // Chernoff's bound of log10 P(at least k of n events of mean chance alpha).
+  static double Log10Tail(std::size_t n, std::size_t k, double alpha) {
+    const double share = static_cast<double>(k) / static_cast<double>(n);
+    if (share <= alpha) return 0;
+    double divergence = share * std::log(share / alpha);
+    if (share < 1) {
+      divergence += (1 - share) * std::log((1 - share) / (1 - alpha));
+    }
+    return -static_cast<double>(n) * divergence / std::log(10.0);
+  }
+
+  VanishingDirection Fit(const Vec3& start, double log10_nfa) {
+    DirectionFit fit(start, focal_px_, options_);
+    std::vector<std::size_t> members;
+    for (int iteration = 0; iteration < 10; ++iteration) {
+      members.clear();
+      std::vector<const Segment*> support;
+      for (const std::size_t n : free_) {
+        const Segment& s = segments_[n];
+        const double error_px =
+            std::abs(ErrorPx(s, fit.direction(), focal_px_));
+        if (!IsParallel(s, error_px, kThresholdsPx[2])) continue;
+        members.push_back(n);
+        support.push_back(&s);
+      }
+      if (members.size() < kMinSegments) break;
+      fit.Step(support);
+    }
+    VanishingDirection result;
+    result.direction = fit.direction();
+    result.covariance = fit.Covariance();
+    result.log10_nfa = log10_nfa;
+    for (const std::size_t n : members) {
+      result.segments.push_back(segments_[n].index);
+    }
+    std::sort(result.segments.begin(), result.segments.end());
+    std::vector<std::size_t> rest;
+    std::set_difference(free_.begin(), free_.end(), members.begin(),
+                        members.end(), std::back_inserter(rest));
+    free_ = std::move(rest);
+    return result;
+  }
+
+  VanishingOptions options_;
+  double focal_px_;
+  double max_sine_;
+  std::vector<Segment> segments_;  // from long to short
+  std::vector<std::size_t> free_;  // not yet part of a direction, ascending
+};
+
+}  // namespace
+
+std::vector<VanishingDirection> FindVanishingDirections(
+    const NormalizedFeatures& features, const VanishingOptions& options) {
+  std::vector<VanishingDirection> directions;
+  Finder finder(features, options);
+  while (static_cast<int>(directions.size()) < options.max_directions) {
+    std::optional<VanishingDirection> next = finder.Next();
+    if (!next) break;
+    // Segments that a candidate attracts but its fit loses would bring it back
+    // for ever.
+    if (next->segments.size() < kMinSegments) break;
+    directions.push_back(std::move(*next));
+  }
+  return directions;
+}
+
+VanishingDirection FitDirection(const NormalizedFeatures& features,
+                                const std::vector<int>& segments,
+                                const Vec3& start,
+                                const VanishingOptions& options) {
+  std::vector<Segment> members;
+  for (const int n : segments) {
+    members.push_back(MakeSegment(n, features.segments[n], features.focal_px));
+  }
+  std::vector<const Segment*> support;
+  for (const Segment& s : members) support.push_back(&s);
+  DirectionFit fit(start, features.focal_px, options);
+  for (int iteration = 0; iteration < 10; ++iteration) fit.Step(support);
+  return {fit.direction(), fit.Covariance(), segments, 0};
+}
+
+}  // namespace lowlap
