@@ -65,23 +65,23 @@ int RunAblation(const Flags& flags) {
 
 void AddAblate(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* command = program->add_subcommand(
-      "ablate",
+  CLI::App* command = AddCommand(
+      program, "ablate",
       "Position errors with fixed inlier thresholds and without, and by kind "
       "of feature: the paper's experiments on any scene with true cameras");
   AddSceneInputFlags(command, &flags->input);
-  AddTruthFlag(command, &flags->ground_truth)->required();
-  command->add_option("-o,--output,--outdir", flags->output,
-                      "Folder for the tables and plots; none if not given");
+  AddTruthFlag(command, &flags->ground_truth).Required();
+  AddOption(command, "-o,--output,--outdir", flags->output,
+            "Folder for the tables and plots; none if not given");
   AddStrategyFlag(command, &flags->strategy);
-  command
-      ->add_option("--thresholds", flags->thresholds_px,
-                   "Fixed inlier thresholds in pixels, separated by commas")
-      ->delimiter(',')
-      ->capture_default_str();
+  AddOption(command, "--thresholds", flags->thresholds_px,
+            "Fixed inlier thresholds in pixels, separated by commas")
+      .SeparatedBy(',')
+      .ShowDefault();
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return RunAblation(*flags); }; });
+  WhenChosen(command, [flags, action] {
+    *action = [flags] { return RunAblation(*flags); };
+  });
 }
 
 }  // namespace lowlap::cli

@@ -108,30 +108,28 @@ int Adjust(const Flags& flags) {
 
 void AddAdjust(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* command = program->add_subcommand(
-      "adjust",
+  CLI::App* command = AddCommand(
+      program, "adjust",
       "Bundle adjustment of a solved scene, over points, lines and "
       "coplanar line pairs; it starts from the calibration as it was given, "
       "also where the scene was adjusted to another one");
-  command->add_option("scene", flags->scene, "Solved scene file")->required();
-  command->add_option("-o,--output", flags->output, "Folder for the results")
-      ->required();
-  command
-      ->add_option("--adjust-features", flags->features,
-                   "Kinds to adjust, separated by commas: points, lines, "
-                   "coplanar")
-      ->delimiter(',')
-      ->capture_default_str();
-  command->add_flag("--retriangulate", flags->retriangulate,
-                    "Build the structure anew from the tracks first");
+  AddOption(command, "scene", flags->scene, "Solved scene file").Required();
+  AddOption(command, "-o,--output", flags->output, "Folder for the results")
+      .Required();
+  AddOption(command, "--adjust-features", flags->features,
+            "Kinds to adjust, separated by commas: points, lines, "
+            "coplanar")
+      .SeparatedBy(',')
+      .ShowDefault();
+  AddFlag(command, "--retriangulate", flags->retriangulate,
+          "Build the structure anew from the tracks first");
   AddRefinementFlag(command, &flags->refine_intrinsics);
   AddPrincipalPointFlag(command, &flags->principal_point_stddev);
-  command->add_option(
-      "--gt", flags->ground_truth,
-      "True cameras to evaluate against (folder or scene file)");
+  AddOption(command, "--gt", flags->ground_truth,
+            "True cameras to evaluate against (folder or scene file)");
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return Adjust(*flags); }; });
+  WhenChosen(command,
+             [flags, action] { *action = [flags] { return Adjust(*flags); }; });
 }
 
 }  // namespace lowlap::cli

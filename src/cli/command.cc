@@ -2,11 +2,8 @@
 
 #include <unistd.h>
 
-#include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <cstdio>
-#include <cstdlib>
 
 namespace lowlap::cli {
 namespace {
@@ -22,45 +19,7 @@ void OnSignal(int signal) {
       ::write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
 }
 
-template <class Allows>
-CLI::Validator NumberThat(const char* adjective, const char* name,
-                          Allows allows) {
-  return CLI::Validator(
-      [adjective, allows](const std::string& text) -> std::string {
-        double value = 0;
-        if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) &&
-            allows(value)) {
-          return {};
-        }
-        return "'" + text + "' is not a " + adjective + " number";
-      },
-      name);
-}
-
 }  // namespace
-
-CLI::Validator Positive() {
-  return NumberThat("positive", "POSITIVE", [](double v) { return v > 0; });
-}
-
-CLI::Validator NonNegative() {
-  return NumberThat("non-negative", "NONNEGATIVE",
-                    [](double v) { return v >= 0; });
-}
-
-CLI::Validator WholeNumber() {
-  return CLI::Validator(
-      [](const std::string& text) -> std::string {
-        const bool has_digit =
-            !text.empty() && text[0] >= '0' && text[0] <= '9';
-        errno = 0;
-        char* end = nullptr;
-        std::strtoull(text.c_str(), &end, 0);
-        if (has_digit && *end == '\0' && errno == 0) return {};
-        return "'" + text + "' is not a non-negative number of at most 64 bits";
-      },
-      "WHOLE");
-}
 
 void CatchInterrupts() {
   struct sigaction action {};
@@ -77,19 +36,17 @@ void CatchInterrupts() {
 bool IsInterrupted() { return caught_signal != 0; }
 
 void AddCommonFlags(CLI::App* command, CommonFlags* flags) {
-  command
-      ->add_option("--threads", flags->threads,
-                   "Threads to use; 0 takes all cores")
-      ->check(CLI::Range(0, 1024))
-      ->capture_default_str();
-  command
-      ->add_option("--seed", flags->seed,
-                   "Seed of the random draws; the same seed gives the same "
-                   "result")
-      ->check(WholeNumber())
-      ->capture_default_str();
-  command->add_flag("-v,--verbose", flags->verbose, "Say more while working");
-  command->add_flag("-q,--quiet", flags->quiet, "No progress, no notes");
+  AddOption(command, "--threads", flags->threads,
+            "Threads to use; 0 takes all cores")
+      .Must(Check::Between(0, 1024))
+      .ShowDefault();
+  AddOption(command, "--seed", flags->seed,
+            "Seed of the random draws; the same seed gives the same "
+            "result")
+      .Must(Check::WholeNumber())
+      .ShowDefault();
+  AddFlag(command, "-v,--verbose", flags->verbose, "Say more while working");
+  AddFlag(command, "-q,--quiet", flags->quiet, "No progress, no notes");
 }
 
 RunContext MakeContext(const CommonFlags& flags) {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <string>
 
+#include "cli/command_line.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 
@@ -19,13 +19,6 @@ struct CommonFlags {
 };
 
 void AddCommonFlags(CLI::App* command, CommonFlags* flags);
-
-/// Checks of one finite number. (Those of CLI11 name the largest double in
-/// their messages.)
-CLI::Validator Positive();
-CLI::Validator NonNegative();
-/// Of an integer from 0 to 2^64 - 1.
-CLI::Validator WholeNumber();
 
 /// Messages and progress go to standard error, so that standard output holds
 /// only the command's result. Progress needs a terminal. An interrupt stops

@@ -59,28 +59,27 @@ int Compare(const Flags& flags) {
 
 void AddCompare(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* command = program->add_subcommand(
-      "compare",
+  CLI::App* command = AddCommand(
+      program, "compare",
       "Run every strategy of composing poses on the same relative poses and "
       "scale ratios");
   AddSceneInputFlags(command, &flags->input);
-  command
-      ->add_option("-o,--output,--outdir", flags->output,
-                   "Folder for the tables and plots")
-      ->required();
-  AddStrategiesFlag(command, &flags->strategies)->default_str("all");
-  command
-      ->add_option("--reference", flags->reference,
-                   "The strategy whose cameras the others are compared with "
-                   "where there are no true ones; if it places none, the "
-                   "first that does")
-      ->capture_default_str();
+  AddOption(command, "-o,--output,--outdir", flags->output,
+            "Folder for the tables and plots")
+      .Required();
+  AddStrategiesFlag(command, &flags->strategies).ShowDefault("all");
+  AddOption(command, "--reference", flags->reference,
+            "The strategy whose cameras the others are compared with "
+            "where there are no true ones; if it places none, the "
+            "first that does")
+      .ShowDefault();
   AddScaleFlags(command, &flags->solve.scale);
   AddAdjustFlags(command, &flags->solve);
   AddTruthFlag(command, &flags->solve.ground_truth);
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return Compare(*flags); }; });
+  WhenChosen(command, [flags, action] {
+    *action = [flags] { return Compare(*flags); };
+  });
 }
 
 }  // namespace lowlap::cli

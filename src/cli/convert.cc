@@ -40,29 +40,28 @@ int Convert(const Flags& flags) {
 
 void AddConvert(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* command = program->add_subcommand(
-      "convert", "Convert a scene file to another format");
-  command->add_option("input", flags->input, "Scene file to read")->required();
-  command
-      ->add_option("output", flags->output,
-                   "File to write; its extension names the format")
-      ->required();
-  command->add_option("--to", flags->format,
-                      "Format to write, where the extension is not enough");
-  command->add_flag("--drop-solution", flags->drop_solution,
-                    "Keep what was measured, drop ratios, poses and structure");
-  command
-      ->add_option("--max-point-matches", flags->max_point_matches,
-                   "Keep at most this many point matches of each pair, those "
-                   "on the longest tracks first, and drop the solution")
-      ->check(Positive());
-  command->add_option("--root-path", flags->root_path,
-                      "Image folder to write into the scene, where the images "
-                      "have moved");
-  command->footer("Formats:\n" + DescribeSceneFormats(AllSceneFormats()));
+  CLI::App* command =
+      AddCommand(program, "convert", "Convert a scene file to another format");
+  AddOption(command, "input", flags->input, "Scene file to read").Required();
+  AddOption(command, "output", flags->output,
+            "File to write; its extension names the format")
+      .Required();
+  AddOption(command, "--to", flags->format,
+            "Format to write, where the extension is not enough");
+  AddFlag(command, "--drop-solution", flags->drop_solution,
+          "Keep what was measured, drop ratios, poses and structure");
+  AddOption(command, "--max-point-matches", flags->max_point_matches,
+            "Keep at most this many point matches of each pair, those "
+            "on the longest tracks first, and drop the solution")
+      .Must(Check::Positive());
+  AddOption(command, "--root-path", flags->root_path,
+            "Image folder to write into the scene, where the images "
+            "have moved");
+  SetFooter(command, "Formats:\n" + DescribeSceneFormats(AllSceneFormats()));
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return Convert(*flags); }; });
+  WhenChosen(command, [flags, action] {
+    *action = [flags] { return Convert(*flags); };
+  });
 }
 
 }  // namespace lowlap::cli

@@ -53,35 +53,32 @@ int RunDiagnose(const Flags& flags) {
 
 void AddDiagnose(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* command = program->add_subcommand(
-      "diagnose",
+  CLI::App* command = AddCommand(
+      program, "diagnose",
       "Say before anything is solved which views share one scale and through "
       "what, which float or hang on one camera or on weak ratios, and what "
       "kind of photograph would mend it");
   AddSceneInputFlags(command, &flags->input);
   AddScaleFlags(command, &flags->scale);
-  command
-      ->add_option("--min-inliers", flags->diagnosis.min_inliers,
-                   "A ratio with fewer inliers is weak")
-      ->check(NonNegative())
-      ->capture_default_str();
-  command
-      ->add_option("--max-log10-nfa", flags->diagnosis.max_log10_nfa,
-                   "A ratio with more false alarms is weak")
-      ->capture_default_str();
-  command
-      ->add_option("--max-stddev", flags->diagnosis.max_stddev,
-                   "A ratio whose logarithm has a larger deviation is weak")
-      ->check(Positive())
-      ->capture_default_str();
-  command->add_option("--json", flags->json,
-                      "Also write the diagnosis as JSON");
-  command->add_flag("--strict", flags->strict,
-                    "Exit code 2 unless all views hang together firmly: one "
-                    "scale, without weak ratios");
+  AddOption(command, "--min-inliers", flags->diagnosis.min_inliers,
+            "A ratio with fewer inliers is weak")
+      .Must(Check::NonNegative())
+      .ShowDefault();
+  AddOption(command, "--max-log10-nfa", flags->diagnosis.max_log10_nfa,
+            "A ratio with more false alarms is weak")
+      .ShowDefault();
+  AddOption(command, "--max-stddev", flags->diagnosis.max_stddev,
+            "A ratio whose logarithm has a larger deviation is weak")
+      .Must(Check::Positive())
+      .ShowDefault();
+  AddOption(command, "--json", flags->json, "Also write the diagnosis as JSON");
+  AddFlag(command, "--strict", flags->strict,
+          "Exit code 2 unless all views hang together firmly: one "
+          "scale, without weak ratios");
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return RunDiagnose(*flags); }; });
+  WhenChosen(command, [flags, action] {
+    *action = [flags] { return RunDiagnose(*flags); };
+  });
 }
 
 }  // namespace lowlap::cli

@@ -97,49 +97,47 @@ int Evaluate(const Flags& flags) {
 
 void AddEvaluate(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* command = program->add_subcommand(
-      "evaluate",
-      "Compare solved cameras with true ones, after a similarity "
-      "alignment of the centres");
-  command->add_option("solution", flags->solution, "Solved scene file")
-      ->required();
-  CLI::Option* positional = command->add_option(
-      "ground_truth", flags->ground_truth,
+  CLI::App* command =
+      AddCommand(program, "evaluate",
+                 "Compare solved cameras with true ones, after a similarity "
+                 "alignment of the centres");
+  AddOption(command, "solution", flags->solution, "Solved scene file")
+      .Required();
+  Option positional = AddOption(
+      command, "ground_truth", flags->ground_truth,
       "Folder of Strecha's .camera files, or the one that holds it as "
       "gt_dense_cameras; or a scene file with true poses");
-  command
-      ->add_option("--gt", flags->truth_option,
-                   "The same, as an option: instead of the second argument")
-      ->excludes(positional);
-  CLI::Option* relative_poses = command->add_flag(
-      "--relative-poses", flags->relative_poses,
+  AddOption(command, "--gt", flags->truth_option,
+            "The same, as an option: instead of the second argument")
+      .Excludes(positional);
+  Option relative_poses = AddFlag(
+      command, "--relative-poses", flags->relative_poses,
       "Judge the relative poses of the pairs instead of the cameras: rotation "
       "and direction errors, failures among consecutive and among all pairs");
-  command
-      ->add_option("--expect", flags->expected_pairs,
-                   "Pairs of view ids that must have a relative pose, as in "
-                   "0-1,1-2 (with --relative-poses; consecutive views always)")
-      ->delimiter(',')
-      ->needs(relative_poses);
-  CLI::Option* lines = command->add_option(
-      "--gt-lines", flags->true_edges,
+  AddOption(command, "--expect", flags->expected_pairs,
+            "Pairs of view ids that must have a relative pose, as in "
+            "0-1,1-2 (with --relative-poses; consecutive views always)")
+      .SeparatedBy(',')
+      .Needs(relative_poses);
+  Option lines = AddOption(
+      command, "--gt-lines", flags->true_edges,
       "Judge the line matches of the pairs instead, by the true edges of this "
       "file. Right: both segments lie on one edge (within 2.5 degrees and 2.5 "
       "px, half of the shorter shared). Wrong: they lie on different edges, or "
       "one on an edge that the other image shows elsewhere. Else unknown. "
       "Recall: share of the edges shown by both images that have a right "
       "match");
-  lines->excludes(relative_poses);
-  command
-      ->add_option("--line-pairs", flags->line_pairs,
-                   "With --gt-lines, the pairs to count: all, chain, cycle, "
-                   "window:N or a file, as for run; one without a relative "
-                   "pose has a recall of 0")
-      ->needs(lines)
-      ->capture_default_str();
-  command->add_flag("--json", flags->json, "Print JSON instead of a table");
-  command->callback(
-      [flags, action] { *action = [flags] { return Evaluate(*flags); }; });
+  lines.Excludes(relative_poses);
+  AddOption(command, "--line-pairs", flags->line_pairs,
+            "With --gt-lines, the pairs to count: all, chain, cycle, "
+            "window:N or a file, as for run; one without a relative "
+            "pose has a recall of 0")
+      .Needs(lines)
+      .ShowDefault();
+  AddFlag(command, "--json", flags->json, "Print JSON instead of a table");
+  WhenChosen(command, [flags, action] {
+    *action = [flags] { return Evaluate(*flags); };
+  });
 }
 
 }  // namespace lowlap::cli

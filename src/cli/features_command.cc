@@ -73,17 +73,18 @@ int Features(const Flags& flags) {
 
 void AddFeatures(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* command = program->add_subcommand(
-      "features",
+  CLI::App* command = AddCommand(
+      program, "features",
       "Detect the points and line segments of one image, count them, "
       "tell the time, and draw them");
-  command->add_option("image", flags->image, "Image file")->required();
-  command->add_option("--draw", flags->draw,
-                      "Write the image with its features as this PNG");
-  command->add_flag("--points", flags->points, "Points only");
-  command->add_flag("--lines", flags->lines, "Segments only");
-  command->callback(
-      [flags, action] { *action = [flags] { return Features(*flags); }; });
+  AddOption(command, "image", flags->image, "Image file").Required();
+  AddOption(command, "--draw", flags->draw,
+            "Write the image with its features as this PNG");
+  AddFlag(command, "--points", flags->points, "Points only");
+  AddFlag(command, "--lines", flags->lines, "Segments only");
+  WhenChosen(command, [flags, action] {
+    *action = [flags] { return Features(*flags); };
+  });
 }
 
 }  // namespace lowlap::cli

@@ -135,16 +135,17 @@ int Inspect(const Flags& flags) {
 
 void AddInspect(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* command = program->add_subcommand(
-      "inspect",
-      "Say what a scene holds, and which views can share a scale, "
-      "before anything is solved");
+  CLI::App* command =
+      AddCommand(program, "inspect",
+                 "Say what a scene holds, and which views can share a scale, "
+                 "before anything is solved");
   AddSceneInputFlags(command, &flags->input);
-  command->add_option("--json", flags->json,
-                      "Also write groups and hinges as JSON");
+  AddOption(command, "--json", flags->json,
+            "Also write groups and hinges as JSON");
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return Inspect(*flags); }; });
+  WhenChosen(command, [flags, action] {
+    *action = [flags] { return Inspect(*flags); };
+  });
 }
 
 }  // namespace lowlap::cli

@@ -96,37 +96,34 @@ int StudyAndWrite(const Flags& flags) {
 void AddRobustness(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
   RobustnessOptions& o = flags->options;
-  CLI::App* command = program->add_subcommand(
-      "robustness",
+  CLI::App* command = AddCommand(
+      program, "robustness",
       "Breakdown curves of every strategy on simulated rooms, corridors and "
       "rings");
-  command
-      ->add_option("-o,--output", flags->output,
-                   "Folder for tables and plots. A study that was stopped goes "
-                   "on from the trials there")
-      ->required();
-  command
-      ->add_option("--scenario", o.scenarios,
-                   "What gets worse, separated by commas; all if left out: " +
-                       Joined(RobustnessScenarioNames()))
-      ->delimiter(',');
+  AddOption(command, "-o,--output", flags->output,
+            "Folder for tables and plots. A study that was stopped goes "
+            "on from the trials there")
+      .Required();
+  AddOption(command, "--scenario", o.scenarios,
+            "What gets worse, separated by commas; all if left out: " +
+                Joined(RobustnessScenarioNames()))
+      .SeparatedBy(',');
   AddStrategiesFlag(command, &o.strategies);
-  command->add_option("--seeds", o.num_seeds, "Simulations per value")
-      ->capture_default_str();
-  command
-      ->add_option("--tolerance", o.tolerance,
-                   "A centre is right within this share of the spread")
-      ->capture_default_str();
-  command
-      ->add_option("--time-limit", o.time_limit_s,
-                   "Seconds of processor time that a strategy has for one "
-                   "problem; beyond, it is not asked for larger ones")
-      ->capture_default_str();
-  command->add_flag("--quick", o.quick,
-                    "The room alone, few values, small graphs: seconds");
+  AddOption(command, "--seeds", o.num_seeds, "Simulations per value")
+      .ShowDefault();
+  AddOption(command, "--tolerance", o.tolerance,
+            "A centre is right within this share of the spread")
+      .ShowDefault();
+  AddOption(command, "--time-limit", o.time_limit_s,
+            "Seconds of processor time that a strategy has for one "
+            "problem; beyond, it is not asked for larger ones")
+      .ShowDefault();
+  AddFlag(command, "--quick", o.quick,
+          "The room alone, few values, small graphs: seconds");
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return StudyAndWrite(*flags); }; });
+  WhenChosen(command, [flags, action] {
+    *action = [flags] { return StudyAndWrite(*flags); };
+  });
 }
 
 }  // namespace lowlap::cli

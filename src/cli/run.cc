@@ -174,64 +174,57 @@ int Run(const RunFlags& flags) {
 
 void AddRun(CLI::App* program, Action* action) {
   auto flags = std::make_shared<RunFlags>();
-  CLI::App* command = program->add_subcommand(
-      "run",
+  CLI::App* command = AddCommand(
+      program, "run",
       "Calibrate a folder of photographs: features, matches, relative "
       "poses, scale ratios, poses, bundle adjustment");
-  command->add_option("images", flags->images, "Folder of photographs")
-      ->required();
-  command->add_option("-o,--output", flags->output, "Folder for the results")
-      ->required();
-  auto* matrix = command->add_option(
-      "--intrinsics", flags->intrinsics,
+  AddOption(command, "images", flags->images, "Folder of photographs")
+      .Required();
+  AddOption(command, "-o,--output", flags->output, "Folder for the results")
+      .Required();
+  const Option matrix = AddOption(
+      command, "--intrinsics", flags->intrinsics,
       "K.txt: the 3x3 calibration matrix of all photographs, in pixels "
       "(fx and fy are both used); or a scene file whose views, by file name, "
       "have intrinsics of any model. Without it and --focal: from EXIF data");
-  auto* focal =
-      command
-          ->add_option("--focal", flags->focal_px,
-                       "Focal length in pixels; principal point in the middle")
-          ->check(Positive());
-  matrix->excludes(focal);
-  command
-      ->add_option("--pairs", flags->pairs,
-                   "Pairs to match: all, chain, cycle, window:N, auto (those "
-                   "that look alike), or a file with two view names or ids a "
-                   "line")
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--matcher", flags->matcher,
-          "How points are matched: exact, or flann (approximately, "
-          "faster where photographs have hundreds of thousands of points)")
-      ->check(CLI::IsMember({"exact", "flann"}))
-      ->capture_default_str();
-  command
-      ->add_option("--exclude", flags->exclude,
-                   "Photographs to leave out, separated by commas")
-      ->delimiter(',');
-  command
-      ->add_option("--two-view", flags->two_view,
-                   "What relative poses are estimated from, separated by "
-                   "commas: points, lines")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"points", "lines"}))
-      ->capture_default_str();
-  auto* cache = command->add_option(
-      "--cache", flags->cache,
+  const Option focal =
+      AddOption(command, "--focal", flags->focal_px,
+                "Focal length in pixels; principal point in the middle")
+          .Must(Check::Positive());
+  matrix.Excludes(focal);
+  AddOption(command, "--pairs", flags->pairs,
+            "Pairs to match: all, chain, cycle, window:N, auto (those "
+            "that look alike), or a file with two view names or ids a "
+            "line")
+      .ShowDefault();
+  AddOption(command, "--matcher", flags->matcher,
+            "How points are matched: exact, or flann (approximately, "
+            "faster where photographs have hundreds of thousands of points)")
+      .Must(Check::OneOf({"exact", "flann"}))
+      .ShowDefault();
+  AddOption(command, "--exclude", flags->exclude,
+            "Photographs to leave out, separated by commas")
+      .SeparatedBy(',');
+  AddOption(command, "--two-view", flags->two_view,
+            "What relative poses are estimated from, separated by "
+            "commas: points, lines")
+      .SeparatedBy(',')
+      .Must(Check::OneOf({"points", "lines"}))
+      .ShowDefault();
+  const Option cache = AddOption(
+      command, "--cache", flags->cache,
       "Folder of features and matches to use again; default OUTPUT/cache");
-  command
-      ->add_flag("--no-cache", flags->no_cache,
-                 "Neither use nor keep features and matches")
-      ->excludes(cache);
-  command->add_flag("--refine-points", flags->refine_points,
-                    "Align matched points by their grey values, to a fraction "
-                    "of a pixel");
+  AddFlag(command, "--no-cache", flags->no_cache,
+          "Neither use nor keep features and matches")
+      .Excludes(cache);
+  AddFlag(command, "--refine-points", flags->refine_points,
+          "Align matched points by their grey values, to a fraction "
+          "of a pixel");
   AddSolveFlags(command, &flags->solve);
   AddStrictFlag(command, &flags->solve.strict);
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return Run(*flags); }; });
+  WhenChosen(command,
+             [flags, action] { *action = [flags] { return Run(*flags); }; });
 }
 
 }  // namespace lowlap::cli

@@ -146,21 +146,21 @@ int Scales(const Flags& flags) {
 
 void AddScales(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* command = program->add_subcommand(
-      "scales",
-      "Show the relative scale of every two relative poses that "
-      "share a view");
+  CLI::App* command =
+      AddCommand(program, "scales",
+                 "Show the relative scale of every two relative poses that "
+                 "share a view");
   AddSceneInputFlags(command, &flags->input);
   AddScaleFlags(command, &flags->scale);
-  command->add_option("--json", flags->json, "Also write the table as JSON");
-  command->add_option("--profile", flags->profile,
-                      "Also write the NFA as a function of the ratio, its "
-                      "modes and 95 % intervals as CSV");
-  command->add_option("--gt", flags->ground_truth,
-                      "True cameras to compare with (folder or scene file)");
+  AddOption(command, "--json", flags->json, "Also write the table as JSON");
+  AddOption(command, "--profile", flags->profile,
+            "Also write the NFA as a function of the ratio, its "
+            "modes and 95 % intervals as CSV");
+  AddOption(command, "--gt", flags->ground_truth,
+            "True cameras to compare with (folder or scene file)");
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return Scales(*flags); }; });
+  WhenChosen(command,
+             [flags, action] { *action = [flags] { return Scales(*flags); }; });
 }
 
 }  // namespace lowlap::cli

@@ -71,22 +71,20 @@ Result<LoadedScene> ReadOwnScene(const SceneInputFlags& flags,
 
 void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
   // Required, but the message about it is ours: LoadScene.
-  command->add_option("scene,-i,--input_file", flags->scene,
-                      "Scene file (.json, .lowlap, .bin, .xml), a problem "
-                      "folder of 1DSfM, or an OpenMVG sfm_data file together "
-                      "with -m; as the first argument or with -i");
-  CLI::Option* matches =
-      command->add_option("-m,--matchdir", flags->matches_dir,
-                          "OpenMVG matches folder (.feat and matches.* files)");
-  command
-      ->add_option("-M,--match_file", flags->match_file,
-                   "Match file in that folder; default as in OpenMVG")
-      ->needs(matches);
-  command
-      ->add_option("--exclude", flags->exclude,
-                   "Views to leave out (file names or ids), separated by "
-                   "commas")
-      ->delimiter(',');
+  AddOption(command, "scene,-i,--input_file", flags->scene,
+            "Scene file (.json, .lowlap, .bin, .xml), a problem "
+            "folder of 1DSfM, or an OpenMVG sfm_data file together "
+            "with -m; as the first argument or with -i");
+  Option matches =
+      AddOption(command, "-m,--matchdir", flags->matches_dir,
+                "OpenMVG matches folder (.feat and matches.* files)");
+  AddOption(command, "-M,--match_file", flags->match_file,
+            "Match file in that folder; default as in OpenMVG")
+      .Needs(matches);
+  AddOption(command, "--exclude", flags->exclude,
+            "Views to leave out (file names or ids), separated by "
+            "commas")
+      .SeparatedBy(',');
 }
 
 Result<LoadedScene> LoadScene(const SceneInputFlags& flags,

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/command_line.h"
 #include "lowlap/core/result.h"
 #include "lowlap/pipeline/internal/measure/pair_report.h"
 #include "lowlap/pipeline/stage_log.h"

@@ -55,54 +55,54 @@ int RunSimulation(Flags flags) {
 void AddSimulate(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
   SyntheticOptions& o = flags->options;
-  CLI::App* command = program->add_subcommand(
-      "simulate", "Make a synthetic scene whose truth is known");
-  command->option_defaults()->always_capture_default();
-  command->add_option("--kind", flags->kind,
-                      "room, corridor, ring; degenerate: planar, collinear, "
-                      "pure_rotation, twins");
-  command->add_option("-o,--output", flags->output, "Scene file to write")
-      ->required();
-  command->add_option(
-      "--truth", flags->truth,
-      "Also write the scene with its true solution, to this file");
-  command->add_option("--views", o.num_views, "Number of views");
-  command->add_option("--pairs", o.pairs,
-                      "chain, cycle, window:N, loop:N or all");
-  command->add_option("--points", o.points_per_wall, "Points per wall");
-  command->add_option("--lines", o.lines_per_wall, "Lines per wall");
-  command->add_option("--trifocal-points", o.trifocal_point_share,
-                      "Share of points that three or more views may see");
-  command->add_option("--trifocal-lines", o.trifocal_line_share,
-                      "Share of lines that three or more views may see");
-  command->add_option("--noise", o.noise_px, "Noise of features, in pixels");
-  command->add_option("--wrong-points", o.wrong_point_share,
-                      "Share of wrong point tracks");
-  command->add_option("--wrong-lines", o.wrong_line_share,
-                      "Share of wrong line tracks");
-  command->add_option("--wrong-candidates", o.wrong_candidate_share,
-                      "Share of candidate line pairs that are not coplanar");
-  command->add_option("--broken-lines", o.broken_line_share,
-                      "Share of lines that fall into two segments");
-  command->add_option("--rotation-noise", o.rotation_noise_deg,
-                      "Error of relative rotations, in degrees");
-  command->add_option("--direction-noise", o.direction_noise_deg,
-                      "Error of relative directions, in degrees");
-  command->add_option("--pose-noise-of-points", o.pose_noise_factor,
-                      "Errors of relative poses as the points with their noise "
-                      "leave them, times this factor");
-  command->add_option("--wrong-directions", o.wrong_direction_share,
-                      "Share of relative poses with any direction");
-  command->add_option("--off-line", o.off_line_m,
-                      "Collinear: how far centres are off the line, in metres");
-  command->add_option("--twin-baseline", o.twin_baseline_m,
-                      "Twins: distance of every odd view from the one before "
-                      "it, in metres");
-  command->add_flag("--look-outwards", o.look_outwards,
-                    "Rooms: look at the wall behind the camera's back");
+  CLI::App* command = AddCommand(program, "simulate",
+                                 "Make a synthetic scene whose truth is known");
+  ShowDefaultsFromHereOn(command);
+  AddOption(command, "--kind", flags->kind,
+            "room, corridor, ring; degenerate: planar, collinear, "
+            "pure_rotation, twins");
+  AddOption(command, "-o,--output", flags->output, "Scene file to write")
+      .Required();
+  AddOption(command, "--truth", flags->truth,
+            "Also write the scene with its true solution, to this file");
+  AddOption(command, "--views", o.num_views, "Number of views");
+  AddOption(command, "--pairs", o.pairs,
+            "chain, cycle, window:N, loop:N or all");
+  AddOption(command, "--points", o.points_per_wall, "Points per wall");
+  AddOption(command, "--lines", o.lines_per_wall, "Lines per wall");
+  AddOption(command, "--trifocal-points", o.trifocal_point_share,
+            "Share of points that three or more views may see");
+  AddOption(command, "--trifocal-lines", o.trifocal_line_share,
+            "Share of lines that three or more views may see");
+  AddOption(command, "--noise", o.noise_px, "Noise of features, in pixels");
+  AddOption(command, "--wrong-points", o.wrong_point_share,
+            "Share of wrong point tracks");
+  AddOption(command, "--wrong-lines", o.wrong_line_share,
+            "Share of wrong line tracks");
+  AddOption(command, "--wrong-candidates", o.wrong_candidate_share,
+            "Share of candidate line pairs that are not coplanar");
+  AddOption(command, "--broken-lines", o.broken_line_share,
+            "Share of lines that fall into two segments");
+  AddOption(command, "--rotation-noise", o.rotation_noise_deg,
+            "Error of relative rotations, in degrees");
+  AddOption(command, "--direction-noise", o.direction_noise_deg,
+            "Error of relative directions, in degrees");
+  AddOption(command, "--pose-noise-of-points", o.pose_noise_factor,
+            "Errors of relative poses as the points with their noise "
+            "leave them, times this factor");
+  AddOption(command, "--wrong-directions", o.wrong_direction_share,
+            "Share of relative poses with any direction");
+  AddOption(command, "--off-line", o.off_line_m,
+            "Collinear: how far centres are off the line, in metres");
+  AddOption(command, "--twin-baseline", o.twin_baseline_m,
+            "Twins: distance of every odd view from the one before "
+            "it, in metres");
+  AddFlag(command, "--look-outwards", o.look_outwards,
+          "Rooms: look at the wall behind the camera's back");
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return RunSimulation(*flags); }; });
+  WhenChosen(command, [flags, action] {
+    *action = [flags] { return RunSimulation(*flags); };
+  });
 }
 
 }  // namespace lowlap::cli

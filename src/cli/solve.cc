@@ -42,20 +42,19 @@ int Solve(const Flags& flags) {
 
 void AddSolve(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
-  CLI::App* command = program->add_subcommand(
-      "solve",
+  CLI::App* command = AddCommand(
+      program, "solve",
       "Solve a scene description (ours, or an OpenMVG project): scale "
       "ratios, poses, bundle adjustment");
   AddSceneInputFlags(command, &flags->input);
-  command
-      ->add_option("-o,--output,--outdir", flags->output,
-                   "Folder for the results")
-      ->required();
+  AddOption(command, "-o,--output,--outdir", flags->output,
+            "Folder for the results")
+      .Required();
   AddSolveFlags(command, &flags->solve);
   AddStrictFlag(command, &flags->solve.strict);
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return Solve(*flags); }; });
+  WhenChosen(command,
+             [flags, action] { *action = [flags] { return Solve(*flags); }; });
 }
 
 }  // namespace lowlap::cli

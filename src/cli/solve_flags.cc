@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
@@ -108,37 +109,33 @@ void AddScaleFlags(CLI::App* command, ScaleFlags* flags) {
       help_of[entry.feature] = entry.help;
       continue;
     }
-    command->add_flag("--" + entry.flag + ",!--no-" + entry.flag,
-                      flags->asked.emplace(entry.name, true).first->second,
-                      "Whether " + entry.feature + " includes " + entry.help);
+    AddFlag(command, "--" + entry.flag + ",!--no-" + entry.flag,
+            flags->asked.emplace(entry.name, true).first->second,
+            "Whether " + entry.feature + " includes " + entry.help);
   }
   std::string known;
   for (const std::string& word : registry.Features()) {
     known += (known.empty() ? "" : ", ") + word + " (" + help_of[word] + ")";
   }
-  command
-      ->add_option("--features", flags->features,
-                   "Kinds that determine the scale ratios, separated by "
-                   "commas: " +
-                       known)
-      ->delimiter(',')
-      ->capture_default_str();
-  command
-      ->add_option("--criterion", flags->criterion,
-                   "How a ratio is chosen: ac (a contrario, no threshold) or "
-                   "ransac (most inliers within --threshold)")
-      ->check(CLI::IsMember({"ac", "ransac"}))
-      ->capture_default_str();
-  command
-      ->add_option("--nfa", flags->nfa,
-                   "Number of false alarms: calibrated, or as in the paper")
-      ->check(CLI::IsMember({"calibrated", "paper"}))
-      ->capture_default_str();
-  command
-      ->add_option("--threshold", flags->threshold_px,
-                   "Inlier threshold of --criterion ransac, in pixels")
-      ->check(Positive())
-      ->capture_default_str();
+  AddOption(command, "--features", flags->features,
+            "Kinds that determine the scale ratios, separated by "
+            "commas: " +
+                known)
+      .SeparatedBy(',')
+      .ShowDefault();
+  AddOption(command, "--criterion", flags->criterion,
+            "How a ratio is chosen: ac (a contrario, no threshold) or "
+            "ransac (most inliers within --threshold)")
+      .Must(Check::OneOf({"ac", "ransac"}))
+      .ShowDefault();
+  AddOption(command, "--nfa", flags->nfa,
+            "Number of false alarms: calibrated, or as in the paper")
+      .Must(Check::OneOf({"calibrated", "paper"}))
+      .ShowDefault();
+  AddOption(command, "--threshold", flags->threshold_px,
+            "Inlier threshold of --criterion ransac, in pixels")
+      .Must(Check::Positive())
+      .ShowDefault();
 }
 
 Result<ScaleOptions> MakeScaleOptions(const ScaleFlags& flags) {
@@ -159,37 +156,36 @@ Result<ScaleOptions> MakeScaleOptions(const ScaleFlags& flags) {
 }
 
 void AddStrategyFlag(CLI::App* command, std::string* strategy) {
-  command
-      ->add_option("--strategy", *strategy,
-                   "How poses are composed; the strategies and their options "
-                   "are listed below")
-      ->check(CLI::Validator(
+  AddOption(command, "--strategy", *strategy,
+            "How poses are composed; the strategies and their options "
+            "are listed below")
+      .Must(Check(
           [](const std::string& request) {
             const auto made = AveragerRegistry::WithBuiltIns().Make(request);
             return made ? std::string() : made.error().message;
           },
           "NAME[:key=value,...]"))
-      ->capture_default_str();
-  command->footer(AveragerRegistry::WithBuiltIns().Describe());
+      .ShowDefault();
+  SetFooter(command, AveragerRegistry::WithBuiltIns().Describe());
 }
 
-CLI::Option* AddStrategiesFlag(CLI::App* command,
-                               std::vector<std::string>* strategies) {
-  command->footer(AveragerRegistry::WithBuiltIns().Describe());
-  return command
-      ->add_option_function<std::vector<std::string>>(
-          "--strategies",
-          [strategies](const std::vector<std::string>& lists) {
-            strategies->clear();
-            for (const std::string& list : lists) {
-              for (std::string& request : SplitRequests(list)) {
-                strategies->push_back(std::move(request));
-              }
-            }
-          },
-          "Strategies, separated by commas (those before key=value belong to "
-          "one strategy); all: every one that is listed below")
-      ->type_name("NAME[:key=value,...],...");
+Option AddStrategiesFlag(CLI::App* command,
+                         std::vector<std::string>* strategies) {
+  SetFooter(command, AveragerRegistry::WithBuiltIns().Describe());
+  return AddOption(
+             command, "--strategies",
+             [strategies](const std::vector<std::string>& lists) {
+               strategies->clear();
+               for (const std::string& list : lists) {
+                 for (std::string& request : SplitRequests(list)) {
+                   strategies->push_back(std::move(request));
+                 }
+               }
+             },
+             "Strategies, separated by commas (those before key=value belong "
+             "to "
+             "one strategy); all: every one that is listed below")
+      .ShowType("NAME[:key=value,...],...");
 }
 
 void AddSolveFlags(CLI::App* command, SolveFlags* flags) {
@@ -197,44 +193,41 @@ void AddSolveFlags(CLI::App* command, SolveFlags* flags) {
   AddStrategyFlag(command, &flags->strategy);
   AddAdjustFlags(command, flags);
   AddRefinementFlag(command, &flags->refine_intrinsics)
-      ->excludes(command->get_option("--no-adjust"));
+      .Excludes(FindOption(command, "--no-adjust"));
   AddTruthFlag(command, &flags->ground_truth);
 }
 
 void AddAdjustFlags(CLI::App* command, SolveFlags* flags) {
-  command
-      ->add_option("--adjust-features", flags->adjust_features,
-                   "Kinds in the bundle adjustment, separated by commas")
-      ->delimiter(',')
-      ->capture_default_str();
+  AddOption(command, "--adjust-features", flags->adjust_features,
+            "Kinds in the bundle adjustment, separated by commas")
+      .SeparatedBy(',')
+      .ShowDefault();
   AddPrincipalPointFlag(command, &flags->principal_point_stddev);
-  command->add_flag("--no-adjust", flags->no_adjust,
-                    "Stop before the bundle adjustment");
+  AddFlag(command, "--no-adjust", flags->no_adjust,
+          "Stop before the bundle adjustment");
 }
 
 void AddPrincipalPointFlag(CLI::App* command, double* stddev) {
-  command
-      ->add_option("--principal-point-stddev", *stddev,
-                   "How well the given principal points are known, as a share "
-                   "of the image diagonal (0.0003: a pixel of six "
-                   "megapixels): the bundle adjustment moves them within "
-                   "this; 0: it holds them")
-      ->check(NonNegative())
-      ->capture_default_str();
+  AddOption(command, "--principal-point-stddev", *stddev,
+            "How well the given principal points are known, as a share "
+            "of the image diagonal (0.0003: a pixel of six "
+            "megapixels): the bundle adjustment moves them within "
+            "this; 0: it holds them")
+      .Must(Check::NonNegative())
+      .ShowDefault();
 }
 
-CLI::Option* AddTruthFlag(CLI::App* command, std::string* path) {
-  return command->add_option(
-      "--gt", *path,
-      "True cameras to evaluate against, never used for "
-      "solving: a folder of Strecha's .camera files, or a "
-      "scene file");
+Option AddTruthFlag(CLI::App* command, std::string* path) {
+  return AddOption(command, "--gt", *path,
+                   "True cameras to evaluate against, never used for "
+                   "solving: a folder of Strecha's .camera files, or a "
+                   "scene file");
 }
 
 void AddStrictFlag(CLI::App* command, bool* strict) {
-  command->add_flag("--strict", *strict,
-                    "Exit code 2 if a camera is not placed, or its place is "
-                    "doubtful; the results are written all the same");
+  AddFlag(command, "--strict", *strict,
+          "Exit code 2 if a camera is not placed, or its place is "
+          "doubtful; the results are written all the same");
 }
 
 Status SetAdjustedFeatures(const std::vector<std::string>& features,
@@ -247,22 +240,22 @@ Status SetAdjustedFeatures(const std::vector<std::string>& features,
   return {};
 }
 
-CLI::Option* AddRefinementFlag(CLI::App* command, std::string* parts) {
-  return command
-      ->add_option("--refine-intrinsics", *parts,
+Option AddRefinementFlag(CLI::App* command, std::string* parts) {
+  return AddOption(command, "--refine-intrinsics", *parts,
                    "Free these parts of every intrinsic in the bundle "
                    "adjustment, and hold the rest: a list of focal, aspect "
                    "(fy / fx), principal-point, distortion (of a pinhole: "
                    "k1), or all; without a list: focal,distortion. Without "
                    "this flag all is held, and said if the images contradict "
                    "it")
-      ->expected(0, 1)
-      ->default_str("focal,distortion");
+      .ValueIsOptional()
+      .ShowDefault("focal,distortion");
 }
 
 Result<IntrinsicRefinement> ParseRefinement(const std::string& parts) {
   IntrinsicRefinement refinement;
-  for (const std::string& part : CLI::detail::split(parts, ',')) {
+  std::istringstream list(parts);
+  for (std::string part; std::getline(list, part, ',');) {
     const bool all = part == "all";
     const bool known = all || part == "focal" || part == "aspect" ||
                        part == "principal-point" || part == "distortion";

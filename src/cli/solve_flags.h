@@ -1,11 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/command_line.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/result.h"
 #include "lowlap/evaluation/pose_errors.h"
@@ -48,7 +48,7 @@ void AddAdjustFlags(CLI::App* command, SolveFlags* flags);
 /// --principal-point-stddev
 void AddPrincipalPointFlag(CLI::App* command, double* stddev);
 /// --gt
-CLI::Option* AddTruthFlag(CLI::App* command, std::string* path);
+Option AddTruthFlag(CLI::App* command, std::string* path);
 
 /// Sets the enabled kinds of `options` (points, lines, coplanar pairs);
 /// coplanar pairs need lines.
@@ -58,11 +58,11 @@ Status SetAdjustedFeatures(const std::vector<std::string>& features,
 /// --strategy, of the built-in AveragerRegistry, which the help lists.
 void AddStrategyFlag(CLI::App* command, std::string* strategy);
 /// --strategies, a list of them (SplitRequests).
-CLI::Option* AddStrategiesFlag(CLI::App* command,
-                               std::vector<std::string>* strategies);
+Option AddStrategiesFlag(CLI::App* command,
+                         std::vector<std::string>* strategies);
 
 /// --refine-intrinsics [focal,aspect,principal-point,distortion|all]
-CLI::Option* AddRefinementFlag(CLI::App* command, std::string* parts);
+Option AddRefinementFlag(CLI::App* command, std::string* parts);
 /// Sets the options for every intrinsic of the scene (RefineAllIntrinsics).
 Status SetRefinement(const std::string& parts, Scene* scene,
                      AdjustmentOptions* options);

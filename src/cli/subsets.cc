@@ -219,49 +219,44 @@ void AddSubsets(CLI::App* program, Action* action) {
   // Coplanar pairs take most of the adjustment's time, and matter little where
   // points are many.
   flags->solve.adjust_features = {"points", "lines"};
-  CLI::App* command = program->add_subcommand(
-      "subsets",
+  CLI::App* command = AddCommand(
+      program, "subsets",
       "Solve a measured scene once for every way to drop some of its views, "
       "and compare with the truth: how many are solved, how well, and whether "
       "failures are flagged");
   AddSceneInputFlags(command, &flags->input);
-  command
-      ->add_option("-o,--output,--outdir", flags->output,
-                   "Folder for results.csv, summary.json and results.svg. A "
-                   "run that was stopped goes on from the results there")
-      ->required();
-  command->add_option("--drop", flags->drop, "Number of views to leave out")
-      ->capture_default_str();
-  command
-      ->add_option("--sample,--limit", flags->sample,
-                   "Only so many of the ways, drawn with --seed; 0: all")
-      ->check(WholeNumber())
-      ->capture_default_str();
-  command
-      ->add_option("--jobs", flags->jobs,
-                   "Subsets to solve at a time, each on one thread; default "
-                   "--threads")
-      ->check(CLI::Range(0, 1024));
-  command
-      ->add_option("--max-point-matches", flags->max_point_matches,
-                   "Point matches to use of each pair, those on the longest "
-                   "tracks first; 0: all")
-      ->check(NonNegative())
-      ->capture_default_str();
-  command
-      ->add_option("--good", flags->bounds.accurate,
-                   "Largest position error of a good solution, in the unit of "
-                   "the true cameras")
-      ->capture_default_str();
-  command
-      ->add_option("--wrong", flags->bounds.failed,
-                   "A camera is wrong beyond this")
-      ->capture_default_str();
+  AddOption(command, "-o,--output,--outdir", flags->output,
+            "Folder for results.csv, summary.json and results.svg. A "
+            "run that was stopped goes on from the results there")
+      .Required();
+  AddOption(command, "--drop", flags->drop, "Number of views to leave out")
+      .ShowDefault();
+  AddOption(command, "--sample,--limit", flags->sample,
+            "Only so many of the ways, drawn with --seed; 0: all")
+      .Must(Check::WholeNumber())
+      .ShowDefault();
+  AddOption(command, "--jobs", flags->jobs,
+            "Subsets to solve at a time, each on one thread; default "
+            "--threads")
+      .Must(Check::Between(0, 1024));
+  AddOption(command, "--max-point-matches", flags->max_point_matches,
+            "Point matches to use of each pair, those on the longest "
+            "tracks first; 0: all")
+      .Must(Check::NonNegative())
+      .ShowDefault();
+  AddOption(command, "--good", flags->bounds.accurate,
+            "Largest position error of a good solution, in the unit of "
+            "the true cameras")
+      .ShowDefault();
+  AddOption(command, "--wrong", flags->bounds.failed,
+            "A camera is wrong beyond this")
+      .ShowDefault();
   AddSolveFlags(command, &flags->solve);
-  command->get_option("--gt")->required();
+  FindOption(command, "--gt").Required();
   AddCommonFlags(command, &flags->common);
-  command->callback(
-      [flags, action] { *action = [flags] { return Subsets(*flags); }; });
+  WhenChosen(command, [flags, action] {
+    *action = [flags] { return Subsets(*flags); };
+  });
 }
 
 }  // namespace lowlap::cli

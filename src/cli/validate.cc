@@ -9,10 +9,11 @@ namespace lowlap::cli {
 
 void AddValidate(CLI::App* program, Action* action) {
   auto path = std::make_shared<std::string>();
-  CLI::App* command = program->add_subcommand(
-      "validate", "Check a scene file; names the first thing that is wrong");
-  command->add_option("scene", *path, "Scene file")->required();
-  command->callback([path, action] {
+  CLI::App* command =
+      AddCommand(program, "validate",
+                 "Check a scene file; names the first thing that is wrong");
+  AddOption(command, "scene", *path, "Scene file").Required();
+  WhenChosen(command, [path, action] {
     *action = [path] {
       const auto scene = ReadScene(*path);
       if (!scene) return Fail(scene.error());

@@ -15,6 +15,13 @@ std::size_t NumViews(const Track& track) {
 
 }  // namespace
 
+Scene::Scene() = default;
+Scene::~Scene() = default;
+Scene::Scene(const Scene& other) = default;
+Scene& Scene::operator=(const Scene& other) = default;
+Scene::Scene(Scene&& other) noexcept = default;
+Scene& Scene::operator=(Scene&& other) noexcept = default;
+
 const Intrinsic* Scene::FindIntrinsic(ViewId view) const {
   const auto v = views.find(view);
   if (v == views.end()) return nullptr;

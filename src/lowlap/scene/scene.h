@@ -34,6 +34,14 @@ struct CoplanarPair {
 /// member. Maps are ordered by id, so that every pass over a scene, and every
 /// file written from it, has one order.
 struct Scene {
+  // Compiled once: a copy of seven maps is long code.
+  Scene();
+  ~Scene();
+  Scene(const Scene& other);
+  Scene& operator=(const Scene& other);
+  Scene(Scene&& other) noexcept;
+  Scene& operator=(Scene&& other) noexcept;
+
   std::string root_path;  // image folder; may be relative to the scene file
   std::map<ViewId, View> views;
   std::map<IntrinsicId, Intrinsic> intrinsics;
