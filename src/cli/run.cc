@@ -182,12 +182,12 @@ void AddRun(CLI::App* program, Action* action) {
       .Required();
   AddOption(command, "-o,--output", flags->output, "Folder for the results")
       .Required();
-  const Option matrix = AddOption(
+  Option matrix = AddOption(
       command, "--intrinsics", flags->intrinsics,
       "K.txt: the 3x3 calibration matrix of all photographs, in pixels "
       "(fx and fy are both used); or a scene file whose views, by file name, "
       "have intrinsics of any model. Without it and --focal: from EXIF data");
-  const Option focal =
+  Option focal =
       AddOption(command, "--focal", flags->focal_px,
                 "Focal length in pixels; principal point in the middle")
           .Must(Check::Positive());
@@ -211,7 +211,7 @@ void AddRun(CLI::App* program, Action* action) {
       .SeparatedBy(',')
       .Must(Check::OneOf({"points", "lines"}))
       .ShowDefault();
-  const Option cache = AddOption(
+  Option cache = AddOption(
       command, "--cache", flags->cache,
       "Folder of features and matches to use again; default OUTPUT/cache");
   AddFlag(command, "--no-cache", flags->no_cache,
