@@ -17,12 +17,6 @@
 namespace lowlap {
 namespace {
 
-std::vector<std::size_t> AllOf(std::size_t count) {
-  std::vector<std::size_t> indices(count);
-  std::iota(indices.begin(), indices.end(), std::size_t{0});
-  return indices;
-}
-
 // Median of the thresholds that the relative poses were verified with; 0 if
 // they have none.
 double VerificationThresholdPx(const Scene& scene) {

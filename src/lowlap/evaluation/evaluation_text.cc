@@ -12,10 +12,6 @@ std::string SummaryLine(const std::string& name,
                        statistics.rmse);
 }
 
-std::string PairName(const ViewPair& views) {
-  return Format("%u-%u", views.first.value(), views.second.value());
-}
-
 std::string TripletName(const ViewTriplet& views) {
   return Format("%u-%u-%u", views.first.value(), views.middle.value(),
                 views.last.value());

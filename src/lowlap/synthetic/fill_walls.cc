@@ -9,8 +9,8 @@
 namespace lowlap {
 namespace {
 
-constexpr std::uint64_t kPointStream = 1'000'000;
-constexpr std::uint64_t kLineStream = 2'000'000;
+constexpr std::uint64_t kWallPointStream = 1'000'000;
+constexpr std::uint64_t kWallLineStream = 2'000'000;
 constexpr std::uint64_t kOffWallStream = 3'000'000;
 
 // The four sides of a poster, door or window: mostly upright, some turned.
@@ -56,12 +56,12 @@ void FillWalls(const SyntheticOptions& options, double off_wall, World* world) {
   const int num_walls = static_cast<int>(world->walls.size());
   for (int index = 0; index < num_walls; ++index) {
     const Wall& wall = world->walls[index];
-    Random points(options.seed, kPointStream + index);
+    Random points(options.seed, kWallPointStream + index);
     for (int i = 0; i < options.points_per_wall; ++i) {
       const double a = points.Uniform(), b = points.Uniform();
       world->points.push_back({wall.At(a, b), index});
     }
-    Random lines(options.seed, kLineStream + index);
+    Random lines(options.seed, kWallLineStream + index);
     for (int left = options.lines_per_wall; left > 0; left -= 4) {
       AddRectangle(wall, index, std::min(left, 4), &lines, world);
     }

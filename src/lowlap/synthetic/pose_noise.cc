@@ -21,7 +21,7 @@ constexpr std::uint64_t kDirectionStream = 8'000'000'000;
 constexpr std::uint64_t kWrongPoseStream = 10'000'000'000;
 constexpr double kPriorRad = 0.3;
 
-std::uint64_t Stream(std::uint64_t base, const ViewPair& pair) {
+std::uint64_t PoseStream(std::uint64_t base, const ViewPair& pair) {
   return base + pair.first.value() * 1'000'003ull + pair.second.value();
 }
 
@@ -90,7 +90,7 @@ void AddPoseNoiseOfPoints(const SyntheticOptions& options,
         information[pair] + Mat5::Identity() * std::pow(noise / kPriorRad, 2);
     const Mat5 covariance = std::pow(options.pose_noise_factor * noise, 2) *
                             total.llt().solve(Mat5::Identity());
-    Random random(options.seed, Stream(kNoiseStream, pair));
+    Random random(options.seed, PoseStream(kNoiseStream, pair));
     Vec5 draw;
     for (double& component : draw) component = random.Gaussian();
     const Vec5 error = covariance.llt().matrixL() * draw;
@@ -107,7 +107,7 @@ void AddPoseNoiseOfPoints(const SyntheticOptions& options,
 
 void DrawWrongDirections(const SyntheticOptions& options, Scene* scene) {
   for (auto& [pair, edge] : scene->relative_poses) {
-    Random random(options.seed, Stream(kDirectionStream, pair));
+    Random random(options.seed, PoseStream(kDirectionStream, pair));
     if (random.Uniform() >= options.wrong_direction_share) continue;
     edge.direction = DrawDirection(&random);
   }
@@ -115,7 +115,7 @@ void DrawWrongDirections(const SyntheticOptions& options, Scene* scene) {
 
 void DrawWrongPoses(const SyntheticOptions& options, Scene* scene) {
   for (auto& [pair, edge] : scene->relative_poses) {
-    Random random(options.seed, Stream(kWrongPoseStream, pair));
+    Random random(options.seed, PoseStream(kWrongPoseStream, pair));
     if (random.Uniform() >= options.wrong_pose_share) continue;
     const double angle = random.Uniform(0, kPi);
     edge.rotation = RotationFromAngleAxis(angle * DrawDirection(&random));

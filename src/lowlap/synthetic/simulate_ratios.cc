@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kRatioStream = 9'000'000'000;
 
-std::uint64_t Stream(const ViewTriplet& views) {
+std::uint64_t RatioStream(const ViewTriplet& views) {
   return kRatioStream + views.first.value() * 1'000'000'000'039ull +
          views.middle.value() * 1'000'003ull + views.last.value();
 }
@@ -63,7 +63,7 @@ Status SimulateRatios(const SimulatedRatioOptions& options,
   for (const ViewTriplet& views : FindTriplets(ViewGraph(synthetic->scene))) {
     const std::optional<double> truth = synthetic->TrueLogRatio(views);
     if (!truth) continue;
-    Random random(options.seed, Stream(views));
+    Random random(options.seed, RatioStream(views));
     const std::uint64_t rank = random.NextBits();
     ScaleRatio ratio;
     ratio.views = views;

@@ -2,12 +2,16 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <limits>
 #include <map>
 #include <vector>
 
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
+
+/// The error of what no camera can see.
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// fx, fy, ppx, ppy, then the distortion coefficients.
 inline constexpr int kMaxIntrinsicParameters = 9;

@@ -16,23 +16,23 @@ namespace {
 
 constexpr std::size_t kMaxParts = 250;
 
-struct Part {
+struct RigidPart {
   std::size_t edge = 0;  // one of its edges
   std::vector<ViewId> views;
 };
 
-std::vector<Part> ListParts(const std::vector<ViewPair>& edges,
-                            UnionFind* parts) {
+std::vector<RigidPart> ListParts(const std::vector<ViewPair>& edges,
+                                 UnionFind* parts) {
   const std::vector<std::size_t> labels = parts->Labels();
-  std::vector<Part> list;
+  std::vector<RigidPart> list;
   for (std::size_t e = 0; e < edges.size(); ++e) {
     if (labels[e] >= list.size()) list.resize(labels[e] + 1);
-    Part& part = list[labels[e]];
+    RigidPart& part = list[labels[e]];
     part.edge = e;
     part.views.push_back(edges[e].first);
     part.views.push_back(edges[e].second);
   }
-  for (Part& part : list) {
+  for (RigidPart& part : list) {
     std::sort(part.views.begin(), part.views.end());
     part.views.erase(std::unique(part.views.begin(), part.views.end()),
                      part.views.end());
@@ -42,7 +42,7 @@ std::vector<Part> ListParts(const std::vector<ViewPair>& edges,
 
 // The parts that hold each view, for views in two parts or more.
 std::map<ViewId, std::vector<std::size_t>> SharedViews(
-    const std::vector<Part>& parts) {
+    const std::vector<RigidPart>& parts) {
   std::map<ViewId, std::vector<std::size_t>> shared;
   for (std::size_t p = 0; p < parts.size(); ++p) {
     for (const ViewId view : parts[p].views) shared[view].push_back(p);
@@ -53,7 +53,7 @@ std::map<ViewId, std::vector<std::size_t>> SharedViews(
   return shared;
 }
 
-bool MergePartsThatShareTwoViews(const std::vector<Part>& parts,
+bool MergePartsThatShareTwoViews(const std::vector<RigidPart>& parts,
                                  UnionFind* sets) {
   std::set<std::pair<std::size_t, std::size_t>> met;
   bool merged = false;
@@ -71,7 +71,8 @@ bool MergePartsThatShareTwoViews(const std::vector<Part>& parts,
 
 // Sets of three parts or more that no single view separates: blocks of the
 // graph that joins every part to its shared views.
-std::vector<std::vector<std::size_t>> BlocksOf(const std::vector<Part>& parts) {
+std::vector<std::vector<std::size_t>> BlocksOf(
+    const std::vector<RigidPart>& parts) {
   std::vector<std::vector<std::size_t>> neighbors(parts.size());
   for (const auto& entry : SharedViews(parts)) {
     for (const std::size_t p : entry.second) {
@@ -90,7 +91,7 @@ std::vector<std::vector<std::size_t>> BlocksOf(const std::vector<Part>& parts) {
   return blocks;
 }
 
-void MergeByNullSpace(const std::vector<Part>& parts, UnionFind* sets) {
+void MergeByNullSpace(const std::vector<RigidPart>& parts, UnionFind* sets) {
   const Eigen::Index num_parts = static_cast<Eigen::Index>(parts.size());
   const auto shared = SharedViews(parts);
   Eigen::Index num_rows = 0;
@@ -136,13 +137,13 @@ void MergeByNullSpace(const std::vector<Part>& parts, UnionFind* sets) {
 }  // namespace
 
 void MergeRigidParts(const std::vector<ViewPair>& edges, UnionFind* parts) {
-  std::vector<Part> list;
+  std::vector<RigidPart> list;
   do {
     list = ListParts(edges, parts);
   } while (MergePartsThatShareTwoViews(list, parts));
   for (const std::vector<std::size_t>& block : BlocksOf(list)) {
     if (block.size() > kMaxParts) continue;
-    std::vector<Part> members;
+    std::vector<RigidPart> members;
     for (const std::size_t p : block) members.push_back(list[p]);
     MergeByNullSpace(members, parts);
   }

@@ -12,11 +12,12 @@
 namespace lowlap {
 namespace {
 
-using Triangle = std::array<ViewId, 3>;  // ascending
+using ViewTriangle = std::array<ViewId, 3>;  // ascending
 
 void MergeTriangles(const ViewGraph& graph,
-                    const std::vector<Triangle>& triangles, UnionFind* groups) {
-  for (const Triangle& t : triangles) {
+                    const std::vector<ViewTriangle>& triangles,
+                    UnionFind* groups) {
+  for (const ViewTriangle& t : triangles) {
     const std::size_t closing = *graph.FindPair(t[1], t[2]);
     groups->Union(closing, *graph.FindPair(t[0], t[1]));
     groups->Union(closing, *graph.FindPair(t[0], t[2]));
@@ -25,8 +26,8 @@ void MergeTriangles(const ViewGraph& graph,
 
 // Number of point tracks that each triangle's three views share.
 std::vector<int> SharedTracks(const Scene& scene,
-                              const std::vector<Triangle>& triangles) {
-  std::map<Triangle, std::size_t> index;
+                              const std::vector<ViewTriangle>& triangles) {
+  std::map<ViewTriangle, std::size_t> index;
   for (std::size_t n = 0; n < triangles.size(); ++n) index[triangles[n]] = n;
   std::vector<int> counts(triangles.size(), 0);
   for (const auto& [id, track] : scene.point_tracks) {
@@ -102,13 +103,13 @@ RigidityReport AnalyzeRigidity(const ViewGraph& graph,
 RigidityReport AnalyzeTripletRigidity(const Scene& scene,
                                       int min_shared_tracks) {
   const ViewGraph graph(scene);
-  const std::vector<Triangle> triangles = FindTriangles(graph);
+  const std::vector<ViewTriangle> triangles = FindTriangles(graph);
   const std::vector<int> shared = SharedTracks(scene, triangles);
-  std::vector<Triangle> counted;
+  std::vector<ViewTriangle> counted;
   std::vector<ViewPair> held;
   for (std::size_t n = 0; n < triangles.size(); ++n) {
     if (shared[n] < min_shared_tracks) continue;
-    const Triangle& t = triangles[n];
+    const ViewTriangle& t = triangles[n];
     counted.push_back(t);
     held.insert(held.end(), {{t[0], t[1]}, {t[0], t[2]}, {t[1], t[2]}});
   }

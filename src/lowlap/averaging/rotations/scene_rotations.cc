@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kDefaultRotationRad = 5e-3;
 
-double Evidence(const RelativePose& pose) {
+double EvidenceOf(const RelativePose& pose) {
   return std::max(0.0, -pose.log10_nfa);
 }
 
@@ -165,11 +165,11 @@ class SceneRotationSolver {
     kept_.insert(closing);
     outliers_.erase(closing);
     if (loop.closing_deg > reach_ * loop.expected_deg) {
-      loop.left_out =
-          *std::min_element(loop.edges.begin(), loop.edges.end(),
-                            [&](const ViewPair& a, const ViewPair& b) {
-                              return Evidence(PoseOf(a)) < Evidence(PoseOf(b));
-                            });
+      loop.left_out = *std::min_element(
+          loop.edges.begin(), loop.edges.end(),
+          [&](const ViewPair& a, const ViewPair& b) {
+            return EvidenceOf(PoseOf(a)) < EvidenceOf(PoseOf(b));
+          });
       LeaveOut(*loop.left_out, OutlierReason::kOpenLoop);
     } else {
       // A loop that also runs over checked edges must not bend these.
@@ -191,9 +191,9 @@ class SceneRotationSolver {
       if (settled_.count(views) > 0) continue;
       double against = 0;
       for (const ViewPair& other : contradictions) {
-        against += Evidence(PoseOf(other));
+        against += EvidenceOf(PoseOf(other));
       }
-      if (against > Evidence(PoseOf(views))) {
+      if (against > EvidenceOf(PoseOf(views))) {
         LeaveOut(views, OutlierReason::kContradicted);
         changed = true;
       }

@@ -36,7 +36,7 @@ void UpdateResiduals(const TranslationProblem& problem, EdgeScales* scales) {
 }
 
 // What a start is judged by. Evidence weighs, but only with its logarithm.
-double RobustCost(const TranslationProblem& problem, const EdgeScales& scales) {
+double ScaleCost(const TranslationProblem& problem, const EdgeScales& scales) {
   double cost = 0;
   for (std::size_t r = 0; r < problem.ratios.size(); ++r) {
     const double residual = scales.normalised_residuals[r];
@@ -46,7 +46,7 @@ double RobustCost(const TranslationProblem& problem, const EdgeScales& scales) {
   return cost;
 }
 
-enum class Loss { kAbsolute, kGemanMcClure };
+enum class ScaleLoss { kAbsolute, kGemanMcClure };
 
 /// Reweighted least squares on one problem.
 class Averaging {
@@ -65,9 +65,9 @@ class Averaging {
   }
 
   /// Goes on from `scales` until no length changes.
-  Status Run(Loss loss, int max_iterations, EdgeScales* scales) {
+  Status Run(ScaleLoss loss, int max_iterations, EdgeScales* scales) {
     // The absolute residuals only serve as a start.
-    const double tolerance = loss == Loss::kAbsolute ? 1e-3 : 1e-11;
+    const double tolerance = loss == ScaleLoss::kAbsolute ? 1e-3 : 1e-11;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
       if (const Status go_on =
               AskToGoOn(context_, static_cast<std::size_t>(iteration),
@@ -93,7 +93,7 @@ class Averaging {
   }
 
  private:
-  void SetWeights(Loss loss, const std::vector<double>& residuals) {
+  void SetWeights(ScaleLoss loss, const std::vector<double>& residuals) {
     std::vector<double> sizes;
     sizes.reserve(residuals.size());
     for (const double r : residuals) sizes.push_back(std::abs(r));
@@ -102,7 +102,7 @@ class Averaging {
     for (Eigen::Index r = 0; r < weights_.size(); ++r) {
       const double x = std::abs(residuals[r]) / scale;
       double factor = 0;
-      if (loss == Loss::kAbsolute) {
+      if (loss == ScaleLoss::kAbsolute) {
         factor = 1 / std::max(x, 0.1);
       } else {
         constexpr double kReach = 3.0;
@@ -167,16 +167,16 @@ Result<EdgeScales> AverageEdgeScales(const TranslationProblem& problem,
   if (problem.ratios.empty()) return from_chain;
   Averaging averaging(problem, context);
   EdgeScales from_l1 = from_chain;
-  Status status = averaging.Run(Loss::kAbsolute, kL1Iterations, &from_l1);
+  Status status = averaging.Run(ScaleLoss::kAbsolute, kL1Iterations, &from_l1);
   if (status) {
-    status = averaging.Run(Loss::kGemanMcClure, max_iterations, &from_l1);
+    status = averaging.Run(ScaleLoss::kGemanMcClure, max_iterations, &from_l1);
   }
   if (!status) return tl::unexpected<Error>(status.error());
   if (problem.ratios.size() > kMaxRatiosOfChainStart) return from_l1;
-  status = averaging.Run(Loss::kGemanMcClure, max_iterations, &from_chain);
+  status = averaging.Run(ScaleLoss::kGemanMcClure, max_iterations, &from_chain);
   if (!status) return tl::unexpected<Error>(status.error());
-  const double chain_cost = RobustCost(problem, from_chain);
-  const double l1_cost = RobustCost(problem, from_l1);
+  const double chain_cost = ScaleCost(problem, from_chain);
+  const double l1_cost = ScaleCost(problem, from_l1);
   return l1_cost < chain_cost - 1e-6 * (1 + chain_cost) ? from_l1 : from_chain;
 }
 

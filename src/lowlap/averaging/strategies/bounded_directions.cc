@@ -19,19 +19,19 @@ Vec3 Offset(const DirectionEdge& edge, const std::vector<Vec3>& centers) {
 }
 
 // phi and phi' / r at the squared residual.
-double Loss(double squared, double width) {
+double DirectionLoss(double squared, double width) {
   if (std::isinf(width)) return 0.5 * squared;
   // width^2 (sqrt(1 + x) - 1) without cancellation.
   return squared / (1 + std::sqrt(1 + squared / (width * width)));
 }
 
-double Weight(double squared, double width) {
+double DirectionWeight(double squared, double width) {
   if (std::isinf(width)) return 1;
   return 1 / std::sqrt(1 + squared / (width * width));
 }
 
 // C_second - C_first - s d at the best s.
-Vec3 Residual(const DirectionEdge& edge, const Vec3& offset) {
+Vec3 DirectionResidual(const DirectionEdge& edge, const Vec3& offset) {
   const double length =
       std::max(kLeastLength, edge.direction_in_world.dot(offset));
   return offset - length * edge.direction_in_world;
@@ -58,7 +58,8 @@ double BoundedObjective(const DirectionPart& part, double width,
                         const std::vector<Vec3>& centers) {
   double cost = 0;
   for (const DirectionEdge& edge : part.edges) {
-    cost += Loss(Residual(edge, Offset(edge, centers)).squaredNorm(), width);
+    cost += DirectionLoss(
+        DirectionResidual(edge, Offset(edge, centers)).squaredNorm(), width);
   }
   return cost;
 }
@@ -86,8 +87,8 @@ Result<int> MinimiseBounded(const DirectionPart& part, double width,
       const DirectionEdge& edge = part.edges[e];
       const Vec3& d = edge.direction_in_world;
       const Vec3 offset = Offset(edge, *centers);
-      const Vec3 residual = Residual(edge, offset);
-      const double weight = Weight(residual.squaredNorm(), width);
+      const Vec3 residual = DirectionResidual(edge, offset);
+      const double weight = DirectionWeight(residual.squaredNorm(), width);
       weights[e] = weight * Mat3::Identity();
       if (d.dot(offset) > kLeastLength) {
         weights[e] -= weight * d * d.transpose();

@@ -18,10 +18,10 @@ namespace {
 
 // The centres of a group's views in the group's own gauge; other entries are
 // unspecified.
-Result<std::vector<Vec3>> SolveGroup(const TranslationProblem& problem,
-                                     const EdgeScales& scales,
-                                     const EdgeGroup& group,
-                                     const RunContext& context) {
+Result<std::vector<Vec3>> SolveScaleGroup(const TranslationProblem& problem,
+                                          const EdgeScales& scales,
+                                          const EdgeGroup& group,
+                                          const RunContext& context) {
   constexpr double kAlongLog = 0.02;
   std::vector<CenterEdge> edges;
   edges.reserve(group.edges.size());
@@ -52,7 +52,7 @@ class Growth {
   std::vector<Vec3>* mutable_centers() { return &centers_; }
 
   Status Start(std::size_t g) {
-    const auto local = SolveGroup(problem_, scales_, groups_[g], context_);
+    const auto local = SolveScaleGroup(problem_, scales_, groups_[g], context_);
     if (!local) return tl::unexpected<Error>(local.error());
     used_[g] = true;
     for (const std::size_t view : groups_[g].views) {
@@ -104,7 +104,7 @@ class Growth {
     }
     if (!adds_views || shared.size() < 2) return false;
     used_[g] = true;
-    const auto local = SolveGroup(problem_, scales_, groups_[g], context_);
+    const auto local = SolveScaleGroup(problem_, scales_, groups_[g], context_);
     if (!local) return tl::unexpected<Error>(local.error());
     Vec3 local_mean = Vec3::Zero(), mean = Vec3::Zero();
     for (const std::size_t view : shared) {
@@ -142,7 +142,8 @@ class Growth {
     std::vector<std::size_t> group_of = {0};
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (used_[g] || components.size() > kMaxGroups) continue;
-      const auto local = SolveGroup(problem_, scales_, groups_[g], context_);
+      const auto local =
+          SolveScaleGroup(problem_, scales_, groups_[g], context_);
       if (!local) return tl::unexpected<Error>(local.error());
       RigidComponent component;
       component.stddev_rad = 0;

@@ -61,4 +61,8 @@ std::string Escaped(const std::string& text) {
   return escaped;
 }
 
+std::string PairName(const ViewPair& views) {
+  return Format("%u-%u", views.first.value(), views.second.value());
+}
+
 }  // namespace lowlap

@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "lowlap/core/ids.h"
+
 namespace lowlap {
 
 /// The text that printf would write, of any length.
@@ -13,5 +15,8 @@ bool IsUtf8(const std::string& text);
 /// The text with bytes that are not ASCII, and control characters, as codes:
 /// for messages about text that cannot be shown.
 std::string Escaped(const std::string& text);
+
+/// "2-5".
+std::string PairName(const ViewPair& views);
 
 }  // namespace lowlap

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "lowlap/core/internal/format.h"
 #include "lowlap/evaluation/internal/line_match_errors.h"
 
 namespace lowlap {
@@ -30,11 +31,6 @@ Json ToJsonValue(const LineMatchCounts& counts) {
           {"num_matched_edges", counts.num_matched_edges},
           {"precision", counts.Precision()},
           {"recall", counts.Recall()}};
-}
-
-std::string PairName(const ViewPair& views) {
-  return std::to_string(views.first.value()) + "-" +
-         std::to_string(views.second.value());
 }
 
 }  // namespace

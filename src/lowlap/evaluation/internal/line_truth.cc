@@ -9,7 +9,7 @@
 namespace lowlap {
 namespace {
 
-using Json = nlohmann::json;
+using Json = nlohmann::ordered_json;
 
 Vec3 ParsePoint(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(),

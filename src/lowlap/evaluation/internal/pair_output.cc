@@ -47,8 +47,7 @@ std::string ToText(const PairEvaluation& evaluation) {
       Format("%-12s %4s %13s %14s %7s %6s %10s\n", "pair", "next",
              "rotation_deg", "direction_deg", "points", "lines", "log10_nfa");
   for (const PairError& pair : evaluation.pairs) {
-    const std::string name =
-        Format("%u-%u", pair.views.first.value(), pair.views.second.value());
+    const std::string name = PairName(pair.views);
     text += Format("%-12s %4s ", name.c_str(), pair.consecutive ? "*" : "");
     text += pair.has_pose ? Format("%13s %14s %7d %6d %10.1f",
                                    Angle(pair.rotation_error_deg).c_str(),

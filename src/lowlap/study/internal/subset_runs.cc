@@ -62,8 +62,8 @@ std::vector<std::vector<ViewId>> SampleSubsets(const std::vector<ViewId>& views,
   return {drawn.begin(), drawn.end()};
 }
 
-void Judge(const Scene& scene, const GroundTruth& truth,
-           const SolveResult& result, SubsetOutcome* outcome) {
+void JudgeSubset(const Scene& scene, const GroundTruth& truth,
+                 const SolveResult& result, SubsetOutcome* outcome) {
   outcome->num_placed = result.poses.num_placed;
   outcome->doubts = DoubtCodes(result.poses);
   const PoseEvaluation evaluation = EvaluatePoses(scene, truth);
@@ -98,7 +98,7 @@ SubsetOutcome SolveSubset(const Scene& scene, const GroundTruth& truth,
   StageLog stages;
   const auto result = SolveScene(&subset, options, context, &stages);
   if (result) {
-    Judge(subset, truth, *result, &outcome);
+    JudgeSubset(subset, truth, *result, &outcome);
   } else {
     outcome.failure = result.error().ToString();
   }

@@ -13,8 +13,8 @@
 namespace lowlap {
 namespace {
 
-constexpr int kNumSamples = 200;
-constexpr std::size_t kMaxScored = 500;
+constexpr int kNumPlaneSamples = 200;
+constexpr std::size_t kMaxScoredMotions = 500;
 
 bool OnPlane(const Mat3& homography, const Vec3& x1, const Vec3& x2,
              double threshold) {
@@ -54,10 +54,10 @@ std::optional<ScenePlane> DominantPlane(const RigidTransform& cam2_from_cam1,
     return positions;
   };
 
-  const std::size_t num_scored = std::min(indices.size(), kMaxScored);
+  const std::size_t num_scored = std::min(indices.size(), kMaxScoredMotions);
   std::size_t best_count = 3;
   std::optional<Vec3> best;
-  for (int n = 0; n < kNumSamples; ++n) {
+  for (int n = 0; n < kNumPlaneSamples; ++n) {
     const auto sample = DrawSample<3>(static_cast<int>(indices.size()), random);
     Mat3 points;
     Vec3 depths;

@@ -106,12 +106,6 @@ NoiseBounds BoundsOf(const AdjustmentOptions& options) {
   return bounds;
 }
 
-std::vector<std::size_t> AllOf(std::size_t count) {
-  std::vector<std::size_t> indices(count);
-  std::iota(indices.begin(), indices.end(), std::size_t{0});
-  return indices;
-}
-
 std::vector<char> SolvedLines(const AdjustmentOptions& options,
                               const CameraSet& cameras,
                               const StructureState& state) {

@@ -11,8 +11,6 @@
 namespace lowlap {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 LineParameters Parameters(const LineTrackState& line) {
   LineParameters parameters;
   parameters << line.point, line.direction;

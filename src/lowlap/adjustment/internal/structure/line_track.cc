@@ -13,7 +13,6 @@
 namespace lowlap {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Rays that meet the line at less than 3 degrees do not tell where.
 constexpr double kMinRaySine = 0.05;
 
@@ -45,19 +44,20 @@ std::optional<double> Lift(const RigidTransform& cam_from_world,
   return arm.cross(unit_ray).dot(n) / n2;
 }
 
-struct Agreement {
+struct LineAgreement {
   std::vector<char> used;
   int count = 0;
   double squares = 0;
 
-  bool BetterThan(const Agreement& other) const {
+  bool BetterThan(const LineAgreement& other) const {
     return count != other.count ? count > other.count : squares < other.squares;
   }
 };
 
-Agreement Agree(const CameraSet& cameras, const LineTrackState& track,
-                const Vec3& point, const Vec3& direction, double threshold_px) {
-  Agreement agreement;
+LineAgreement AgreeOnLine(const CameraSet& cameras, const LineTrackState& track,
+                          const Vec3& point, const Vec3& direction,
+                          double threshold_px) {
+  LineAgreement agreement;
   agreement.used.assign(track.candidates.size(), 0);
   for (std::size_t n = 0; n < track.candidates.size(); ++n) {
     const double error =
@@ -148,8 +148,8 @@ std::optional<Eigen::Matrix4d> UnitCovariance(
 
 // Standard deviation of the line across itself, over the distance from the
 // nearest camera, at the worse end of its extent.
-double RelativeStddev(const std::vector<LineMeasurement>& measurements,
-                      const LineTrackState& track, double noise_px) {
+double RelativeLineStddev(const std::vector<LineMeasurement>& measurements,
+                          const LineTrackState& track, double noise_px) {
   const std::optional<Eigen::Matrix4d> covariance =
       UnitCovariance(measurements, track.point, track.direction);
   if (!covariance) return kInfinity;
@@ -260,7 +260,7 @@ void TriangulateLineTrack(const CameraSet& cameras,
   }
 
   Vec3 point, direction;
-  Agreement best;
+  LineAgreement best;
   bool degenerate = false;
   for (const auto& [a, b] : SamplePairs(candidates.size(), track->id.value())) {
     const LineCandidate &first = candidates[a], &second = candidates[b];
@@ -272,8 +272,8 @@ void TriangulateLineTrack(const CameraSet& cameras,
       degenerate = true;
       continue;
     }
-    Agreement agreement =
-        Agree(cameras, *track, pair_point, pair_direction, limits.threshold_px);
+    LineAgreement agreement = AgreeOnLine(cameras, *track, pair_point,
+                                          pair_direction, limits.threshold_px);
     if (agreement.count < 2 || !agreement.BetterThan(best)) continue;
     best = std::move(agreement);
     point = pair_point;
@@ -290,8 +290,8 @@ void TriangulateLineTrack(const CameraSet& cameras,
     Vec3 refined_point = point, refined_direction = direction;
     RefineLine(Measurements(cameras, *track, best.used), &refined_point,
                &refined_direction);
-    Agreement next = Agree(cameras, *track, refined_point, refined_direction,
-                           limits.threshold_px);
+    LineAgreement next = AgreeOnLine(cameras, *track, refined_point,
+                                     refined_direction, limits.threshold_px);
     if (next.count < 2 || best.BetterThan(next)) break;
     const bool settled = next.used == best.used;
     point = refined_point;
@@ -312,8 +312,9 @@ void TriangulateLineTrack(const CameraSet& cameras,
   }
   UpdateLineExtent(cameras, track);
   track->status = LandmarkStatus::kLandmark;
-  if (!(RelativeStddev(Measurements(cameras, *track, best.used), *track,
-                       limits.noise_px) <= limits.max_relative_depth_stddev)) {
+  if (!(RelativeLineStddev(Measurements(cameras, *track, best.used), *track,
+                           limits.noise_px) <=
+        limits.max_relative_depth_stddev)) {
     track->status = LandmarkStatus::kUncertain;
   } else if (pose_count == 2 && !(TwoViewOverlap(cameras, *track) >=
                                   limits.min_two_view_overlap)) {

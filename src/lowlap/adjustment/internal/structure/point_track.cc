@@ -12,8 +12,6 @@
 namespace lowlap {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 // A candidate with what the geometry needs of its camera.
 struct Observation {
   RigidTransform cam_from_world;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -283,6 +284,12 @@ Status TriangulateLines(const CameraSet& cameras,
   return ParallelFor(context, {}, which.size(), [&](std::size_t n) {
     TriangulateLineTrack(cameras, limits, &(*lines)[which[n]]);
   });
+}
+
+std::vector<std::size_t> AllOf(std::size_t count) {
+  std::vector<std::size_t> indices(count);
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  return indices;
 }
 
 }  // namespace lowlap

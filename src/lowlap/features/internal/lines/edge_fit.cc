@@ -62,7 +62,7 @@ std::optional<double> SteepestRise(const cv::Mat& image, const Vec2& point,
   return (best - half - 1 + peak) * kStepPx;
 }
 
-struct Sample {
+struct EdgeSample {
   double along = 0;
   double across = 0;
   double weight = 1;
@@ -76,15 +76,15 @@ struct Line {
   double weight_sum = 0;
   double along2_sum = 0;
 
-  double Residual(const Sample& sample) const {
+  double Residual(const EdgeSample& sample) const {
     return sample.across - offset - slope * (sample.along - center);
   }
 };
 
-std::optional<Line> WeightedFit(const std::vector<Sample>& samples) {
+std::optional<Line> WeightedFit(const std::vector<EdgeSample>& samples) {
   Line line;
   double across_mean = 0;
-  for (const Sample& s : samples) {
+  for (const EdgeSample& s : samples) {
     line.weight_sum += s.weight;
     line.center += s.weight * s.along;
     across_mean += s.weight * s.across;
@@ -93,7 +93,7 @@ std::optional<Line> WeightedFit(const std::vector<Sample>& samples) {
   line.center /= line.weight_sum;
   line.offset = across_mean / line.weight_sum;
   double mixed = 0;
-  for (const Sample& s : samples) {
+  for (const EdgeSample& s : samples) {
     const double along = s.along - line.center;
     line.along2_sum += s.weight * along * along;
     mixed += s.weight * along * (s.across - line.offset);
@@ -103,9 +103,10 @@ std::optional<Line> WeightedFit(const std::vector<Sample>& samples) {
   return line;
 }
 
-double MedianAbsolute(const Line& line, const std::vector<Sample>& samples) {
+double MedianAbsolute(const Line& line,
+                      const std::vector<EdgeSample>& samples) {
   std::vector<double> residuals;
-  for (const Sample& s : samples) {
+  for (const EdgeSample& s : samples) {
     residuals.push_back(std::abs(line.Residual(s)));
   }
   const auto middle =
@@ -115,12 +116,12 @@ double MedianAbsolute(const Line& line, const std::vector<Sample>& samples) {
 }
 
 // Tukey's weights from a start at the median offset.
-std::optional<Line> RobustFit(std::vector<Sample>* samples) {
+std::optional<Line> RobustFit(std::vector<EdgeSample>* samples) {
   std::optional<Line> line = WeightedFit(*samples);
   for (int i = 0; line && i < kIterations; ++i) {
     const double scale = std::max(
         4.685 * 1.4826 * MedianAbsolute(*line, *samples), 4 * kMinStddevPx);
-    for (Sample& s : *samples) {
+    for (EdgeSample& s : *samples) {
       const double u = line->Residual(s) / scale;
       s.weight = std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;
     }
@@ -139,7 +140,7 @@ std::optional<LineSegment> FitEdge(const cv::Mat& blurred, const Vec2& start_px,
   const Vec2 bright(direction.y(), -direction.x());
   const int count =
       std::clamp(static_cast<int>(std::lround(length)), 4, kMaxSamples);
-  std::vector<Sample> samples;
+  std::vector<EdgeSample> samples;
   for (int i = 0; i < count; ++i) {
     const double along = length * (i + 0.5) / count;
     const auto across =
@@ -152,7 +153,7 @@ std::optional<LineSegment> FitEdge(const cv::Mat& blurred, const Vec2& start_px,
 
   int num_inliers = 0;
   double low = length, high = 0, squares = 0;
-  for (const Sample& s : samples) {
+  for (const EdgeSample& s : samples) {
     const double residual = line->Residual(s);
     if (std::abs(residual) > kInlierPx) continue;
     ++num_inliers;

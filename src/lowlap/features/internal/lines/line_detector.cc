@@ -11,7 +11,7 @@
 namespace lowlap {
 namespace {
 
-constexpr int kMinSidePx = 16;
+constexpr int kMinLineImageSidePx = 16;
 // Fragments shorter than this (in pixels of their level) say nothing.
 constexpr double kMinRawLengthPx = 8;
 constexpr double kEdgeReachPx = 2.5;
@@ -31,7 +31,8 @@ Vec2 LevelFromFull(const Vec2& p, int level) {
 std::vector<cv::Mat> BuildPyramid(const cv::Mat& image, int coarsest_side_px) {
   std::vector<cv::Mat> levels = {image};
   while (std::max(levels.back().cols, levels.back().rows) > coarsest_side_px &&
-         std::min(levels.back().cols, levels.back().rows) >= 2 * kMinSidePx) {
+         std::min(levels.back().cols, levels.back().rows) >=
+             2 * kMinLineImageSidePx) {
     const cv::Size half(levels.back().cols / 2, levels.back().rows / 2);
     // An odd row or column is left out: the factor stays exactly 2.
     const cv::Mat even =
@@ -144,7 +145,7 @@ Result<std::vector<LineSegment>> DetectLines(const GrayImage& image,
   if (const Status s = image.Validate(); !s) {
     return tl::unexpected<Error>(s.error());
   }
-  if (std::min(image.width, image.height) < kMinSidePx) {
+  if (std::min(image.width, image.height) < kMinLineImageSidePx) {
     return std::vector<LineSegment>{};
   }
   return CatchOpenCv("line segments",

@@ -13,23 +13,23 @@
 namespace lowlap {
 namespace {
 
-constexpr std::size_t kNeighbors = 10;
-constexpr int kIterations = 5;
+constexpr std::size_t kGuidedNeighbors = 10;
+constexpr int kGuidedIterations = 5;
 // Two neighbours at a distance s in the image (in focal lengths) agree if their
 // logarithmic depths differ by less than about kDepthNoise + kDepthSlope s: on
 // one surface, seen at an angle.
 constexpr double kDepthNoise = 0.03;
 constexpr double kDepthSlope = 1.0;
 // The mean support that gives a candidate half of the highest score.
-constexpr double kHalfSupport = 0.15;
+constexpr double kGuidedHalfSupport = 0.15;
 // What a match found without the pose is worth more than a new one.
 constexpr double kSeedBonus = 0.2;
 
 // A match is made only if no contradicting candidate scores more than this
 // share of its score.
-constexpr double kMaxRivalShare = 0.85;
+constexpr double kGuidedMaxRivalShare = 0.85;
 
-struct Candidate {
+struct GuidedCandidate {
   FeatureMatch match;
   LineTransfer transfer;
   double similarity = 0;  // in [0, 1]
@@ -90,18 +90,16 @@ double EpipolarSlack(const NormalizedFeatures& first,
          std::min(first.focal_px, second.focal_px);
 }
 
-std::vector<Candidate> CollectCandidates(const DescribedLines& first,
-                                         const DescribedLines& second,
-                                         const NormalizedFeatures& normalized1,
-                                         const NormalizedFeatures& normalized2,
-                                         const RigidTransform& cam2_from_cam1,
-                                         const std::vector<FeatureMatch>& seeds,
-                                         const GuidedLineOptions& options) {
+std::vector<GuidedCandidate> CollectGuidedCandidates(
+    const DescribedLines& first, const DescribedLines& second,
+    const NormalizedFeatures& normalized1,
+    const NormalizedFeatures& normalized2, const RigidTransform& cam2_from_cam1,
+    const std::vector<FeatureMatch>& seeds, const GuidedLineOptions& options) {
   std::vector<FeatureMatch> sorted_seeds = seeds;
   std::sort(sorted_seeds.begin(), sorted_seeds.end());
   const double min_sine = std::sin(RadFromDeg(options.min_epipolar_angle_deg));
   const double slack = EpipolarSlack(normalized1, normalized2, options);
-  std::vector<Candidate> candidates;
+  std::vector<GuidedCandidate> candidates;
   auto seed = sorted_seeds.begin();
   std::vector<int> distances;
   for (std::size_t i = 0; i < first.segments.size(); ++i) {
@@ -120,7 +118,7 @@ std::vector<Candidate> CollectCandidates(const DescribedLines& first,
           transfer->overlap_of_shorter < options.min_overlap) {
         continue;
       }
-      Candidate candidate;
+      GuidedCandidate candidate;
       candidate.match = match;
       candidate.transfer = *transfer;
       candidate.similarity =
@@ -134,7 +132,7 @@ std::vector<Candidate> CollectCandidates(const DescribedLines& first,
   return candidates;
 }
 
-std::vector<std::vector<Neighbor>> FindNeighbors(
+std::vector<std::vector<Neighbor>> FindGuidedNeighbors(
     const NormalizedFeatures& features,
     const std::vector<std::vector<std::size_t>>& candidates_of) {
   const std::vector<NormalizedSegment>& segments = features.segments;
@@ -151,7 +149,7 @@ std::vector<std::vector<Neighbor>> FindNeighbors(
     for (std::size_t j = 0; j < segments.size(); ++j) {
       if (j == i || candidates_of[j].empty()) continue;
       // No closer than the midpoints less half of both lengths.
-      if (list.size() == kNeighbors) {
+      if (list.size() == kGuidedNeighbors) {
         const double reach = 2 * list.back().distance + length +
                              (segments[j].end - segments[j].start).norm();
         if ((segments[j].start + segments[j].end - middle).norm() > reach) {
@@ -162,28 +160,29 @@ std::vector<std::vector<Neighbor>> FindNeighbors(
       neighbor.segment = j;
       list.insert(std::upper_bound(list.begin(), list.end(), neighbor, nearer),
                   neighbor);
-      if (list.size() > kNeighbors) list.pop_back();
+      if (list.size() > kGuidedNeighbors) list.pop_back();
     }
   }
   return neighbors;
 }
 
-std::vector<ScoredMatch> Relax(const NormalizedFeatures& first, double slack,
-                               const std::vector<Candidate>& candidates) {
+std::vector<ScoredMatch> RelaxGuided(
+    const NormalizedFeatures& first, double slack,
+    const std::vector<GuidedCandidate>& candidates) {
   std::vector<std::vector<std::size_t>> candidates_of(first.segments.size());
   for (std::size_t c = 0; c < candidates.size(); ++c) {
     candidates_of[candidates[c].match.first].push_back(c);
   }
-  const auto neighbors = FindNeighbors(first, candidates_of);
+  const auto neighbors = FindGuidedNeighbors(first, candidates_of);
   std::vector<std::vector<std::vector<Support>>> supports(candidates.size());
   for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const Candidate& candidate = candidates[c];
+    const GuidedCandidate& candidate = candidates[c];
     for (const Neighbor& n : neighbors[candidate.match.first]) {
       std::vector<Support> list;
       const double surface = kDepthNoise + kDepthSlope * n.distance;
       const double log_depth = candidate.LogDepth(n.here);
       for (const std::size_t o : candidates_of[n.segment]) {
-        const Candidate& other = candidates[o];
+        const GuidedCandidate& other = candidates[o];
         const double tolerance =
             std::hypot(surface, slack / candidate.Steepness(n.here),
                        slack / other.Steepness(n.there));
@@ -195,8 +194,9 @@ std::vector<ScoredMatch> Relax(const NormalizedFeatures& first, double slack,
     }
   }
   std::vector<double> scores;
-  for (const Candidate& c : candidates) scores.push_back(c.similarity);
-  scores = RelaxScores(std::move(scores), supports, kHalfSupport, kIterations);
+  for (const GuidedCandidate& c : candidates) scores.push_back(c.similarity);
+  scores = RelaxScores(std::move(scores), supports, kGuidedHalfSupport,
+                       kGuidedIterations);
   std::vector<ScoredMatch> scored;
   for (std::size_t c = 0; c < scores.size(); ++c) {
     scored.push_back(
@@ -264,16 +264,16 @@ std::vector<FeatureMatch> MatchLinesGuided(
     const NormalizedFeatures& second_normalized,
     const RigidTransform& cam2_from_cam1,
     const std::vector<FeatureMatch>& seeds, const GuidedLineOptions& options) {
-  const std::vector<Candidate> candidates =
-      CollectCandidates(first, second, first_normalized, second_normalized,
-                        cam2_from_cam1, seeds, options);
+  const std::vector<GuidedCandidate> candidates = CollectGuidedCandidates(
+      first, second, first_normalized, second_normalized, cam2_from_cam1, seeds,
+      options);
   if (candidates.empty()) return {};
   const double slack =
       EpipolarSlack(first_normalized, second_normalized, options);
   return Assign(first, second,
                 DecidedMatches(first.segments, second.segments,
-                               Relax(first_normalized, slack, candidates),
-                               options.min_score, kMaxRivalShare));
+                               RelaxGuided(first_normalized, slack, candidates),
+                               options.min_score, kGuidedMaxRivalShare));
 }
 
 }  // namespace lowlap

@@ -9,7 +9,7 @@ namespace lowlap {
 namespace {
 
 constexpr int kBranching = 32;
-constexpr int kIterations = 5;
+constexpr int kTreeIterations = 5;
 constexpr int kChecks = 256;  // descriptors that a query is compared with
 
 // A view; FLANN has no const matrix.
@@ -28,7 +28,7 @@ std::vector<NearestTwo> FindNearestTwoApproximately(
   }
   flann::Index<flann::L2<std::uint8_t>> index(
       AsMatrix(database),
-      flann::KMeansIndexParams(kBranching, kIterations,
+      flann::KMeansIndexParams(kBranching, kTreeIterations,
                                flann::FLANN_CENTERS_GONZALES));
   {
     // The first centres are drawn from the process's one stream of random

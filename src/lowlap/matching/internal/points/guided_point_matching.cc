@@ -25,7 +25,7 @@ struct PolarPoint {
   FeatureIndex index = 0;
 };
 
-struct Candidate {
+struct PointCandidate {
   FeatureIndex first;
   FeatureIndex second;
   std::int32_t distance2;
@@ -91,12 +91,12 @@ bool LooksConsistent(const PolarPoint& a, const PolarPoint& b,
 
 // All pairs within the band of the epipolar constraint and in front of both
 // cameras that agree in size and orientation, with their distances.
-std::vector<Candidate> FindCandidates(const PointView& first,
-                                      const PointView& second,
-                                      const RigidTransform& cam2_from_cam1,
-                                      double threshold_px,
-                                      const GuidedPointOptions& options) {
-  std::vector<Candidate> candidates;
+std::vector<PointCandidate> FindCandidates(const PointView& first,
+                                           const PointView& second,
+                                           const RigidTransform& cam2_from_cam1,
+                                           double threshold_px,
+                                           const GuidedPointOptions& options) {
+  std::vector<PointCandidate> candidates;
   if (!(cam2_from_cam1.translation.norm() > 0)) return candidates;
   const Mat3 axes = AxesAlong(cam2_from_cam1.translation);
   const std::vector<PolarPoint> from =
@@ -170,12 +170,12 @@ struct Nearest {
 };
 
 template <class OwnIndex, class OtherIndex>
-std::vector<Nearest> FindNearest(const std::vector<Candidate>& candidates,
+std::vector<Nearest> FindNearest(const std::vector<PointCandidate>& candidates,
                                  std::size_t count,
                                  const std::vector<Keypoint>& others,
                                  OwnIndex own, OtherIndex other) {
   std::vector<Nearest> nearest(count);
-  for (const Candidate& c : candidates) {
+  for (const PointCandidate& c : candidates) {
     Nearest& n = nearest[own(c)];
     if (c.distance2 < n.distance2 ||
         (c.distance2 == n.distance2 && other(c) < n.index)) {
@@ -183,7 +183,7 @@ std::vector<Nearest> FindNearest(const std::vector<Candidate>& candidates,
       n.distance2 = c.distance2;
     }
   }
-  for (const Candidate& c : candidates) {
+  for (const PointCandidate& c : candidates) {
     Nearest& n = nearest[own(c)];
     if (c.distance2 >= n.next_distance2) continue;
     const Keypoint& best = others[n.index];
@@ -196,8 +196,8 @@ std::vector<Nearest> FindNearest(const std::vector<Candidate>& candidates,
   return nearest;
 }
 
-bool PassesRatio(std::int32_t distance2, std::int32_t next_distance2,
-                 double max_ratio) {
+bool PassesGuidedRatio(std::int32_t distance2, std::int32_t next_distance2,
+                       double max_ratio) {
   return next_distance2 == NearestTwo::kNone ||
          distance2 < max_ratio * max_ratio * next_distance2;
 }
@@ -229,9 +229,10 @@ std::vector<FeatureMatch> BetterThanChance(
     // The sample may hold the partner itself.
     const bool itself =
         nearest[m].index >= 0 && nearest[m].index * stride == partner;
-    if (PassesRatio(distance2,
-                    itself ? nearest[m].second_distance2 : nearest[m].distance2,
-                    options.max_ratio)) {
+    if (PassesGuidedRatio(
+            distance2,
+            itself ? nearest[m].second_distance2 : nearest[m].distance2,
+            options.max_ratio)) {
       kept.push_back(matches[m]);
     }
   }
@@ -264,10 +265,10 @@ std::vector<FeatureMatch> MatchPointsGuided(
     const PointView& first, const PointView& second,
     const RigidTransform& cam2_from_cam1, double threshold_px,
     const GuidedPointOptions& options) {
-  const std::vector<Candidate> candidates =
+  const std::vector<PointCandidate> candidates =
       FindCandidates(first, second, cam2_from_cam1, threshold_px, options);
-  const auto first_index = [](const Candidate& c) { return c.first; };
-  const auto second_index = [](const Candidate& c) { return c.second; };
+  const auto first_index = [](const PointCandidate& c) { return c.first; };
+  const auto second_index = [](const PointCandidate& c) { return c.second; };
   const std::vector<Nearest> forward =
       FindNearest(candidates, first.descriptors.size(), second.keypoints,
                   first_index, second_index);
@@ -278,9 +279,9 @@ std::vector<FeatureMatch> MatchPointsGuided(
   for (std::size_t i = 0; i < forward.size(); ++i) {
     const Nearest& n = forward[i];
     if (n.index == kInvalidId || backward[n.index].index != i) continue;
-    if (PassesRatio(n.distance2, n.next_distance2, options.max_ratio) &&
-        PassesRatio(n.distance2, backward[n.index].next_distance2,
-                    options.max_ratio)) {
+    if (PassesGuidedRatio(n.distance2, n.next_distance2, options.max_ratio) &&
+        PassesGuidedRatio(n.distance2, backward[n.index].next_distance2,
+                          options.max_ratio)) {
       matches.push_back({static_cast<FeatureIndex>(i), n.index});
     }
   }

@@ -15,9 +15,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-class Writer {
+class DiagnosisWriter {
  public:
-  Writer(const Diagnosis& diagnosis, const Scene& scene)
+  DiagnosisWriter(const Diagnosis& diagnosis, const Scene& scene)
       : diagnosis_(diagnosis), scene_(scene) {}
 
   std::string Name(ViewId view) const {
@@ -154,7 +154,7 @@ class Writer {
   const Scene& scene_;
 };
 
-void AddGroups(const Writer& writer, const RigidityReport& report,
+void AddGroups(const DiagnosisWriter& writer, const RigidityReport& report,
                std::string* text) {
   if (report.groups.size() > 1) {
     for (std::size_t g = 0; g < report.groups.size(); ++g) {
@@ -170,7 +170,7 @@ void AddGroups(const Writer& writer, const RigidityReport& report,
 }  // namespace
 
 std::string ToText(const Diagnosis& diagnosis, const Scene& scene) {
-  const Writer writer(diagnosis, scene);
+  const DiagnosisWriter writer(diagnosis, scene);
   std::string text = writer.Verdict() + "\n";
   if (diagnosis.by_ratios.groups.empty()) return text;
   const std::size_t by_directions = diagnosis.by_directions.groups.size();
@@ -219,7 +219,7 @@ std::string ToText(const Diagnosis& diagnosis, const Scene& scene) {
 }
 
 std::string ToJson(const Diagnosis& diagnosis, const Scene& scene) {
-  const Writer writer(diagnosis, scene);
+  const DiagnosisWriter writer(diagnosis, scene);
   const auto triplet = [&](std::size_t r) {
     const ScaleRatio& ratio = scene.scale_ratios[r];
     return Json{
