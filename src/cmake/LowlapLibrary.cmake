@@ -1,3 +1,7 @@
+option(LOWLAP_UNITY_BUILD
+       "Compile the sources of a library ten at a time: much faster from nothing, slower after an edit"
+       ON)
+
 # lowlap_library(<name> SOURCES <files> [DEPENDS <targets>] [PRIVATE_DEPENDS <targets>])
 #
 # One static library per folder: target lowlap_<name>, alias lowlap::<name>.
@@ -29,7 +33,9 @@ function(lowlap_library name)
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} ${scope} ${ARG_DEPENDS})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name}
-                        POSITION_INDEPENDENT_CODE ON)
+                        POSITION_INDEPENDENT_CODE ON
+                        UNITY_BUILD ${LOWLAP_UNITY_BUILD}
+                        UNITY_BUILD_BATCH_SIZE 10)
   set_property(GLOBAL APPEND PROPERTY LOWLAP_LIBRARIES ${target})
 
   file(RELATIVE_PATH folder "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")

@@ -72,22 +72,22 @@ double Agreement(const LineSegment& a, const LineSegment& b,
 std::vector<Candidate> CollectCandidates(const DescribedLines& first,
                                          const DescribedLines& second,
                                          const LineMatchOptions& options) {
-  struct Nearest {
+  struct ByDistance {
     int distance;
     FeatureIndex index;
-    bool operator<(const Nearest& o) const {
+    bool operator<(const ByDistance& o) const {
       return distance != o.distance ? distance < o.distance : index < o.index;
     }
   };
   const std::size_t n1 = first.segments.size(), n2 = second.segments.size();
   const auto keep = static_cast<std::size_t>(options.max_candidates);
-  const auto insert = [&](std::vector<Nearest>* list, Nearest nearest) {
+  const auto insert = [&](std::vector<ByDistance>* list, ByDistance nearest) {
     if (list->size() == keep && !(nearest < list->back())) return;
     list->insert(std::upper_bound(list->begin(), list->end(), nearest),
                  nearest);
     if (list->size() > keep) list->pop_back();
   };
-  std::vector<std::vector<Nearest>> forward(n1), backward(n2);
+  std::vector<std::vector<ByDistance>> forward(n1), backward(n2);
   std::vector<int> distances;
   for (std::size_t i = 0; i < n1; ++i) {
     const double length1 = first.segments[i].LengthPx();
@@ -106,11 +106,11 @@ std::vector<Candidate> CollectCandidates(const DescribedLines& first,
   }
   std::vector<Candidate> candidates;
   for (std::size_t i = 0; i < n1; ++i) {
-    for (const Nearest& nearest : forward[i]) {
-      const std::vector<Nearest>& back = backward[nearest.index];
+    for (const ByDistance& nearest : forward[i]) {
+      const std::vector<ByDistance>& back = backward[nearest.index];
       const bool mutual =
           std::any_of(back.begin(), back.end(),
-                      [&](const Nearest& n) { return n.index == i; });
+                      [&](const ByDistance& n) { return n.index == i; });
       if (!mutual) continue;
       Candidate candidate;
       candidate.match = {static_cast<FeatureIndex>(i), nearest.index};

@@ -7,7 +7,7 @@ namespace lowlap {
 namespace {
 
 // Cells beside the query's are as far as this allows for rounding.
-constexpr double kRounding = 1e-9;
+constexpr double kDistanceRounding = 1e-9;
 // Queries far outside a grid keep integers in range.
 constexpr double kFarthest = 1e6;
 
@@ -110,8 +110,10 @@ void DiscIndex::PushRing(int g, int ring) {
       std::max({column, grid.columns - 1 - column, row, grid.rows - 1 - row})) {
     return;  // beyond the grid
   }
-  const double distance = std::max(0.0, (ring - 1 - kRounding) * grid.cell);
-  Push({{distance - grid.largest_radius - query_.radius - kRounding * grid.cell,
+  const double distance =
+      std::max(0.0, (ring - 1 - kDistanceRounding) * grid.cell);
+  Push({{distance - grid.largest_radius - query_.radius -
+             kDistanceRounding * grid.cell,
          kRing},
         g,
         ring});

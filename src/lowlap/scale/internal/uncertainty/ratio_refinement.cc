@@ -11,10 +11,6 @@
 namespace lowlap {
 namespace {
 
-constexpr double kPriorWrong = 0.5;
-
-double Square(double value) { return value * value; }
-
 // Features of one group that come in a row.
 struct Run {
   int group = 0;

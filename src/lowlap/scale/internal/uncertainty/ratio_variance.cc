@@ -13,8 +13,6 @@ namespace {
 // features.
 constexpr double kLeastKept = 0.25;
 
-double Squared(double value) { return value * value; }
-
 // The 97.5 % quantile of Student's t over that of the normal distribution
 // (Abramowitz and Stegun 26.7.5).
 double StudentFactor(double degrees) {
@@ -28,7 +26,7 @@ double StudentFactor(double degrees) {
 // (r / (phi s))^2.
 double SquaredDeviation(const RatioFeature& feature, double log_ratio,
                         double noise2) {
-  return Squared((feature.log_ratio - log_ratio) / feature.log_ratio_stddev) /
+  return Square((feature.log_ratio - log_ratio) / feature.log_ratio_stddev) /
          noise2;
 }
 
@@ -61,19 +59,18 @@ struct GroupSums {
            double p, double multiplicity) {
     const double u = SquaredDeviation(feature, log_ratio, noise2);
     const double score = (feature.log_ratio - log_ratio) /
-                         (noise2 * Squared(feature.log_ratio_stddev));
+                         (noise2 * Square(feature.log_ratio_stddev));
     const double unsure = p * (1 - p);
     count += 1;
     wrong += 1 - p;
     mu_phi += score * (2 * p - unsure * (u - 1)) / multiplicity;
     mu_odds += score * unsure / multiplicity;
-    phi_phi += 2 * p * u - unsure * Squared(u - 1);
+    phi_phi += 2 * p * u - unsure * Square(u - 1);
     phi_odds += unsure * (u - 1);
     odds_odds -= unsure;
   }
 
   void AddPriors(double prior_count, double noise2) {
-    constexpr double kPriorWrong = 0.5;
     if (!(count > 0)) return;
     phi_phi += 2 * prior_count / noise2;
     odds_odds += (wrong + kPriorWrong) * (count - wrong) / count;
@@ -83,12 +80,12 @@ struct GroupSums {
   // The Schur complement's part.
   double Lost() const {
     if (!(phi_phi > 0)) return 0;
-    const double determinant = phi_phi * odds_odds - Squared(phi_odds);
-    if (!(determinant > 1e-9 * Squared(phi_phi))) {
-      return Squared(mu_phi) / phi_phi;
+    const double determinant = phi_phi * odds_odds - Square(phi_odds);
+    if (!(determinant > 1e-9 * Square(phi_phi))) {
+      return Square(mu_phi) / phi_phi;
     }
-    return (Squared(mu_phi) * odds_odds - 2 * mu_phi * mu_odds * phi_odds +
-            Squared(mu_odds) * phi_phi) /
+    return (Square(mu_phi) * odds_odds - 2 * mu_phi * mu_odds * phi_odds +
+            Square(mu_odds) * phi_phi) /
            determinant;
   }
 
@@ -98,7 +95,7 @@ struct GroupSums {
   double Degrees(double if_sure) const {
     double information_on_phi = phi_phi;
     if (odds_odds > 1e-9 * phi_phi) {
-      information_on_phi -= Squared(phi_odds) / odds_odds;
+      information_on_phi -= Square(phi_odds) / odds_odds;
     }
     return std::clamp(0.5 * information_on_phi, kLeastKept * if_sure, if_sure);
   }
@@ -133,7 +130,7 @@ double PairVariance(const std::vector<RatioFeature>& features,
   double variance = 0;
   for (const int n : pairs) {
     variance += slopes[n] / mixture.multiplicity[n] -
-                Squared(slopes[n] * features[n].log_ratio_stddev) *
+                Square(slopes[n] * features[n].log_ratio_stddev) *
                     mixture.noise2[features[n].group];
   }
   for (const bool is_first : {true, false}) {
@@ -166,7 +163,7 @@ double SharedSquares(const std::vector<RatioFeature>& features,
         const RatioFeature& pair = features[*begin];
         const Moves& moves = is_first ? pair.by_first : pair.by_last;
         const double scale =
-            mixture.probability[*begin] / Squared(pair.log_ratio_stddev);
+            mixture.probability[*begin] / Square(pair.log_ratio_stddev);
         double own = 0;
         for (std::size_t k = 0; k < sum.size(); ++k) {
           own += scale * moves[k] * moves[k];
@@ -224,10 +221,10 @@ CellSpread FindCellSpread(const std::vector<RatioFeature>& features,
     expected2 += variance * variance;
   }
   if (!(expected > 0)) return {};
-  const double num_cells = std::max(0.0, Squared(expected) / expected2 - 1);
+  const double num_cells = std::max(0.0, Square(expected) / expected2 - 1);
   return {(kPriorCells + num_cells * observed / expected) /
               (kPriorCells + num_cells),
-          num_cells / Squared(kPriorCells + num_cells)};
+          num_cells / Square(kPriorCells + num_cells)};
 }
 
 }  // namespace
@@ -277,7 +274,7 @@ RatioVariance FindRatioVariance(const std::vector<RatioFeature>& features,
     }
     const double share = sums[g].curvature / curvature;
     variance += of_group;
-    spread += Squared(of_group) / degrees;
+    spread += Square(of_group) / degrees;
     meier += 2 * share * (1 - share) / degrees;
     result.information_share[g] = share;
   }
@@ -286,7 +283,7 @@ RatioVariance FindRatioVariance(const std::vector<RatioFeature>& features,
   const CellSpread cells =
       FindCellSpread(features, mixture, slopes, information);
   const double degrees =
-      1 / (spread / Squared(variance) + cells.relative_variance);
+      1 / (spread / Square(variance) + cells.relative_variance);
   result.stddev = StudentFactor(degrees) *
                   std::sqrt(variance * meier / kept * cells.factor) / curvature;
   return result;

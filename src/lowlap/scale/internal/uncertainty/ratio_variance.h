@@ -6,6 +6,11 @@
 
 namespace lowlap {
 
+/// Candidates that are taken as wrong beforehand, of each kind.
+inline constexpr double kPriorWrong = 0.5;
+
+inline double Square(double value) { return value * value; }
+
 /// Where the expectation maximisation of RefineRatio ends.
 struct RatioMixture {
   double log_ratio = 0;
