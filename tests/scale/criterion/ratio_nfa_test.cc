@@ -14,51 +14,23 @@
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/scale/internal/search/ratio_sweep.h"
+#include "scale/even_evidence.h"
 
 namespace lowlap {
 namespace {
 
-// Unrelated ratios are even within a range; errors are in units of a width.
-constexpr double kRange = 8;
+using testing::Even;
+using testing::EvenEvidence;
+using testing::EvidenceOf;
 
-class Even : public Evidence {
- public:
-  Even(const std::vector<double>& log_ratios, double width) : width_(width) {
-    for (const double log_ratio : log_ratios) {
-      AddCandidate({CandidateStatus::kValid, log_ratio, width});
-    }
-  }
-  float ErrorOf(double tau, int candidate) const override {
-    return static_cast<float>(
-        std::abs(std::log(tau) - ratios()[candidate].log_ratio) / width_);
-  }
-  double NumTests() const override { return size(); }
-  std::optional<LadderProbabilities> Background() const override {
-    LadderProbabilities log10_alpha;
-    for (int step = 0; step < kNumThresholds; ++step) {
-      log10_alpha[step] = Log10Alpha(step);
-    }
-    return log10_alpha;
-  }
-  double Log10Alpha(int step) const {
-    return std::log10(
-        std::min(1.0, 2 * width_ * LadderThresholdPx(step) / kRange));
-  }
+using Kinds = std::vector<std::shared_ptr<const EvenEvidence>>;
 
- private:
-  double width_;
-};
-
-std::shared_ptr<Even> Units(int count, double width) {
-  return std::make_shared<Even>(std::vector<double>(count, 0.0), width);
+std::shared_ptr<const EvenEvidence> Units(int count, double width) {
+  return Even(std::vector<double>(count, 0.0), width);
 }
 
-using Kinds = std::vector<std::shared_ptr<Even>>;
-
-TripletEvidence EvidenceOf(const Kinds& kinds) {
-  TripletEvidence evidence;
-  for (const auto& kind : kinds) evidence.kinds.push_back({"", kind});
-  return evidence;
+RatioSupport SupportOf(const Kinds& kinds) {
+  return RatioSupport(EvidenceOf({kinds.begin(), kinds.end()}));
 }
 
 // So many inliers from a step on.
@@ -70,7 +42,7 @@ LadderCounts From(int step, int inliers) {
 
 // The tests are the units, times 4 for one kind and 8 for two.
 RatioNfa Evaluate(const Kinds& kinds, const SupportCounts& counts) {
-  const RatioSupport support(EvidenceOf(kinds));
+  const RatioSupport support = SupportOf(kinds);
   return RatioNfaCriterion(support, {}, NfaForm::kCalibrated)
       .Evaluate(0, counts);
 }
@@ -81,7 +53,7 @@ double Log10Binomial(int n, int k) {
 }
 
 // The term of k inliers among n at a step.
-double Term(const Even& kind, int n, int k, int step) {
+double Term(const EvenEvidence& kind, int n, int k, int step) {
   return std::log10(kNumThresholds) + Log10Binomial(n, k) +
          k * kind.Log10Alpha(step);
 }
@@ -178,7 +150,7 @@ TEST(RatioNfa, IsNeverBelowTheBoundFromCountsThatItDoesNotExceed) {
                                  static_cast<int>(random.Index(3)) / 2);
       }
     }
-    const RatioSupport support(EvidenceOf(kinds));
+    const RatioSupport support = SupportOf(kinds);
     const RatioNfaCriterion criterion(support, {}, NfaForm::kCalibrated);
     const RatioNfa nfa = criterion.Evaluate(0, least);
     const RatioNfaBound bound = criterion.Bound(-1, 1, most);
@@ -200,14 +172,14 @@ TEST(RatioNfa, IsBelowEpsilonInFewerThanThatShareOfUnrelatedTriplets) {
     const auto unrelated = [&](int count, double width) {
       std::vector<double> log_ratios;
       for (int n = 0; n < count; ++n) {
-        log_ratios.push_back(random.Uniform(-kRange / 2, kRange / 2));
+        log_ratios.push_back(EvenEvidence::kRange * random.Uniform(-0.5, 0.5));
       }
-      return std::make_shared<Even>(log_ratios, width);
+      return Even(log_ratios, width);
     };
     int false_alarms = 0;
     for (int n = 0; n < kTriplets; ++n) {
-      const RatioSupport support(EvidenceOf(
-          {unrelated(1, surest), unrelated(5, 0.01), unrelated(3, 0.05)}));
+      const RatioSupport support = SupportOf(
+          {unrelated(1, surest), unrelated(5, 0.01), unrelated(3, 0.05)});
       const RatioNfaCriterion criterion(support, {}, NfaForm::kCalibrated);
       false_alarms +=
           SweepRatios(support, criterion).nfa.log10_nfa < std::log10(kEpsilon);
