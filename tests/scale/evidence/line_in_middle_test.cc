@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lowlap/geometry/internal/rotation.h"
+#include "scale/synthetic_room.h"
 
 namespace lowlap {
 namespace {
@@ -15,9 +16,7 @@ RigidTransform Neighbor() {
 }
 
 NormalizedSegment Seen(const Vec3& a, const Vec3& b) {
-  NormalizedSegment segment{a / a.z(), b / b.z(), Vec3::Zero()};
-  segment.normal = segment.start.cross(segment.end).normalized();
-  return segment;
+  return testing::MakeSegment(a / a.z(), b / b.z());
 }
 
 const Vec3 kA(-0.5, 0.3, 4), kB(0.7, 0.9, 5);
