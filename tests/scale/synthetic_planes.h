@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "lowlap/core/internal/random.h"
@@ -34,6 +35,12 @@ struct SyntheticPlanes {
   std::vector<MatchedPoint> points_ij, points_jk;
   std::vector<MatchedLine> lines_ij, lines_jk;
 
+  /// Of the wall that a ray of the middle view meets, at unit baseline of
+  /// (i, j).
+  double InverseDepthIj(const Vec3& ray) const {
+    const int third = static_cast<int>((ray.x() + 0.6) / 0.4);
+    return baseline_i * walls[std::clamp(third, 0, kNumWalls - 1)].dot(ray);
+  }
   PairPlanes PlanesIj() const {
     return FindPlanes(DepthSamples(geometry.cami_from_camj, kFocalPx, kFocalPx,
                                    points_ij, lines_ij));

@@ -1,9 +1,14 @@
 // Tutorial 4: a kind of evidence of one's own, beside the built-in ones.
 //
 // A robot that took the photographs measured how far it moved between some of
-// them, to within a tenth of a percent. Such an odometry says something about
-// the ratio of two neighbouring baselines, as coplanar lines or trifocal points
-// do. The estimator weighs all of them by what each would say by chance.
+// them, to within a percent. Such an odometry says something about the ratio of
+// two neighbouring baselines, as coplanar lines or trifocal points do. The
+// estimator weighs all of them by what each would say by chance.
+//
+// One reading is no evidence for itself, however sure it is: something must
+// agree with it. Here the lines of views 4, 5 and 6 agree, but they are so few
+// that chance explains it as well. It does not explain that they agree on what
+// the odometry says: with it, that ratio is meaningful.
 //
 //   cmake -S tutorials/04_kind_of_evidence -B build/tutorial04
 //   cmake --build build/tutorial04 && build/tutorial04/kind_of_evidence
@@ -83,6 +88,40 @@ int Fail(const lowlap::Error& error) {
   return 1;
 }
 
+// The scene solved with the ratios that these kinds tell.
+lowlap::Result<lowlap::Scene> Solve(lowlap::Scene scene,
+                                    const lowlap::EvidenceKinds& kinds) {
+  lowlap::SolveOptions options;
+  options.scale_estimator =
+      std::make_shared<lowlap::AContrarioScaleEstimator>(kinds);
+  const auto solved =
+      lowlap::SolveScene(&scene, options, lowlap::RunContext(), nullptr);
+  if (!solved) return tl::unexpected<lowlap::Error>(solved.error());
+  return scene;
+}
+
+// Prints the ratios and returns how many are meaningful.
+int Show(const lowlap::Scene& scene, const lowlap::SyntheticScene& truth) {
+  int meaningful = 0;
+  std::printf("views   ratio   true    inliers of candidates by kind\n");
+  for (const lowlap::ScaleRatio& ratio : scene.scale_ratios) {
+    std::printf("%u-%u-%u  %6.4f  %6.4f ", ratio.views.first.value(),
+                ratio.views.middle.value(), ratio.views.last.value(),
+                std::exp(ratio.log_ratio),
+                std::exp(*truth.TrueLogRatio(ratio.views)));
+    for (const lowlap::KindSupport& kind : ratio.kinds) {
+      std::printf("  %s %d/%d", kind.kind.c_str(), kind.inliers,
+                  kind.candidates);
+    }
+    std::printf("  %s\n", lowlap::RatioVerdictName(ratio.verdict));
+    meaningful += ratio.verdict == lowlap::RatioVerdict::kMeaningful;
+  }
+  const auto errors = lowlap::EvaluatePoses(scene, truth.true_poses);
+  std::printf("%d of %d cameras, off by %.3f m on average\n\n",
+              errors.num_solved, errors.num_total, errors.position.mean);
+  return meaningful;
+}
+
 }  // namespace
 
 int main() {
@@ -91,47 +130,28 @@ int main() {
   room.num_views = 7;
   room.pairs = "chain";
   room.points_per_wall = 25;
-  room.lines_per_wall = 40;
+  room.lines_per_wall = 30;
   room.trifocal_point_share = room.trifocal_line_share = 0;
   room.noise_px = 0.5;
-  room.seed = 3;
   const auto simulated = lowlap::Simulate(room);
   if (!simulated) return Fail(simulated.error());
 
-  // The robot knows all baselines but one, to 0.1 %.
+  // The robot knows all baselines but one, to 1 %.
   Odometry::Lengths lengths;
   int n = 0;
   for (const auto& [views, length] : simulated->true_baselines) {
-    if (n++ != 2) lengths[views] = length * (n % 2 == 0 ? 1.0005 : 0.9995);
+    if (n++ != 2) lengths[views] = length * (n % 2 == 0 ? 1.005 : 0.995);
   }
 
   auto kinds = lowlap::EvidenceRegistry::BuiltIn().Make({}, {});
   if (!kinds) return Fail(kinds.error());
-  kinds->push_back(std::make_shared<Odometry>(lengths, 0.001));
-  lowlap::SolveOptions options;
-  options.scale_estimator =
-      std::make_shared<lowlap::AContrarioScaleEstimator>(*kinds);
-  lowlap::Scene scene = simulated->scene;
-  const auto solved =
-      lowlap::SolveScene(&scene, options, lowlap::RunContext(), nullptr);
-  if (!solved) return Fail(solved.error());
+  const auto without = Solve(simulated->scene, *kinds);
+  if (!without) return Fail(without.error());
+  kinds->push_back(std::make_shared<Odometry>(lengths, 0.01));
+  const auto with = Solve(simulated->scene, *kinds);
+  if (!with) return Fail(with.error());
 
-  bool odometry_spoke = false;
-  std::printf("views   ratio   true    inliers of candidates by kind\n");
-  for (const lowlap::ScaleRatio& ratio : scene.scale_ratios) {
-    std::printf("%u-%u-%u  %6.4f  %6.4f ", ratio.views.first.value(),
-                ratio.views.middle.value(), ratio.views.last.value(),
-                std::exp(ratio.log_ratio),
-                std::exp(*simulated->TrueLogRatio(ratio.views)));
-    for (const lowlap::KindSupport& kind : ratio.kinds) {
-      std::printf("  %s %d/%d", kind.kind.c_str(), kind.inliers,
-                  kind.candidates);
-      odometry_spoke |= kind.kind == "odometry" && kind.inliers > 0;
-    }
-    std::printf("  %s\n", lowlap::RatioVerdictName(ratio.verdict));
-  }
-  const auto errors = lowlap::EvaluatePoses(scene, simulated->true_poses);
-  std::printf("%d of %d cameras, off by %.3f m on average\n", errors.num_solved,
-              errors.num_total, errors.position.mean);
-  return odometry_spoke && errors.num_solved == room.num_views ? 0 : 1;
+  const int few = Show(*without, *simulated);
+  const int more = Show(*with, *simulated);
+  return more > few ? 0 : 1;
 }

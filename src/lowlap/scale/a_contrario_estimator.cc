@@ -24,9 +24,8 @@ RatioOptimum FindOptimum(const RatioSupport& support,
   const std::vector<Hypothesis>& hypotheses = support.hypotheses();
   SupportWorkspace workspace;
   const auto nfa_of = [&](int index) {
-    const Hypothesis& hypothesis = hypotheses[index];
-    return criterion.Evaluate(hypothesis,
-                              support.Count(hypothesis.log_ratio, &workspace));
+    const double log_ratio = hypotheses[index].log_ratio;
+    return criterion.Evaluate(log_ratio, support.Count(log_ratio, &workspace));
   };
   const int best =
       SearchRatios(hypotheses, search == RatioSearch::kExhaustive, nfa_of);
@@ -66,7 +65,7 @@ Result<ScaleRatio> AContrarioScaleEstimator::Judge(
   InlierThresholds thresholds;
   for (int k = 0; k < support.num_kinds(); ++k) {
     const KindNfa& of_kind = nfa.kinds[k];
-    const bool speaks = !meaningful || of_kind.log10_nfa < 0;
+    const bool speaks = !meaningful || of_kind.speaks;
     thresholds.push_back(
         {speaks ? LadderThresholdPx(of_kind.step) : 0.0,
          support.kind(k).units().tiers[of_kind.tier].num_candidates});

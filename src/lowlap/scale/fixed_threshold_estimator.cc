@@ -59,18 +59,16 @@ Result<ScaleRatio> FixedThresholdScaleEstimator::Judge(
 
   SupportWorkspace workspace;
   const RatioNfaCriterion criterion(support, triplet, form_);
-  RecordNfa(
-      criterion.Evaluate(hypotheses[best],
-                         support.Count(hypotheses[best].log_ratio, &workspace)),
-      support, &ratio);
+  const double log_ratio = hypotheses[best].log_ratio;
+  RecordNfa(criterion.Evaluate(log_ratio, support.Count(log_ratio, &workspace)),
+            support, &ratio);
   ratio.verdict = agreement_of(best).inliers > 1 ? RatioVerdict::kMeaningful
                                                  : RatioVerdict::kNotMeaningful;
   InlierThresholds thresholds;
   for (int k = 0; k < support.num_kinds(); ++k) {
     thresholds.push_back({threshold_px_, support.kind(k).size()});
   }
-  RefineOnInliers(triplet, support, thresholds, hypotheses[best].log_ratio,
-                  &ratio);
+  RefineOnInliers(triplet, support, thresholds, log_ratio, &ratio);
   for (KindSupport& kind : ratio.kinds) kind.threshold_px = threshold_px_;
   return ratio;
 }

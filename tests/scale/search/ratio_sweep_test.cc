@@ -61,7 +61,7 @@ double ReferenceLog10Nfa(const RatioSupport& support,
   double least = std::numeric_limits<double>::infinity();
   for (const Hypothesis& hypothesis : support.hypotheses()) {
     const RatioNfa nfa = criterion.Evaluate(
-        hypothesis, support.Count(hypothesis.log_ratio, &workspace));
+        hypothesis.log_ratio, support.Count(hypothesis.log_ratio, &workspace));
     least = std::min(least, nfa.log10_nfa);
   }
   return least;
@@ -76,9 +76,9 @@ double ScannedLog10Nfa(const RatioSupport& support,
   double least = std::numeric_limits<double>::infinity();
   for (int n = 0; n <= kNodes; ++n) {
     const double log_ratio = low + (high - low) * n / kNodes;
-    const RatioOptimum at =
-        criterion.EvaluateAt(log_ratio, support.Count(log_ratio, &workspace));
-    least = std::min(least, at.nfa.log10_nfa);
+    const RatioNfa nfa =
+        criterion.Evaluate(log_ratio, support.Count(log_ratio, &workspace));
+    least = std::min(least, nfa.log10_nfa);
   }
   return least;
 }
@@ -101,9 +101,9 @@ TEST(RatioSweep, IsNeverWorseThanTheRatioOfAnyFeature) {
     SupportWorkspace workspace;
     EXPECT_EQ(optimum.nfa.log10_nfa,
               criterion
-                  .EvaluateAt(optimum.log_ratio,
-                              support.Count(optimum.log_ratio, &workspace))
-                  .nfa.log10_nfa);
+                  .Evaluate(optimum.log_ratio,
+                            support.Count(optimum.log_ratio, &workspace))
+                  .log10_nfa);
   }
   EXPECT_GE(better, kTriplets / 10);
 }

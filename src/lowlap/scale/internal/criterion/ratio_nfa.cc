@@ -95,7 +95,7 @@ RatioNfaCriterion::RatioNfaCriterion(const RatioSupport& support,
       factorials_(MostUnits(support)),
       backgrounds_(support.num_tiers()),
       values_(support.num_tiers()),
-      sampled_(support.num_kinds()) {
+      choices_(support.num_kinds()) {
   if (form_ == NfaForm::kPaper) return;
   for (int k = 0; k < support.num_kinds(); ++k) {
     if (const auto law = support.kind(k).Background()) {
@@ -140,43 +140,28 @@ void RatioNfaCriterion::MeasureBackground(int kind,
   }
 }
 
-RatioNfa RatioNfaCriterion::Total(std::vector<KindNfa> terms) const {
-  RatioNfa nfa;
-  nfa.log10_nfa = nfa.uncapped = log10_tests_;
-  for (const KindNfa& term : terms) {
-    nfa.log10_nfa += term.log10_nfa;
-    nfa.uncapped += term.uncapped;
-  }
-  nfa.kinds = std::move(terms);
-  return nfa;
-}
-
-RatioNfa RatioNfaCriterion::Evaluate(const Hypothesis& hypothesis,
+RatioNfa RatioNfaCriterion::Evaluate(double log_ratio,
                                      const SupportCounts& counts) const {
   if (form_ == NfaForm::kPaper) return EvaluatePaper(counts);
   FindValues(counts, [&](int tier) {
-    return backgrounds_[tier].density.Log10Relative(hypothesis.log_ratio);
+    return backgrounds_[tier].density.Log10Relative(log_ratio);
   });
-  std::vector<KindNfa> terms;
-  for (int k = 0; k < support_.num_kinds(); ++k) {
-    terms.push_back(LeastOverTiers(
-        k, hypothesis.kind == k ? support_.TierOf(k, hypothesis.index)
-                                : support_.kind(k).units().num_tiers()));
-  }
-  return Total(std::move(terms));
+  return LeastOverChoices();
 }
 
 RatioNfa RatioNfaCriterion::EvaluatePaper(const SupportCounts& counts) const {
-  std::vector<KindNfa> terms;
+  RatioNfa nfa;
   for (int k = 0; k < support_.num_kinds(); ++k) {
     const EvidenceUnits& units = support_.kind(k).units();
     const int last = units.num_tiers() - 1;
-    static_cast<NfaTerm&>(terms.emplace_back()) = support_.kind(k).PaperTerm(
+    const NfaTerm term = support_.kind(k).PaperTerm(
         factorials_,
         &counts[support_.FirstCounter(k) + last * units.num_sides]);
-    terms.back().tier = last;
+    nfa.kinds.push_back({term, last, term.log10_nfa < 0});
+    nfa.log10_nfa += term.log10_nfa;
+    nfa.uncapped += term.uncapped;
   }
-  return Total(std::move(terms));
+  return nfa;
 }
 
 template <class Density>
@@ -213,69 +198,95 @@ void RatioNfaCriterion::FindValues(const SupportCounts& counts,
   }
 }
 
-int RatioNfaCriterion::LastTier(int kind) const {
-  const auto& tiers = support_.kind(kind).units().tiers;
-  int last = 0;
-  for (std::size_t t = 1; t < tiers.size(); ++t) {
-    if (tiers[t].num_candidates > tiers[t - 1].num_candidates) {
-      last = static_cast<int>(t);
-    }
-  }
-  return last;
-}
-
-KindNfa RatioNfaCriterion::LeastOverTiers(int kind, int sampled_tier) const {
+RatioNfaCriterion::Choice RatioNfaCriterion::LeastChoice(int kind,
+                                                         double limit) const {
   const EvidenceUnits& units = support_.kind(kind).units();
-  KindNfa best;
-  bool first_tier = true;
+  Choice least;
   for (int t = 0; t < units.num_tiers(); ++t) {
     if (units.tiers[t].num_candidates == 0) continue;
     const TierValues& values = values_[support_.FirstTier(kind) + t];
-    const NfaTerm term =
-        LeastOverSteps(t >= sampled_tier ? values.sampled : values.unsampled);
-    if (first_tier || term.uncapped < best.uncapped) {
-      static_cast<NfaTerm&>(best) = term;
-      best.tier = t;
+    for (int step = 0; step < kNumThresholds; ++step) {
+      const Choice choice = {values.unsampled[step],
+                             std::min(0.0, values.sampled[step]), t, step};
+      if (choice.unsampled < least.unsampled && choice.Loss() < limit) {
+        least = choice;
+      }
     }
-    first_tier = false;
   }
+  return least;
+}
+
+KindNfa RatioNfaCriterion::LeastUncapped(
+    int kind, LadderValues TierValues::*values) const {
+  const EvidenceUnits& units = support_.kind(kind).units();
+  KindNfa best;
+  best.uncapped = std::numeric_limits<double>::infinity();
+  for (int t = 0; t < units.num_tiers(); ++t) {
+    if (units.tiers[t].num_candidates == 0) continue;
+    const NfaTerm term =
+        LeastOverSteps(values_[support_.FirstTier(kind) + t].*values);
+    if (term.uncapped < best.uncapped) best = {term, t, false};
+  }
+  best.log10_nfa = 0;
   return best;
 }
 
-RatioOptimum RatioNfaCriterion::EvaluateAt(double log_ratio,
-                                           const SupportCounts& counts) const {
-  FindValues(counts, [&](int tier) {
-    return backgrounds_[tier].density.Log10Relative(log_ratio);
-  });
-  return {log_ratio, LeastOverKinds()};
+RatioNfa RatioNfaCriterion::LeastUncapped() const {
+  RatioNfa nfa;
+  nfa.log10_nfa = nfa.uncapped = log10_tests_;
+  KindNfa sample;
+  int sampled = 0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (int k = 0; k < support_.num_kinds(); ++k) {
+    nfa.kinds.push_back(LeastUncapped(k, &TierValues::unsampled));
+    const KindNfa with_sample = LeastUncapped(k, &TierValues::sampled);
+    const double loss = with_sample.uncapped - nfa.kinds[k].uncapped;
+    if (loss <= most) continue;
+    most = loss;
+    sampled = k;
+    sample = with_sample;
+  }
+  if (!nfa.kinds.empty()) nfa.kinds[sampled] = sample;
+  for (const KindNfa& kind : nfa.kinds) nfa.uncapped += kind.uncapped;
+  return nfa;
 }
 
-RatioNfa RatioNfaCriterion::LeastOverKinds() const {
-  std::vector<KindNfa> terms;
-  terms.reserve(support_.num_kinds());
-  for (int k = 0; k < support_.num_kinds(); ++k) {
-    terms.push_back(LeastOverTiers(k, support_.kind(k).units().num_tiers()));
-    sampled_[k] = LeastOverTiers(k, LastTier(k));
+RatioNfa RatioNfaCriterion::LeastOverChoices() const {
+  RatioNfa nfa = LeastUncapped();
+  const int num_kinds = support_.num_kinds();
+  for (int k = 0; k < num_kinds; ++k) {
+    choices_[k] = LeastChoice(k, std::numeric_limits<double>::infinity());
   }
-  int best_kind = 0;
-  NfaTerm best;
-  for (int k = 0; k < support_.num_kinds(); ++k) {
-    NfaTerm total;
-    total.log10_nfa = total.uncapped = log10_tests_;
-    for (int m = 0; m < support_.num_kinds(); ++m) {
-      const NfaTerm& term = m == k ? sampled_[m] : terms[m];
-      total.log10_nfa += term.log10_nfa;
-      total.uncapped += term.uncapped;
+  // The best choices, then the best that lose less and less.
+  while (true) {
+    int sampled = 0;
+    for (int k = 1; k < num_kinds; ++k) {
+      if (choices_[k].Loss() > choices_[sampled].Loss()) sampled = k;
     }
-    if (k == 0 ||
-        (total.log10_nfa != best.log10_nfa ? total.log10_nfa < best.log10_nfa
-                                           : total.uncapped < best.uncapped)) {
-      best = total;
-      best_kind = k;
+    double witnesses = log10_tests_, total = log10_tests_;
+    for (int k = 0; k < num_kinds; ++k) {
+      const Choice& choice = choices_[k];
+      witnesses += choice.unsampled;
+      total += k == sampled ? choice.sampled : choice.unsampled;
+    }
+    if (!(witnesses < nfa.log10_nfa)) return nfa;
+    if (total < nfa.log10_nfa) {
+      nfa.log10_nfa = total;
+      for (int k = 0; k < num_kinds; ++k) {
+        const Choice& choice = choices_[k];
+        KindNfa& kind = nfa.kinds[k];
+        kind.speaks = choice.unsampled < 0;
+        kind.log10_nfa = k == sampled ? choice.sampled : choice.unsampled;
+        if (!kind.speaks) continue;
+        kind.tier = choice.tier;
+        kind.step = choice.step;
+      }
+    }
+    const double limit = choices_[sampled].Loss();
+    for (int k = 0; k < num_kinds; ++k) {
+      if (choices_[k].Loss() >= limit) choices_[k] = LeastChoice(k, limit);
     }
   }
-  if (!terms.empty()) terms[best_kind] = sampled_[best_kind];
-  return {best.log10_nfa, best.uncapped, std::move(terms)};
 }
 
 RatioNfaBound RatioNfaCriterion::Bound(double low, double high,
@@ -284,33 +295,25 @@ RatioNfaBound RatioNfaCriterion::Bound(double low, double high,
     return backgrounds_[tier].density.LeastLog10Relative(low, high);
   });
   RatioNfaBound bound;
-  bound.log10_nfa = LeastOverKinds().log10_nfa;
+  bound.log10_nfa = LeastOverChoices().log10_nfa;
   bound.tiers.resize(support_.num_tiers());
 
-  // The kinds at their best, unsampled.
-  std::vector<double> best;
+  std::vector<double> best;  // of every kind, unsampled
   double all = log10_tests_;
   for (int k = 0; k < support_.num_kinds(); ++k) {
     best.push_back(
-        LeastOverTiers(k, support_.kind(k).units().num_tiers()).log10_nfa);
+        LeastChoice(k, std::numeric_limits<double>::infinity()).unsampled);
     all += best.back();
   }
   for (int k = 0; k < support_.num_kinds(); ++k) {
-    const int num_tiers = support_.kind(k).units().num_tiers();
-    for (int t = 0; t < num_tiers; ++t) {
+    for (int t = 0; t < support_.kind(k).units().num_tiers(); ++t) {
       const int at = support_.FirstTier(k) + t;
-      // A kind alone is always the sampled one, but in a nearer tier.
-      const bool is_sampled = support_.num_kinds() == 1 && t + 1 == num_tiers;
-      const bool may_be_sampled = t + 1 == num_tiers;
       for (int step = 0; step < kNumThresholds; ++step) {
-        const double sampled = values_[at].sampled[step];
-        const double unsampled = values_[at].unsampled[step];
-        const double value = is_sampled       ? sampled
-                             : may_be_sampled ? std::min(sampled, unsampled)
-                                              : unsampled;
-        bound.tiers[at][step] = value < 0
-                                    ? all - best[k] + value
-                                    : std::numeric_limits<double>::infinity();
+        // The most that any kind loses is no less than what this one does.
+        bound.tiers[at][step] =
+            values_[at].unsampled[step] < 0
+                ? all - best[k] + std::min(0.0, values_[at].sampled[step])
+                : std::numeric_limits<double>::infinity();
       }
     }
   }

@@ -10,9 +10,11 @@
 
 namespace lowlap {
 
-/// A kind at its best threshold, in its best tier.
+/// What a kind says, at one threshold in one tier.
 struct KindNfa : NfaTerm {
   int tier = 0;
+  /// Its inliers there are part of the total, as witnesses or as the sample.
+  bool speaks = false;
 };
 
 /// The NFA of one tau, in total (the sum of the logs) and by kind of the
@@ -64,7 +66,7 @@ struct RatioNfaBound {
 ///  - A pair has two members: see CalibratedPairValues.
 ///  - Of the tiers of a kind the best counts, which is paid for by their
 ///    number.
-///  - Only the kind of the sampled candidate loses one sample.
+///  - One sample is taken from all kinds together: see Evaluate.
 ///  - Every probability, and the NFA of every kind, is at most 1: a kind with
 ///    nothing to say never outvotes the others.
 ///  - The number of tests is the number of ratios at which a candidate becomes
@@ -82,14 +84,18 @@ class RatioNfaCriterion {
   RatioNfaCriterion(const RatioSupport& support, const TripletView& triplet,
                     NfaForm form);
 
-  /// The NFA of a hypothesis, from the inliers at its ratio.
-  RatioNfa Evaluate(const Hypothesis& hypothesis,
-                    const SupportCounts& counts) const;
-  /// The NFA of any log ratio, in the calibrated form: the least over the kinds
-  /// that the ratio may have been computed from. The inliers that decide share
-  /// an interval of ratios, and one of its ends is where one of them becomes an
-  /// inlier: trying all ends tries as many ratios as there are hypotheses.
-  RatioOptimum EvaluateAt(double log_ratio, const SupportCounts& counts) const;
+  /// The NFA of a log ratio, from the inliers there.
+  ///
+  /// In the calibrated form every kind speaks at one threshold in one tier, or
+  /// not at all. The inliers that speak share an interval of ratios, and it
+  /// begins where the last of them becomes one. That candidate is the sample
+  /// from which the ratio was computed, and no witness: trying all such ends
+  /// tries as many ratios as there are hypotheses. Whose it is cannot be told
+  /// from counts, so the kind counts as sampled that loses most by it. A kind
+  /// with one unit thus never says anything for itself, and one without inliers
+  /// is not the sample of others. Of all choices of thresholds and tiers the
+  /// least NFA counts.
+  RatioNfa Evaluate(double log_ratio, const SupportCounts& counts) const;
   /// Lower bounds over an interval of log ratios, from counts that no ratio in
   /// it exceeds.
   RatioNfaBound Bound(double low, double high, const SupportCounts& most) const;
@@ -111,15 +117,23 @@ class RatioNfaCriterion {
   template <class Density>
   void FindValues(const SupportCounts& counts,
                   const Density& log10_density) const;
-  // Of the tiers that have candidates; those from `sampled_tier` on are
-  // sampled.
-  KindNfa LeastOverTiers(int kind, int sampled_tier) const;
-  RatioNfa LeastOverKinds() const;
-  // A ratio from a candidate of a wider tier is not a sample of the nearer
-  // ones.
-  int LastTier(int kind) const;
-  // The sum of the terms.
-  RatioNfa Total(std::vector<KindNfa> terms) const;
+  // What a kind may say, as a witness alone and with the sample; nothing (0) if
+  // it is silent.
+  struct Choice {
+    double unsampled = 0;
+    double sampled = 0;
+    int tier = 0;
+    int step = 0;
+
+    double Loss() const { return sampled - unsampled; }
+  };
+  // The one that says most and loses less than `limit`.
+  Choice LeastChoice(int kind, double limit) const;
+  // A kind by itself at its best, silent.
+  KindNfa LeastUncapped(int kind, LadderValues TierValues::*values) const;
+  // All of them, the sample that is missed most taken away.
+  RatioNfa LeastUncapped() const;
+  RatioNfa LeastOverChoices() const;
 
   const RatioSupport& support_;
   NfaForm form_;
@@ -128,7 +142,7 @@ class RatioNfaCriterion {
   std::vector<Background> backgrounds_;  // by tier
   // Buffers.
   mutable std::vector<TierValues> values_;  // by tier
-  mutable std::vector<KindNfa> sampled_;    // by kind
+  mutable std::vector<Choice> choices_;     // by kind
 };
 
 }  // namespace lowlap

@@ -103,7 +103,8 @@ Result<RatioProfile> ProfileRatio(const TripletView& triplet,
        Grid(support.hypotheses().front().log_ratio,
             support.hypotheses().back().log_ratio, profile.mode.log_ratio)) {
     profile.nodes.push_back(
-        criterion.EvaluateAt(log_ratio, support.Count(log_ratio, &workspace)));
+        {log_ratio,
+         criterion.Evaluate(log_ratio, support.Count(log_ratio, &workspace))});
   }
   profile.second_mode = SecondMode(support, criterion, profile);
   // The ratio has paid for its tests.

@@ -107,10 +107,10 @@ class RatioSweeper {
   }
 
   void Try(double log_ratio) {
-    RatioOptimum optimum = criterion_.EvaluateAt(
-        log_ratio, support_.Count(log_ratio, &workspace_));
-    if (!has_best_ || optimum.nfa.BetterThan(best_.nfa)) {
-      best_ = std::move(optimum);
+    RatioNfa nfa =
+        criterion_.Evaluate(log_ratio, support_.Count(log_ratio, &workspace_));
+    if (!has_best_ || nfa.BetterThan(best_.nfa)) {
+      best_ = {log_ratio, std::move(nfa)};
     }
     has_best_ = true;
   }
@@ -190,7 +190,7 @@ class RatioSweeper {
     }
     SupportCounts counts(support_.num_counters());
     const auto score = [&](double log_ratio) {
-      if (CanBeat(criterion_.EvaluateAt(log_ratio, counts).nfa.log10_nfa)) {
+      if (CanBeat(criterion_.Evaluate(log_ratio, counts).log10_nfa)) {
         Try(log_ratio);
       }
     };

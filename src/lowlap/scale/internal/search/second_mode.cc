@@ -37,8 +37,9 @@ std::optional<RatioOptimum> FindSecondMode(const RatioSupport& support,
   if (others.size() < kFewest) return std::nullopt;
   SupportWorkspace workspace;
   const auto at = [&](double log_ratio) {
-    return criterion.EvaluateAt(log_ratio,
-                                support.Count(log_ratio, &workspace));
+    return RatioOptimum{
+        log_ratio,
+        criterion.Evaluate(log_ratio, support.Count(log_ratio, &workspace))};
   };
   const RatioOptimum second = at(HalfSampleMode(others));
   if (!(second.nfa.log10_nfa < 0)) return std::nullopt;

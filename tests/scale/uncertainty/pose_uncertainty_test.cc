@@ -1,0 +1,111 @@
+#include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "lowlap/geometry/internal/rotation.h"
+#include "scale/even_evidence.h"
+
+namespace lowlap {
+namespace {
+
+using Mat5 = Eigen::Matrix<double, 5, 5>;
+using Vec5 = Eigen::Matrix<double, 5, 1>;
+
+RelativePose Edge() {
+  RelativePose edge;
+  edge.views = {1, 2};
+  edge.rotation = RotationFromAngleAxis({0.1, 0.2, -0.1});
+  edge.direction = Vec3(1, 0.2, 0.1).normalized();
+  return edge;
+}
+
+TripletGeometry GeometryOf(const RelativePose& edge) {
+  TripletGeometry geometry;
+  geometry.camk_from_camj = UnitTransform(edge, 1, 2);
+  return geometry;
+}
+
+TEST(PerturbPose, IsEmptyWithoutAUsableCovariance) {
+  RelativePose edge = Edge();
+  EXPECT_TRUE(PerturbPose({}, edge, {0, 1, 2}).empty());
+  edge.covariance = Mat5::Identity() * std::numeric_limits<double>::infinity();
+  EXPECT_TRUE(PerturbPose({}, edge, {0, 1, 2}).empty());
+  Mat5 indefinite = Mat5::Identity();
+  indefinite(2, 2) = -1;
+  edge.covariance = indefinite;
+  EXPECT_TRUE(PerturbPose({}, edge, {0, 1, 2}).empty());
+}
+
+// Small errors: their squares add up to the covariance.
+TEST(PerturbPose, SpansTheCovariance) {
+  RelativePose edge = Edge();
+  Mat5 root;
+  for (int n = 0; n < 25; ++n) root(n / 5, n % 5) = 1e-5 * std::sin(3.0 * n);
+  const Mat5 covariance = root * root.transpose();
+  edge.covariance = covariance;
+  const TripletGeometry geometry = GeometryOf(edge);
+  const auto perturbed = PerturbPose(geometry, edge, {0, 1, 2});
+  ASSERT_EQ(perturbed.size(), 5u);
+  Mat5 sum = Mat5::Zero();
+  for (const TripletGeometry& moved : perturbed) {
+    EXPECT_EQ(moved.cami_from_camj.rotation, geometry.cami_from_camj.rotation);
+    EXPECT_NEAR(moved.camk_from_camj.translation.norm(), 1, 1e-12);
+    const Mat3 turn = moved.camk_from_camj.rotation * edge.rotation.transpose();
+    Vec5 error;
+    error << turn(2, 1), turn(0, 2), turn(1, 0),
+        TangentBasis(edge.direction).transpose() *
+            (moved.camk_from_camj.translation - edge.direction);
+    sum += error * error.transpose();
+  }
+  EXPECT_LT((sum - covariance).norm(), 1e-4 * covariance.norm());
+}
+
+// Its candidates move with the focal length of view i, of all geometries.
+class MovedByGeometry : public testing::EvenEvidence {
+ public:
+  using EvenEvidence::EvenEvidence;
+  std::vector<RatioCandidate> RatiosIn(
+      const TripletView&, const TripletGeometry& geometry,
+      const std::vector<int>& candidates) const override {
+    std::vector<RatioCandidate> moved;
+    for (const int n : candidates) {
+      moved.push_back(ratios()[n]);
+      moved.back().log_ratio += geometry.focal_i_px;
+    }
+    return moved;
+  }
+};
+
+TEST(PoseVariance, DoesNotFallWithTheNumberOfCandidates) {
+  TripletView triplet;
+  for (const double change : {0.03, -0.04}) {
+    triplet.pose_perturbations.emplace_back().focal_i_px = change;
+  }
+  for (const int count : {1, 10, 100}) {
+    const RatioSupport support(
+        testing::EvidenceOf({std::make_shared<MovedByGeometry>(
+            std::vector<double>(count, 0.5), 1)}));
+    std::vector<WeightedCandidate> candidates;
+    for (int n = 0; n < count; ++n) candidates.push_back({0, n, 1.0 + n});
+    EXPECT_NEAR(PoseVariance(triplet, support, candidates), 0.05 * 0.05, 1e-12);
+  }
+}
+
+TEST(PoseVariance, AveragesWhatMovesAndWhatDoesNot) {
+  TripletView triplet;
+  triplet.pose_perturbations.emplace_back().focal_i_px = 0.04;
+  const RatioSupport support(testing::EvidenceOf(
+      {std::make_shared<MovedByGeometry>(std::vector<double>{0}, 1),
+       testing::Even({0}, 1)}));
+  EXPECT_NEAR(PoseVariance(triplet, support, {{0, 0, 1}, {1, 0, 3}}),
+              0.01 * 0.01, 1e-15);
+  EXPECT_EQ(PoseVariance(triplet, support, {}), 0);
+  EXPECT_EQ(PoseVariance({}, support, {{0, 0, 1}}), 0);
+}
+
+}  // namespace
+}  // namespace lowlap
