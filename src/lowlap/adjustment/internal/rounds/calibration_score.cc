@@ -18,7 +18,7 @@ namespace {
 
 using MatX = Eigen::MatrixXd;
 using VecX = Eigen::VectorXd;
-using SparseMat = LinearisedProblem::SparseMat;
+using SparseMat = Eigen::SparseMatrix<double>;
 
 constexpr std::size_t kMaxSeparate = 16;
 constexpr double kFalseAlarms = 0.01;
@@ -104,76 +104,48 @@ struct Score {
   MatX variance;           // of u, from the landmarks' shares
 };
 
-// Columns: the free directions, and how the held parameters move the kept ones.
-struct Directions {
-  SparseMat free;
-  MatX held;
-};
-
+// `held` says how the held parameters move the kept columns; the columns
+// `free` move by themselves.
 std::optional<Score> ComputeScore(const LinearisedProblem& linearised,
-                                  const Directions& directions) {
-  const SparseMat hessian =
-      linearised.jacobian.transpose() * linearised.jacobian;
-  const SparseMat inverse = linearised.InverseOfEliminated(hessian);
-  const SparseMat kept = linearised.SchurComplement(hessian, inverse);
-  const int first = linearised.eliminated_size, size = linearised.KeptSize();
-
-  // What nothing determines (the scale of a link of two views) has no gradient
-  // either: it stays where it is.
-  constexpr double kDamping = 1e-10;
-  SparseMat free = directions.free.transpose() * kept * directions.free;
-  const VecX own =
-      SparseMat(hessian.block(first, first, size, size)).diagonal();
-  const VecX own_free = directions.free.transpose() * own;
-  for (Eigen::Index n = 0; n < free.cols(); ++n) {
-    free.coeffRef(n, n) += kDamping * own_free(n);
+                                  const std::vector<int>& free,
+                                  const MatX& held) {
+  std::vector<int> place(static_cast<std::size_t>(linearised.kept_size), -1);
+  for (std::size_t n = 0; n < free.size(); ++n) {
+    place[free[n]] = static_cast<int>(n);
   }
-  const Eigen::SimplicialLDLT<SparseMat> factor(free);
+  const auto free_count = static_cast<Eigen::Index>(free.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const int n : free) {
+    for (SparseMat::InnerIterator it(linearised.schur_complement, n); it;
+         ++it) {
+      const int row = place[it.row()];
+      if (row >= 0) entries.emplace_back(row, place[n], it.value());
+    }
+    // What nothing determines (the scale of a link of two views) has no
+    // gradient either: it stays where it is.
+    constexpr double kDamping = 1e-10;
+    entries.emplace_back(place[n], place[n],
+                         kDamping * linearised.kept_diagonal(n));
+  }
+  SparseMat free_part(free_count, free_count);
+  free_part.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<SparseMat> factor(free_part);
   if (factor.info() != Eigen::Success) return std::nullopt;
-  const MatX kept_held = kept * directions.held;
-  const MatX cross = directions.free.transpose() * kept_held;
+  const MatX kept_held = linearised.schur_complement * held;
+  MatX cross(free_count, held.cols());
+  for (const int n : free) cross.row(place[n]) = kept_held.row(n);
   const MatX solved = factor.solve(cross);
   Score score;
-  score.prior_information = directions.held.transpose() * kept_held;
+  score.prior_information = held.transpose() * kept_held;
   score.information = score.prior_information - cross.transpose() * solved;
-  const MatX efficient = directions.held - directions.free * solved;
-
-  // The residuals without what the landmarks' own freedom explains.
-  const SparseMat by_landmarks = linearised.jacobian.leftCols(first);
-  const VecX residuals =
-      linearised.residuals -
-      by_landmarks *
-          (inverse * (by_landmarks.transpose() * linearised.residuals));
-  using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-  const RowMajor rows = linearised.jacobian;
-  const Eigen::Index count = directions.held.cols();
-  score.u = VecX::Zero(count);
-  score.variance = MatX::Zero(count, count);
-  VecX share = VecX::Zero(count);
-  Eigen::Index landmark = -1;
-  const auto finish_landmark = [&] {
-    score.u += share;
-    score.variance += share * share.transpose();
-    share.setZero();
-  };
-  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
-    bool at_landmark = true;  // the first column of the row
-    for (RowMajor::InnerIterator it(rows, row); it; ++it) {
-      if (it.col() >= first) {
-        share += residuals(row) * it.value() *
-                 efficient.row(it.col() - first).transpose();
-      } else if (at_landmark && it.col() != landmark) {
-        finish_landmark();
-        landmark = it.col();
-      }
-      at_landmark = false;
-    }
-  }
-  finish_landmark();
-  const double redundancy = static_cast<double>(rows.rows()) - first;
-  const double unknowns = static_cast<double>(free.cols() + count);
-  if (!(redundancy > unknowns)) return std::nullopt;
-  score.variance *= redundancy / (redundancy - unknowns);
+  MatX efficient = held;
+  for (const int n : free) efficient.row(n) -= solved.row(place[n]);
+  const MatX shares = linearised.gradients * efficient;  // by landmark
+  score.u = shares.colwise().sum().transpose();
+  const double unknowns = static_cast<double>(free_count + held.cols());
+  if (!(linearised.redundancy > unknowns)) return std::nullopt;
+  score.variance = linearised.redundancy / (linearised.redundancy - unknowns) *
+                   shares.transpose() * shares;
   return score;
 }
 
@@ -296,10 +268,9 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
                          &state);
   const LinearisedProblem linearised(&builder);
 
-  // A column for every free direction and every held parameter.
   std::vector<Candidate> candidates;
-  std::vector<Eigen::Triplet<double>> free, moves;
-  std::vector<char> is_free(static_cast<std::size_t>(linearised.KeptSize()), 1);
+  std::vector<Eigen::Triplet<double>> moves;
+  std::vector<char> is_free(static_cast<std::size_t>(linearised.kept_size), 1);
   int count = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<int> column(groups[g].intrinsics.size());
@@ -326,20 +297,17 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
     }
   }
   if (candidates.empty()) return {};
-  int free_count = 0;
-  for (int n = 0; n < linearised.KeptSize(); ++n) {
-    if (is_free[static_cast<std::size_t>(n)]) {
-      free.emplace_back(n, free_count++, 1);
-    }
+  std::vector<int> free;
+  for (int n = 0; n < linearised.kept_size; ++n) {
+    if (is_free[static_cast<std::size_t>(n)]) free.push_back(n);
   }
-  Directions directions;
-  directions.free.resize(linearised.KeptSize(), free_count);
-  directions.free.setFromTriplets(free.begin(), free.end());
-  SparseMat held_directions(linearised.KeptSize(), count);
-  held_directions.setFromTriplets(moves.begin(), moves.end());
-  directions.held = held_directions;
+  MatX held_directions = MatX::Zero(linearised.kept_size, count);
+  for (const Eigen::Triplet<double>& move : moves) {
+    held_directions(move.row(), move.col()) = move.value();
+  }
 
-  const std::optional<Score> score = ComputeScore(linearised, directions);
+  const std::optional<Score> score =
+      ComputeScore(linearised, free, held_directions);
   if (!score) return {};
   Choose(*score, &candidates);
 
