@@ -38,28 +38,20 @@ struct Jacobian {
   std::vector<double> residuals;
 
   explicit Jacobian(ProblemBuilder* builder) {
-    ceres::Problem& problem = builder->problem();
-    const auto ordering = builder->Ordering();
-    std::vector<double*> all;
-    problem.GetParameterBlocks(&all);
-    for (const int group : {0, 1}) {
-      for (double* block : all) {
-        if (ordering->GroupId(block) != group ||
-            problem.IsParameterBlockConstant(block)) {
-          continue;
-        }
-        start.push_back(static_cast<int>(block_of.size()));
-        block_of.insert(block_of.end(),
-                        problem.ParameterBlockTangentSize(block),
-                        static_cast<int>(blocks.size()));
-        blocks.push_back(block);
-      }
-      if (group == 0) landmark_count = static_cast<int>(blocks.size());
+    const ceres::Problem& problem = builder->problem();
+    landmark_count = static_cast<int>(builder->eliminated().size());
+    blocks = builder->eliminated();
+    blocks.insert(blocks.end(), builder->kept().begin(), builder->kept().end());
+    for (std::size_t n = 0; n < blocks.size(); ++n) {
+      start.push_back(static_cast<int>(block_of.size()));
+      block_of.insert(block_of.end(),
+                      problem.ParameterBlockTangentSize(blocks[n]),
+                      static_cast<int>(n));
     }
     start.push_back(static_cast<int>(block_of.size()));
     ceres::Problem::EvaluateOptions options;
     options.parameter_blocks = blocks;
-    problem.Evaluate(options, nullptr, &residuals, nullptr, &rows);
+    builder->problem().Evaluate(options, nullptr, &residuals, nullptr, &rows);
   }
 
   int Size(int block) const { return start[block + 1] - start[block]; }
