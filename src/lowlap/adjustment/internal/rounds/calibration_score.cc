@@ -1,7 +1,6 @@
 #include "lowlap/adjustment/internal/rounds/calibration_score.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
@@ -96,6 +95,24 @@ std::vector<Group> MakeGroups(const AdjustmentOptions& options,
   return groups;
 }
 
+MatX Block(const MatX& matrix, const std::vector<int>& rows,
+           const std::vector<int>& cols) {
+  MatX block(rows.size(), cols.size());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    for (std::size_t col = 0; col < cols.size(); ++col) {
+      block(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col)) =
+          matrix(rows[row], cols[col]);
+    }
+  }
+  return block;
+}
+
+// a^T b. A function of its own, as every form of a product takes the compiler a
+// second.
+MatX TransposedProduct(const MatX& a, const MatX& b) {
+  return a.transpose().lazyProduct(b);
+}
+
 // The score test in the held parameters alone; see the header.
 struct Score {
   VecX u;
@@ -136,62 +153,53 @@ std::optional<Score> ComputeScore(const LinearisedProblem& linearised,
   for (const int n : free) cross.row(place[n]) = kept_held.row(n);
   const MatX solved = factor.solve(cross);
   Score score;
-  score.prior_information = held.transpose() * kept_held;
-  score.information = score.prior_information - cross.transpose() * solved;
+  score.prior_information = TransposedProduct(held, kept_held);
+  score.information =
+      score.prior_information - TransposedProduct(cross, solved);
   MatX efficient = held;
   for (const int n : free) efficient.row(n) -= solved.row(place[n]);
   const MatX shares = linearised.gradients * efficient;  // by landmark
   score.u = shares.colwise().sum().transpose();
   const double unknowns = static_cast<double>(free_count + held.cols());
   if (!(linearised.redundancy > unknowns)) return std::nullopt;
-  score.variance = linearised.redundancy / (linearised.redundancy - unknowns) *
-                   shares.transpose() * shares;
+  score.variance = TransposedProduct(shares, shares) *
+                   (linearised.redundancy / (linearised.redundancy - unknowns));
   return score;
-}
-
-MatX Block(const MatX& matrix, const std::vector<int>& rows,
-           const std::vector<int>& cols) {
-  MatX block(rows.size(), cols.size());
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    for (std::size_t col = 0; col < cols.size(); ++col) {
-      block(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col)) =
-          matrix(rows[row], cols[col]);
-    }
-  }
-  return block;
 }
 
 // The statistic of the parameters `which`, given that those in `free` are free;
 // 0 where the images do not determine them.
 double Statistic(const Score& score, const std::vector<int>& which,
                  const std::vector<int>& free) {
-  // u' = M (u_which, u_free).
+  // u' = M^T (u_which, u_free).
   std::vector<int> both = which;
   both.insert(both.end(), free.begin(), free.end());
   const auto size = static_cast<Eigen::Index>(which.size());
-  MatX reduce = MatX::Identity(size, static_cast<Eigen::Index>(both.size()));
+  MatX reduce = MatX::Identity(static_cast<Eigen::Index>(both.size()), size);
   if (!free.empty()) {
-    reduce.rightCols(static_cast<Eigen::Index>(free.size())) =
-        -Block(score.information, which, free) *
-        PseudoInverse(Block(score.information, free, free));
+    reduce.bottomRows(static_cast<Eigen::Index>(free.size())) =
+        -TransposedProduct(PseudoInverse(Block(score.information, free, free)),
+                           Block(score.information, free, which));
   }
-  const VecX u = reduce * Block(score.u, both, {0});
-  const MatX information =
-      reduce * Block(score.information, both, both) * reduce.transpose();
-  const MatX variance =
-      reduce * Block(score.variance, both, both) * reduce.transpose();
-  constexpr double kLeastShare = 1e-7;
+  const auto reduced = [&](const MatX& matrix) {
+    return TransposedProduct(
+        reduce, TransposedProduct(Block(matrix, both, both), reduce));
+  };
+  const VecX u = TransposedProduct(reduce, Block(score.u, both, {0}));
+  const MatX information = reduced(score.information);
   const VecX scale = Block(score.prior_information, which, which)
                          .diagonal()
                          .cwiseSqrt()
                          .cwiseInverse();
   if (!scale.allFinite()) return 0;
-  const Eigen::SelfAdjointEigenSolver<MatX> eigen(
-      MatX(scale.asDiagonal() * information * scale.asDiagonal()),
-      Eigen::EigenvaluesOnly);
-  if (!(eigen.eigenvalues()(0) > kLeastShare)) return 0;
-  const double by_model = u.dot(information.ldlt().solve(u));
-  const double by_spread = u.dot(PseudoInverse(variance) * u);
+  // No eigenvalue of the scaled information may be below this.
+  constexpr double kLeastShare = 1e-7;
+  MatX beyond = scale.asDiagonal() * information * scale.asDiagonal();
+  beyond.diagonal().array() -= kLeastShare;
+  if (!(Eigen::LDLT<MatX>(beyond).vectorD().minCoeff() > 0)) return 0;
+  const double by_model = u.dot(VecX(Eigen::LDLT<MatX>(information).solve(u)));
+  const double by_spread =
+      u.dot(VecX(TransposedProduct(PseudoInverse(reduced(score.variance)), u)));
   const double least = std::min(by_model, by_spread);
   return std::isfinite(least) ? std::max(0.0, least) : 0;
 }
@@ -315,8 +323,9 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
       Columns(candidates, [](const Candidate& c) { return c.chosen; });
   if (chosen.empty()) return {};
   VecX change = VecX::Zero(count);
-  const VecX step = -(PseudoInverse(Block(score->information, chosen, chosen)) *
-                      Block(score->u, chosen, {0}));
+  const VecX step = -TransposedProduct(
+      PseudoInverse(Block(score->information, chosen, chosen)),
+      Block(score->u, chosen, {0}));
   for (std::size_t n = 0; n < chosen.size(); ++n) {
     change(chosen[n]) = step(static_cast<Eigen::Index>(n));
   }

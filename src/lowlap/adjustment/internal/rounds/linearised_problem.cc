@@ -3,30 +3,13 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <map>
-#include <numeric>
 #include <utility>
 
 namespace lowlap {
 namespace {
 
 using MatX = Eigen::MatrixXd;
-using Triplets = std::vector<Eigen::Triplet<double>>;
-using LandmarkRow = std::pair<int, int>;  // by landmark
-// A landmark has at most the four degrees of freedom of a line.
-using LandmarkMat = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic,
-                                  Eigen::ColMajor, 4, 4>;
-
-template <class Matrix>
-Matrix SymmetricPseudoInverse(const Matrix& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Matrix> eigen(matrix);
-  const auto& values = eigen.eigenvalues();
-  const double floor = 1e-14 * std::max(0.0, values.maxCoeff());
-  Matrix scaled = eigen.eigenvectors();
-  for (Eigen::Index n = 0; n < values.size(); ++n) {
-    scaled.col(n) *= values(n) > floor ? 1 / values(n) : 0.0;
-  }
-  return scaled * eigen.eigenvectors().transpose();
-}
+using LandmarkRow = std::pair<int, int>;  // landmark, row
 
 // J with the blocks of its columns; those of landmarks come first.
 struct Jacobian {
@@ -74,55 +57,50 @@ class Elimination {
       : jacobian_(jacobian),
         problem_(problem),
         first_kept_(jacobian.start[jacobian.landmark_count]),
-        position_(jacobian.blocks.size()) {}
+        place_(jacobian.blocks.size()) {}
 
   // The rows [begin, end) of one landmark, or of none.
   void Add(const LandmarkRow* begin, const LandmarkRow* end) {
-    const int size = FindBlocks(begin, end);
-    const int own = OwnSize();
-    // Of all columns and, as the last one, the residuals.
-    MatX normal = MatX::Zero(size + 1, size + 1);
-    for (const LandmarkRow* row = begin; row != end; ++row) {
-      AddRow(row->second, &normal);
+    PlaceBlocks(begin, end);
+    normal_.assign(size_ * size_, 0);
+    for (const LandmarkRow* row = begin; row != end; ++row) AddRow(row->second);
+    std::size_t first = 0;  // of the kept blocks
+    if (!blocks_.empty() && blocks_[0] < jacobian_.landmark_count) {
+      EliminateFirst(jacobian_.Size(blocks_[0]));
+      first = 1;
     }
-    for (const int block : blocks_) {
-      if (block < jacobian_.landmark_count) continue;
-      for (int n = 0; n < jacobian_.Size(block); ++n) {
-        problem_->kept_diagonal(jacobian_.start[block] - first_kept_ + n) +=
-            normal(position_[block] + n, position_[block] + n);
+    TakeGradient(first);
+    for (std::size_t a = first; a < blocks_.size(); ++a) {
+      for (std::size_t b = a; b < blocks_.size(); ++b) {
+        AddToSum(blocks_[a], blocks_[b]);
       }
     }
-    const int rest = size + 1 - own;
-    if (own > 0) {
-      const LandmarkMat inverse =
-          SymmetricPseudoInverse<LandmarkMat>(normal.topLeftCorner(own, own));
-      const MatX cross = normal.topRightCorner(own, rest);
-      normal.bottomRightCorner(rest, rest) -=
-          cross.transpose().lazyProduct(MatX(inverse.lazyProduct(cross)));
-    }
-    Distribute(normal);
   }
 
-  Eigen::SparseMatrix<double> SchurComplement(int size) const {
-    Triplets entries;
-    for (const auto& [blocks, values] : sums_) {
+  Eigen::SparseMatrix<double> SchurComplement() const {
+    std::vector<Eigen::Triplet<double>> entries;
+    for (const auto& [blocks, sum] : sums_) {
       const int row = jacobian_.start[blocks.first] - first_kept_;
       const int col = jacobian_.start[blocks.second] - first_kept_;
-      for (int i = 0; i < values.rows(); ++i) {
-        for (int j = 0; j < values.cols(); ++j) {
-          entries.emplace_back(row + i, col + j, values(i, j));
-          if (row != col) entries.emplace_back(col + j, row + i, values(i, j));
+      auto value = sum.begin();
+      for (int i = 0; i < jacobian_.Size(blocks.first); ++i) {
+        for (int j = 0; j < jacobian_.Size(blocks.second); ++j, ++value) {
+          entries.emplace_back(row + i, col + j, *value);
+          if (row != col) entries.emplace_back(col + j, row + i, *value);
         }
       }
     }
-    Eigen::SparseMatrix<double> result(size, size);
+    Eigen::SparseMatrix<double> result(problem_->kept_size,
+                                       problem_->kept_size);
     result.setFromTriplets(entries.begin(), entries.end());
     return result;
   }
 
  private:
-  // The blocks of the rows, in order, and their places side by side.
-  int FindBlocks(const LandmarkRow* begin, const LandmarkRow* end) {
+  double* Row(int row) { return normal_.data() + row * size_; }
+
+  // Puts the columns of the rows' blocks side by side; the residuals follow.
+  void PlaceBlocks(const LandmarkRow* begin, const LandmarkRow* end) {
     const ceres::CRSMatrix& rows = jacobian_.rows;
     blocks_.clear();
     for (const LandmarkRow* row = begin; row != end; ++row) {
@@ -133,71 +111,112 @@ class Elimination {
     }
     std::sort(blocks_.begin(), blocks_.end());
     blocks_.erase(std::unique(blocks_.begin(), blocks_.end()), blocks_.end());
-    int size = 0;
+    size_ = 1;
     for (const int block : blocks_) {
-      position_[block] = size;
-      size += jacobian_.Size(block);
+      place_[block] = size_ - 1;
+      size_ += jacobian_.Size(block);
     }
-    return size;
   }
 
-  int OwnSize() const {
-    return !blocks_.empty() && blocks_[0] < jacobian_.landmark_count
-               ? jacobian_.Size(blocks_[0])
-               : 0;
-  }
-
-  void AddRow(int row, MatX* normal) {
-    entries_.clear();
+  // The normal equations, above the diagonal, with the residuals as the last
+  // column.
+  void AddRow(int row) {
     const ceres::CRSMatrix& rows = jacobian_.rows;
+    entries_.clear();
     for (int at = rows.rows[row]; at < rows.rows[row + 1]; ++at) {
       const int column = rows.cols[at], block = jacobian_.block_of[column];
-      entries_.emplace_back(position_[block] + column - jacobian_.start[block],
+      entries_.emplace_back(place_[block] + column - jacobian_.start[block],
                             rows.values[at]);
+      if (column >= first_kept_) {
+        problem_->kept_diagonal(column - first_kept_) +=
+            rows.values[at] * rows.values[at];
+      }
     }
-    entries_.emplace_back(static_cast<int>(normal->cols()) - 1,
-                          jacobian_.residuals[row]);
+    entries_.emplace_back(size_ - 1, jacobian_.residuals[row]);
     for (const auto& [i, a] : entries_) {
-      for (const auto& [j, b] : entries_) (*normal)(j, i) += a * b;
+      for (const auto& [j, b] : entries_) {
+        if (j >= i) Row(i)[j] += a * b;
+      }
     }
   }
 
-  void Distribute(const MatX& normal) {
-    const auto last = normal.cols() - 1;
+  // The largest pivots first. What the rows do not determine has no part in
+  // their other columns, and stays.
+  void EliminateFirst(int count) {
+    double floor = 0;
+    for (int n = 0; n < count; ++n) floor = std::max(floor, Row(n)[n] * 1e-14);
+    column_.resize(size_);
+    for (int step = 0; step < count; ++step) {
+      int pivot = 0;
+      for (int n = 1; n < count; ++n) {
+        if (Row(n)[n] > Row(pivot)[pivot]) pivot = n;
+      }
+      const double value = Row(pivot)[pivot];
+      if (!(value > floor)) return;
+      for (int n = 0; n < size_; ++n) {
+        column_[n] = n < pivot ? Row(n)[pivot] : Row(pivot)[n];
+      }
+      for (int i = 0; i < size_; ++i) {
+        const double factor = column_[i] / value;
+        double* const row = Row(i);
+        for (int j = i; j < size_; ++j) row[j] -= factor * column_[j];
+      }
+      Row(pivot)[pivot] = 0;
+    }
+  }
+
+  void TakeGradient(std::size_t first) {
     auto& gradients = problem_->gradients;
     gradients.startVec(gradient_count_);
-    for (const int a : blocks_) {
-      if (a < jacobian_.landmark_count) continue;
-      for (int n = 0; n < jacobian_.Size(a); ++n) {
+    for (std::size_t a = first; a < blocks_.size(); ++a) {
+      for (int n = 0; n < jacobian_.Size(blocks_[a]); ++n) {
         gradients.insertBack(gradient_count_,
-                             jacobian_.start[a] - first_kept_ + n) =
-            normal(position_[a] + n, last);
-      }
-      for (const int b : blocks_) {
-        if (b < a) continue;
-        const auto block = normal.block(position_[a], position_[b],
-                                        jacobian_.Size(a), jacobian_.Size(b));
-        const auto [sum, is_new] = sums_.try_emplace({a, b}, block);
-        if (!is_new) sum->second += block;
+                             jacobian_.start[blocks_[a]] - first_kept_ + n) =
+            Row(place_[blocks_[a]] + n)[size_ - 1];
       }
     }
     ++gradient_count_;
   }
 
+  void AddToSum(int a, int b) {
+    const int rows = jacobian_.Size(a), cols = jacobian_.Size(b);
+    std::vector<double>& sum = sums_[{a, b}];
+    sum.resize(static_cast<std::size_t>(rows) * cols);
+    double* value = sum.data();
+    for (int i = 0; i < rows; ++i) {
+      const double* row = Row(place_[a] + i) + place_[b];
+      for (int j = 0; j < cols; ++j) {
+        *value++ +=
+            a == b && j < i ? Row(place_[a] + j)[place_[a] + i] : row[j];
+      }
+    }
+  }
+
   const Jacobian& jacobian_;
   LinearisedProblem* problem_;
   const int first_kept_;
-  std::vector<int> position_;  // by block, of those of this landmark
-  std::vector<int> blocks_;
+  // Of the present landmark.
+  std::vector<int> blocks_;  // in order
+  std::vector<int> place_;   // by block
+  int size_ = 0;             // of all their columns, and one
+  std::vector<double> normal_;
+  std::vector<double> column_;
   std::vector<std::pair<int, double>> entries_;
   Eigen::Index gradient_count_ = 0;
-  std::map<std::pair<int, int>, MatX> sums_;  // upper half, by block
+  std::map<std::pair<int, int>, std::vector<double>> sums_;  // upper half
 };
 
 }  // namespace
 
 MatX PseudoInverse(const MatX& matrix) {
-  return SymmetricPseudoInverse(matrix);
+  const Eigen::SelfAdjointEigenSolver<MatX> eigen(matrix);
+  const Eigen::VectorXd& values = eigen.eigenvalues();
+  const double floor = 1e-14 * std::max(0.0, values.maxCoeff());
+  MatX scaled = eigen.eigenvectors();
+  for (Eigen::Index n = 0; n < values.size(); ++n) {
+    scaled.col(n) *= values(n) > floor ? 1 / values(n) : 0.0;
+  }
+  return scaled * eigen.eigenvectors().transpose();
 }
 
 LinearisedProblem::LinearisedProblem(ProblemBuilder* builder) {
@@ -228,7 +247,7 @@ LinearisedProblem::LinearisedProblem(ProblemBuilder* builder) {
     elimination.Add(ends[n - 1], ends[n]);
   }
   gradients.finalize();
-  schur_complement = elimination.SchurComplement(kept_size);
+  schur_complement = elimination.SchurComplement();
 }
 
 int LinearisedProblem::KeptColumn(const double* block) const {
