@@ -53,9 +53,10 @@ int main() {
         (center(views.last) - center(views.middle)).norm() /
         (center(views.middle) - center(views.first)).norm();
     const lowlap::KindSupport* coplanar = ratio.FindKind("coplanar");
-    std::printf("%u-%u-%u  %6.4f  %6.4f  %d of %d\n", views.first, views.middle,
-                views.last, std::exp(ratio.log_ratio), true_ratio,
-                coplanar->inliers, coplanar->candidates);
+    std::printf("%u-%u-%u  %6.4f  %6.4f  %d of %d\n", views.first.value(),
+                views.middle.value(), views.last.value(),
+                std::exp(ratio.log_ratio), true_ratio, coplanar->inliers,
+                coplanar->candidates);
   }
 
   // The same and everything after it: poses, structure, bundle adjustment.

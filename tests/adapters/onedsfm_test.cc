@@ -173,11 +173,10 @@ TEST_F(OneDSfmFolder, RelativePosesAreThoseOfTheCameras) {
 TEST_F(OneDSfmFolder, KeypointsAreSeenWhereTheIntrinsicsPutThem) {
   const auto problem = onedsfm::ReadProblem(folder_.Path());
   ASSERT_TRUE(problem);
-  for (const ViewId view : {0u, 1u, 4u}) {
+  for (const std::uint32_t view : {0u, 1u, 4u}) {
     for (std::size_t k = 0; k < points_.size(); ++k) {
       const Vec2 expected = problem->scene.FindIntrinsic(view)->Project(
-          poses_[view.value()].rotation *
-          (points_[k] - poses_[view.value()].center));
+          poses_[view].rotation * (points_[k] - poses_[view].center));
       EXPECT_LT(
           (problem->scene.features.at(view).points_px[k] - expected).norm(),
           1e-9);

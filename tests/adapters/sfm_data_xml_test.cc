@@ -58,7 +58,7 @@ TEST(SfmDataXml, ReadingGivesTheSameSceneAsTheBinary) {
 
 TEST(SfmDataXml, KeepsEveryModelPriorAndSpecialCharacter) {
   Scene scene = *ParseSfmDataBin(FromHex(kAllModelsHex));
-  for (IntrinsicId id = 0; id < 7; ++id) {
+  for (std::uint32_t id = 0; id < 7; ++id) {
     View view = scene.views.at(0);
     view.filename = "0010";  // looks like a number
     view.local_path = " <a> & \"b\"'s ";

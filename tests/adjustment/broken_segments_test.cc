@@ -57,7 +57,7 @@ constexpr double kPieceStddev = 1.5;
 // Cuts every second segment of a view in two with a gap of a tenth, and
 // matches both pieces with what the whole one was matched with.
 std::size_t BreakSegments(ViewId view, Scene* scene, double noise_px = 0) {
-  Random random(view);
+  Random random(view.value());
   std::vector<LineSegment>& segments = scene->features.at(view).segments;
   const std::size_t count = segments.size();
   std::map<FeatureIndex, FeatureIndex> second_of;

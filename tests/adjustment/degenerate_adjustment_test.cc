@@ -76,7 +76,7 @@ TestScene TwoComponents() {
   constexpr std::uint32_t kShift = 5000;
   for (const auto& [id, view] : other.scene.views) {
     View shifted = view;
-    shifted.pose_id += kShift;
+    shifted.pose_id = view.pose_id.value() + kShift;
     test.scene.views[id.value() + kShift] = shifted;
   }
   for (const auto& [id, features] : other.scene.features) {
@@ -86,7 +86,7 @@ TestScene TwoComponents() {
     test.scene.poses[id.value() + kShift] = pose;
   }
   const auto shift_track = [](Track track) {
-    for (FeatureRef& ref : track) ref.view += kShift;
+    for (FeatureRef& ref : track) ref.view = ref.view.value() + kShift;
     return track;
   };
   for (const auto& [id, track] : other.scene.point_tracks) {

@@ -18,9 +18,12 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-Scene SceneWithEdges(ViewId num_views, const std::vector<ViewPair>& edges) {
+Scene SceneWithEdges(std::uint32_t num_views,
+                     const std::vector<ViewPair>& edges) {
   Scene scene;
-  for (ViewId view = 0; view < num_views; ++view) scene.views[view] = View();
+  for (std::uint32_t view = 0; view < num_views; ++view) {
+    scene.views[view] = View();
+  }
   for (const ViewPair& edge : edges) scene.relative_poses[edge].views = edge;
   return scene;
 }
@@ -71,10 +74,8 @@ std::set<std::set<ViewPair>> GroupsByNullSpace(const Scene& scene,
   for (const ViewPair& e : edges) {
     const Vec2 direction = (center[e.second] - center[e.first]) / length(e);
     for (Eigen::Index axis = 0; axis < 2; ++axis, ++row) {
-      equations(row, 2 * static_cast<Eigen::Index>(e.second.value()) + axis) =
-          1;
-      equations(row, 2 * static_cast<Eigen::Index>(e.first.value()) + axis) =
-          -1;
+      equations(row, 2 * e.second.value() + axis) = 1;
+      equations(row, 2 * e.first.value() + axis) = -1;
       equations(row, column[e]) = -direction(axis);
     }
   }
@@ -121,12 +122,12 @@ std::set<std::set<ViewPair>> GroupsOf(const RigidityReport& report) {
 
 Scene RandomScene(std::uint64_t seed) {
   Random random(seed);
-  const ViewId num_views = 4 + random.Index(8);
+  const std::uint32_t num_views = 4 + random.Index(8);
   const double density = random.Uniform(0.15, 0.6);
   const double share_of_ratios = random.Uniform(0.0, 0.4);
   std::vector<ViewPair> edges;
-  for (ViewId a = 0; a < num_views; ++a) {
-    for (ViewId b = a.value() + 1; b < num_views; ++b) {
+  for (std::uint32_t a = 0; a < num_views; ++a) {
+    for (std::uint32_t b = a + 1; b < num_views; ++b) {
       if (random.Uniform() < density) edges.push_back({a, b});
     }
   }
@@ -271,11 +272,12 @@ TEST(Diagnose, WeakRatiosAreNamed) {
 
 TEST(Diagnose, AChainHingesOnEveryInnerCamera) {
   std::vector<ViewPair> edges;
-  for (ViewId view = 0; view < 7; ++view)
-    edges.push_back({view, view.value() + 1});
+  for (std::uint32_t view = 0; view < 7; ++view) {
+    edges.push_back({view, view + 1});
+  }
   Scene scene = SceneWithEdges(8, edges);
-  for (ViewId view = 1; view < 7; ++view) {
-    AddRatio(view.value() - 1, view, view.value() + 1, &scene);
+  for (std::uint32_t view = 1; view < 7; ++view) {
+    AddRatio(view - 1, view, view + 1, &scene);
   }
   const Diagnosis diagnosis = DiagnosisOf(scene);
   EXPECT_TRUE(diagnosis.IsFirm());
@@ -288,12 +290,13 @@ TEST(Diagnose, AChainHingesOnEveryInnerCamera) {
 TEST(Diagnose, ARingOfRatiosHasNoHinge) {
   // Without any one ratio, the chain of the others still holds the ring.
   std::vector<ViewPair> edges;
-  for (ViewId view = 0; view.value() + 1 < 6; ++view)
-    edges.push_back({view, view.value() + 1});
+  for (std::uint32_t view = 0; view + 1 < 6; ++view) {
+    edges.push_back({view, view + 1});
+  }
   edges.push_back({0, 5});
   Scene scene = SceneWithEdges(6, edges);
-  for (ViewId view = 1; view < 5; ++view) {
-    AddRatio(view.value() - 1, view, view.value() + 1, &scene);
+  for (std::uint32_t view = 1; view < 5; ++view) {
+    AddRatio(view - 1, view, view + 1, &scene);
   }
   AddRatio(1, 0, 5, &scene);
   AddRatio(0, 5, 4, &scene);
@@ -301,14 +304,14 @@ TEST(Diagnose, ARingOfRatiosHasNoHinge) {
 }
 
 TEST(Diagnose, ALongChainTakesNoTime) {
-  constexpr ViewId kViews = 800;
+  constexpr std::uint32_t kViews = 800;
   std::vector<ViewPair> edges;
-  for (ViewId view = 0; view.value() + 1 < kViews; ++view) {
-    edges.push_back({view, view.value() + 1});
+  for (std::uint32_t view = 0; view + 1 < kViews; ++view) {
+    edges.push_back({view, view + 1});
   }
   Scene scene = SceneWithEdges(kViews, edges);
-  for (ViewId view = 1; view.value() + 1 < kViews; ++view) {
-    if (view != 300) AddRatio(view.value() - 1, view, view.value() + 1, &scene);
+  for (std::uint32_t view = 1; view + 1 < kViews; ++view) {
+    if (view != 300) AddRatio(view - 1, view, view + 1, &scene);
   }
   const Diagnosis diagnosis = DiagnosisOf(scene);
   ASSERT_EQ(diagnosis.floating.size(), 1u);
@@ -340,10 +343,9 @@ TEST(PredictTripletAveraging, GroupsThatMeetInOneCameraAreGlued) {
                                    {5, 6},
                                    {5, 7},
                                    {6, 7}});
-  for (PointTrackId id = 0; id < 90; ++id) {
-    const ViewId a = std::vector<ViewId>{0, 2, 5}[id.value() % 3];
-    scene.point_tracks[id] = {
-        {a, id}, {a.value() + 1, id}, {a.value() + 2, id}};
+  for (std::uint32_t id = 0; id < 90; ++id) {
+    const std::uint32_t a = std::vector<std::uint32_t>{0, 2, 5}[id % 3];
+    scene.point_tracks[id] = {{a, id}, {a + 1, id}, {a + 2, id}};
   }
   const TripletPrediction prediction = PredictTripletAveraging(scene);
   EXPECT_THAT(prediction.kept, ElementsAre(0, 1, 2, 3, 4));

@@ -164,8 +164,9 @@ TEST(DecideHypothesesByCycles, OtherScenesStayAsTheyAre) {
 
 TEST(DecideHypothesesByCycles, IsTheSameForAnyNumberOfThreads) {
   Scene one = ToScene(MakeRotationGraph(15, 4, 0.4, 1.0, 5));
-  for (ViewId n = 0; n < 12; ++n)
-    PutWrongMotionFirst({n, n.value() + 1}, kTurn, &one);
+  for (std::uint32_t n = 0; n < 12; ++n) {
+    PutWrongMotionFirst({n, n + 1}, kTurn, &one);
+  }
   Scene two = one;
   Decide(&one, 1);
   Decide(&two, 2);

@@ -167,10 +167,10 @@ TEST(ReliabilityWarnings, AViewThatLostItsFeatures) {
 TEST(ReliabilityWarnings, PiecesOfALineInTwoViewsAreNotThreeViews) {
   Scene scene;
   scene.intrinsics[0] = Intrinsic();
-  for (const ViewId view : {0u, 1u, 2u}) {
+  for (const std::uint32_t view : {0u, 1u, 2u}) {
     scene.views[view].intrinsic_id = 0;
     scene.views[view].pose_id = view;
-    scene.poses[view.value()] = Pose();
+    scene.poses[view] = Pose();
   }
   scene.line_tracks[0] = {{0, 0}, {0, 1}, {1, 0}, {1, 2}};
   EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
@@ -182,16 +182,16 @@ TEST(ReliabilityWarnings, PiecesOfALineInTwoViewsAreNotThreeViews) {
 TEST(ReliabilityWarnings, PiecesOfALineCountOnce) {
   Scene scene;
   scene.intrinsics[0] = Intrinsic();
-  for (const ViewId view : {0u, 1u, 2u}) {
+  for (const std::uint32_t view : {0u, 1u, 2u}) {
     scene.views[view].intrinsic_id = 0;
     scene.views[view].pose_id = view;
-    scene.poses[view.value()] = Pose();
+    scene.poses[view] = Pose();
   }
   // Lost, in five pieces; the other two fit.
   scene.line_tracks[0] = {{0, 0}, {0, 1}, {0, 2}, {0, 3},
                           {0, 4}, {1, 0}, {2, 0}};
-  for (const LineTrackId id : {1u, 2u}) {
-    scene.line_tracks[id] = {{0, id.value() + 4}, {1, id}, {2, id}};
+  for (const std::uint32_t id : {1u, 2u}) {
+    scene.line_tracks[id] = {{0, id + 4}, {1, id}, {2, id}};
     scene.line_structure[id].observations = scene.line_tracks[id];
   }
   EXPECT_THAT(FindLostFeatures(scene), IsEmpty());

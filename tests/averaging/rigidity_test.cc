@@ -7,16 +7,19 @@
 namespace lowlap {
 namespace {
 
-Scene SceneWithEdges(ViewId num_views, const std::vector<ViewPair>& edges) {
+Scene SceneWithEdges(std::uint32_t num_views,
+                     const std::vector<ViewPair>& edges) {
   Scene scene;
-  for (ViewId view = 0; view < num_views; ++view) scene.views[view] = View();
+  for (std::uint32_t view = 0; view < num_views; ++view) {
+    scene.views[view] = View();
+  }
   for (const ViewPair& edge : edges) {
     scene.relative_poses[edge].views = edge;
   }
   return scene;
 }
 
-ViewGraph Graph(ViewId num_views, const std::vector<ViewPair>& edges) {
+ViewGraph Graph(std::uint32_t num_views, const std::vector<ViewPair>& edges) {
   return ViewGraph(SceneWithEdges(num_views, edges));
 }
 
@@ -90,7 +93,7 @@ TEST(AnalyzeTripletRigidity, TripletsNeedSharedTracks) {
   // Directions make one rigid group of two triangles that share an edge; the
   // second triangle shares too few tracks to count as a triplet.
   Scene scene = SceneWithEdges(4, {{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}});
-  for (PointTrackId id = 0; id < 40; ++id) {
+  for (std::uint32_t id = 0; id < 40; ++id) {
     scene.point_tracks[id] = {{0, id}, {1, id}, {2, id}};
     if (id < 29) scene.point_tracks[id].push_back({3, id});
   }
@@ -108,9 +111,8 @@ TEST(AnalyzeTripletRigidity, TripletsThatShareOneViewKeepTheirOwnScale) {
   Scene scene = SceneWithEdges(
       6,
       {{0, 1}, {0, 2}, {1, 2}, {2, 3}, {2, 4}, {3, 4}, {4, 5}, {0, 4}, {0, 5}});
-  for (PointTrackId id = 0; id < 90; ++id) {
-    const ViewId a = static_cast<ViewId>(id.value() % 3 * 2);
-    const ViewId b = a.value() + 1, c = (a + 2) % 6;
+  for (std::uint32_t id = 0; id < 90; ++id) {
+    const std::uint32_t a = id % 3 * 2, b = a + 1, c = (a + 2) % 6;
     Track track = {{a, id}, {b, id}, {c, id}};
     std::sort(track.begin(), track.end());
     scene.point_tracks[id] = track;

@@ -30,11 +30,11 @@ class TrackRaysTest : public ::testing::Test {
     for (int k = 0; k < 30; ++k) {
       points_.push_back(RandomVector(&random, 2) + Vec3(0, 0, 9));
       Track track;
-      for (ViewId id = 0; id < 6; ++id) {
+      for (std::uint32_t id = 0; id < 6; ++id) {
         auto& pixels = scene_.features[id].points_px;
         track.push_back({id, static_cast<FeatureIndex>(pixels.size())});
-        pixels.push_back(intrinsic.Project(
-            rotations_[id.value()] * (points_.back() - centers_[id.value()])));
+        pixels.push_back(intrinsic.Project(rotations_[id] *
+                                           (points_.back() - centers_[id])));
       }
       scene_.point_tracks[static_cast<PointTrackId>(k)] = track;
     }
@@ -86,8 +86,8 @@ TEST_F(TrackRaysTest, LongTracksComeFirstUpToTheBoundPerView) {
 }
 
 TEST_F(TrackRaysTest, MatchesJoinTracksAndContradictoryOnesAreLeftOut) {
-  for (ViewId id = 0; id.value() + 1 < 6; ++id) {
-    RelativePose& pose = scene_.relative_poses[{id, id.value() + 1}];
+  for (std::uint32_t id = 0; id + 1 < 6; ++id) {
+    RelativePose& pose = scene_.relative_poses[{id, id + 1}];
     for (FeatureIndex k = 0; k < 30; ++k) pose.point_inliers.push_back({k, k});
   }
   EXPECT_EQ(MakeTrackRays(scene_, views_, rotations_).size(), 30u);

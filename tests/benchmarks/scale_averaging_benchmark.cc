@@ -79,7 +79,7 @@ void CentersOfGraph(benchmark::State& state) {
   state.counters["oracle_error_m"] = MedianCenterError(graph.made, *oracle);
 }
 
-void Arguments(benchmark::Benchmark* benchmark) {
+void Arguments(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgNames({"shape", "views", "wrong_percent"})
       ->Unit(benchmark::kMillisecond);
   for (const GraphShape shape : {GraphShape::kStreet, GraphShape::kTown}) {

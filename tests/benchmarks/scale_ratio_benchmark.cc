@@ -89,7 +89,7 @@ Scene RowOfViews() {
   scene.intrinsics[0] = intrinsic;
   Random random(5);
   std::vector<RigidTransform> cams;
-  for (ViewId view = 0; view < kViews; ++view) {
+  for (std::uint32_t view = 0; view < kViews; ++view) {
     scene.views[view].intrinsic_id = 0;
     scene.views[view].pose_id = view;
     cams.push_back(RigidTransform::FromRotationAndCenter(
@@ -99,15 +99,15 @@ Scene RowOfViews() {
   for (int n = 0; n < kPoints; ++n) {
     const double x = random.Uniform(-0.8, 3.2);
     const Vec3 point(x, random.Uniform(-1.3, 1.3), 4 + 0.4 * x);
-    for (ViewId view = 0; view < kViews; ++view) {
+    for (std::uint32_t view = 0; view < kViews; ++view) {
       const double u = random.Gaussian(0.5);
       const Vec2 noise(u, random.Gaussian(0.5));
       scene.features[view].points_px.push_back(
           Vec2(intrinsic.Project(cams[view] * point) + noise));
     }
   }
-  for (ViewId i = 0; i < kViews; ++i) {
-    for (ViewId j = i + 1; j < kViews; ++j) {
+  for (std::uint32_t i = 0; i < kViews; ++i) {
+    for (std::uint32_t j = i + 1; j < kViews; ++j) {
       const RigidTransform j_from_i = cams[j] * cams[i].Inverse();
       RelativePose pose;
       pose.views = {i, j};

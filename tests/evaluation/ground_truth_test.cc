@@ -84,8 +84,8 @@ TEST(GroundTruthFromScene, TakesThePosedViewsWithSharedPoses) {
 /// The center of each view's pose has the view's id as its x.
 void PoseEveryView(Scene* scene) {
   for (auto& [id, view] : scene->views) {
-    view.pose_id = id;
-    scene->poses[id.value()] = PoseAt(id.value());
+    view.pose_id = id.value();
+    scene->poses[view.pose_id] = PoseAt(id.value());
   }
 }
 

@@ -24,8 +24,8 @@ class LineMatchErrorsTest : public ::testing::Test {
     intrinsic.fx_px = intrinsic.fy_px = 1000;
     intrinsic.principal_point_px = Vec2(600, 400);
     scene_.intrinsics[0] = intrinsic;
-    for (ViewId id = 0; id < 2; ++id) {
-      scene_.views[id].filename = "000" + std::to_string(id.value()) + ".jpg";
+    for (std::uint32_t id = 0; id < 2; ++id) {
+      scene_.views[id].filename = "000" + std::to_string(id) + ".jpg";
       scene_.views[id].intrinsic_id = 0;
       truth_[id].center = Vec3(id, 0, 0);
     }

@@ -26,10 +26,10 @@ inline Scene RandomScene(int num_views, std::uint64_t seed) {
   Random random(seed);
   Scene scene;
   for (int n = 0; n < num_views; ++n) {
-    const auto id = static_cast<ViewId>(2 * n);
+    const auto id = static_cast<std::uint32_t>(2 * n);
     View view;
-    view.filename = "image" + std::to_string(id.value()) + ".jpg";
-    view.pose_id = id.value() + 100;
+    view.filename = "image" + std::to_string(id) + ".jpg";
+    view.pose_id = id + 100;
     scene.views[id] = view;
     scene.poses[view.pose_id] = RandomPose(random);
   }

@@ -101,11 +101,10 @@ class DetectFeaturesOfSceneTest : public ::testing::Test {
              ::testing::UnitTest::GetInstance()->current_test_info()->name()));
     std::filesystem::create_directories(folder_);
     scene_.root_path = folder_.string();
-    for (ViewId id = 0; id < 4; ++id) {
-      const GrayImage image =
-          Render(120, 90, BlobTexture(id.value() + 1, 60, 120));
+    for (std::uint32_t id = 0; id < 4; ++id) {
+      const GrayImage image = Render(120, 90, BlobTexture(id + 1, 60, 120));
       View view;
-      view.filename = std::to_string(id.value()) + ".png";
+      view.filename = std::to_string(id) + ".png";
       view.width_px = image.width;
       view.height_px = image.height;
       scene_.views[id] = view;

@@ -59,11 +59,11 @@ TEST(FormatPly, PointsSegmentsAndFrusta) {
   scene.intrinsics[0].height_px = 400;
   scene.intrinsics[0].fx_px = scene.intrinsics[0].fy_px = 300;
   scene.intrinsics[0].principal_point_px = {300, 200};
-  for (const ViewId id : {0u, 1u, 2u}) {
+  for (const std::uint32_t id : {0u, 1u, 2u}) {
     scene.views[id].intrinsic_id = 0;
     scene.views[id].pose_id = id;
     // The second camera looks along the world's -x.
-    scene.poses[id.value()].center = Vec3(4.0 * id, 0, 0);
+    scene.poses[id].center = Vec3(4.0 * id, 0, 0);
   }
   scene.poses[1].rotation << 0, 0, 1, 0, 1, 0, -1, 0, 0;
   scene.poses.erase(2);

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include "lowlap/core/internal/atomic_file.h"
 #include "scene/example_scenes.h"
 #include "support/matchers.h"
 

@@ -166,7 +166,7 @@ TEST(SceneJson, LoadsWithCereal) {
   EXPECT_EQ(root_path, scene.root_path);
   ASSERT_EQ(views.size(), scene.views.size());
   for (const auto& [id, view] : scene.views) {
-    const HostView& host = *views.at(id);
+    const HostView& host = *views.at(id.value());
     EXPECT_EQ(host.id_view, id);
     EXPECT_EQ(host.filename, view.filename);
     EXPECT_EQ(host.local_path, view.local_path);
@@ -180,7 +180,7 @@ TEST(SceneJson, LoadsWithCereal) {
   }
   ASSERT_EQ(intrinsics.size(), scene.intrinsics.size());
   for (const auto& [id, intrinsic] : scene.intrinsics) {
-    const HostIntrinsic& host = *intrinsics.at(id);
+    const HostIntrinsic& host = *intrinsics.at(id.value());
     EXPECT_EQ(host.Name(), CameraModelName(intrinsic.model));
     EXPECT_EQ(host.width, static_cast<std::uint32_t>(intrinsic.width_px));
     if (const auto* pinhole = dynamic_cast<const HostPinhole*>(&host)) {
@@ -192,16 +192,18 @@ TEST(SceneJson, LoadsWithCereal) {
   }
   ASSERT_EQ(extrinsics.size(), scene.poses.size());
   for (const auto& [id, pose] : scene.poses) {
-    EXPECT_EQ(Vec3(extrinsics.at(id).center.data()), pose.center);
-    EXPECT_EQ(extrinsics.at(id).rotation.at(1).at(2), pose.rotation(1, 2));
+    EXPECT_EQ(Vec3(extrinsics.at(id.value()).center.data()), pose.center);
+    EXPECT_EQ(extrinsics.at(id.value()).rotation.at(1).at(2),
+              pose.rotation(1, 2));
   }
   ASSERT_EQ(structure.size(), scene.structure.size());
   for (const auto& [id, landmark] : scene.structure) {
-    const HostLandmark& host = structure.at(id);
+    const HostLandmark& host = structure.at(id.value());
     EXPECT_EQ(Vec3(host.X.data()), landmark.position);
     ASSERT_EQ(host.observations.size(), landmark.observations.size());
     for (const PointObservation& observation : landmark.observations) {
-      const HostObservation& seen = host.observations.at(observation.view);
+      const HostObservation& seen =
+          host.observations.at(observation.view.value());
       EXPECT_EQ(seen.id_feat, observation.feature);
       EXPECT_EQ(Vec2(seen.x.data()), observation.pixel_px);
     }

@@ -16,12 +16,11 @@ using testing::Render;
 std::map<ViewId, DetectedFeatures> ShiftedViews() {
   const BlobTexture texture(31, 300, 220);
   std::map<ViewId, DetectedFeatures> features;
-  for (ViewId id = 0; id < 3; ++id) {
+  for (std::uint32_t id = 0; id < 3; ++id) {
     const Vec2 shift(7.0 * id, 3.0 * id);
     features[id] = *DetectFeatures(
         Render(
-            180, 160, [&](const Vec2& p) { return texture(p + shift); }, 1,
-            id.value()),
+            180, 160, [&](const Vec2& p) { return texture(p + shift); }, 1, id),
         {});
   }
   return features;

@@ -207,12 +207,12 @@ class RefinePointTracksTest : public ::testing::Test {
     fs::create_directories(folder_);
     scene_.root_path = folder_.string();
     Track track;
-    for (ViewId id = 0; id < 3; ++id) {
+    for (std::uint32_t id = 0; id < 3; ++id) {
       Shot shot;
       shot.place = true_[id];
       const GrayImage image = shot.Render();
       View view;
-      view.filename = std::to_string(id.value()) + ".pgm";
+      view.filename = std::to_string(id) + ".pgm";
       view.width_px = image.width;
       view.height_px = image.height;
       scene_.views[id] = view;

@@ -74,15 +74,14 @@ TEST(BuildPointTracksTest, TrianglesGoBeforeMeaningfulness) {
 
 TEST(BuildPointTracksTest, NoTrackHasTwoFeaturesOfAView) {
   std::vector<RelativePose> poses;
-  for (ViewId a = 0; a < 5; ++a) {
-    for (ViewId b = a.value() + 1; b < 5; ++b) {
+  for (std::uint32_t a = 0; a < 5; ++a) {
+    for (std::uint32_t b = a + 1; b < 5; ++b) {
       std::vector<FeatureMatch> matches;
       for (FeatureIndex i = 0; i < 40; ++i) {
         // A third of the matches is shifted: everything hangs together.
         matches.push_back({i, (i + a + b) % 3 == 0 ? (i + 1) % 40 : i});
       }
-      poses.push_back(
-          Points(a, b, matches, -static_cast<double>(a.value() + b)));
+      poses.push_back(Points(a, b, matches, -static_cast<double>(a + b)));
     }
   }
   const auto tracks = BuildPointTracks(SceneOf(poses));

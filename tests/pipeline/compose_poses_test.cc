@@ -26,7 +26,7 @@ MadeScene RingWithATriangle() {
   MadeScene made;
   Scene& scene = made.scene;
   Random random(3);
-  for (ViewId view = 0; view < 9; ++view) {
+  for (std::uint32_t view = 0; view < 9; ++view) {
     scene.views[view].pose_id = view;
     const double angle = 0.65 * view;
     Pose pose;
@@ -67,7 +67,8 @@ MadeScene RingWithATriangle() {
   };
   for (const ViewTriplet& views : FindTriplets(ViewGraph(scene))) {
     const auto is_closing = [&](ViewId outer) {
-      return outer.value() + views.middle == 8 && (outer == 0 || outer == 8);
+      return outer.value() + views.middle.value() == 8 &&
+             (outer == 0 || outer == 8);
     };
     if (is_closing(views.first) || is_closing(views.last)) continue;
     ScaleRatio ratio;

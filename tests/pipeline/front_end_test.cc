@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
+#include "lowlap/pipeline/internal/measure/relative_poses.h"
 #include "lowlap/pipeline/internal/scene_reduction.h"
-#include "lowlap/pipeline/measure_images.h"
 #include "lowlap/scene/validation.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
@@ -24,11 +24,13 @@ TEST(KeepMatchedFeatures, DropsUnusedFeaturesAndKeepsEveryReference) {
       for (FeatureMatch& match : *matches) ++match.first, ++match.second;
     }
   }
-  for (auto* tracks : {&padded.point_tracks, &padded.line_tracks}) {
+  const auto shift = [](auto* tracks) {
     for (auto& [id, track] : *tracks) {
       for (FeatureRef& ref : track) ++ref.feature;
     }
-  }
+  };
+  shift(&padded.point_tracks);
+  shift(&padded.line_tracks);
   KeepMatchedFeatures(&scene);
   KeepMatchedFeatures(&padded);
   EXPECT_TRUE(padded == scene);

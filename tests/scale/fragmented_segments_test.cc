@@ -72,7 +72,7 @@ class FragmentedSegments : public ::testing::TestWithParam<ViewId> {
     camera.principal_point_px = {600, 400};
     scene_.intrinsics[0] = camera;
     std::vector<RigidTransform> cams;
-    for (ViewId view = 0; view < 3; ++view) {
+    for (std::uint32_t view = 0; view < 3; ++view) {
       scene_.views[view].intrinsic_id = 0;
       cams.push_back(RigidTransform::FromRotationAndCenter(
           RotationFromAngleAxis({0.01, 0.03 * view, 0}),
@@ -86,20 +86,20 @@ class FragmentedSegments : public ::testing::TestWithParam<ViewId> {
     };
     for (FeatureIndex n = 0; n < kLines; ++n) {
       const Vec3 a = on_wall(), b = on_wall();
-      for (ViewId view = 0; view < 3; ++view) {
+      for (std::uint32_t view = 0; view < 3; ++view) {
         const auto seen = [&](const Vec3& x) -> Vec2 {
           const double u = random.Gaussian(0.2), v = random.Gaussian(0.2);
-          return camera.Project(cams[view.value()] * x) + Vec2(u, v);
+          return camera.Project(cams[view] * x) + Vec2(u, v);
         };
         const Vec2 start_px = seen(a);
         scene_.features[view].segments.push_back({start_px, seen(b), 0.2});
       }
     }
-    for (ViewId view = 0; view < 2; ++view) {
+    for (std::uint32_t view = 0; view < 2; ++view) {
       const RigidTransform next_from_view =
-          cams[view.value() + 1] * cams[view.value()].Inverse();
+          cams[view + 1] * cams[view].Inverse();
       RelativePose pose;
-      pose.views = {view, view.value() + 1};
+      pose.views = {view, view + 1};
       pose.rotation = next_from_view.rotation;
       pose.direction = next_from_view.translation.normalized();
       for (FeatureIndex n = 0; n < kLines; ++n) {

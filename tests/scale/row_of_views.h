@@ -28,7 +28,7 @@ struct RowOfViews {
     scene.intrinsics[0] = intrinsic;
     Random random(5);
     std::vector<RigidTransform> cams;
-    for (ViewId view = 0; view < kViews; ++view) {
+    for (std::uint32_t view = 0; view < kViews; ++view) {
       scene.views[view].intrinsic_id = 0;
       scene.views[view].pose_id = view;
       const double x = 0.5 * view + 0.1 * view * view;
@@ -48,23 +48,21 @@ struct RowOfViews {
     };
     for (int n = 0; n < kPoints; ++n) {
       const Vec3 x = on_wall();
-      for (ViewId view = 0; view < kViews; ++view) {
-        scene.features[view].points_px.push_back(
-            project(cams[view.value()], x));
+      for (std::uint32_t view = 0; view < kViews; ++view) {
+        scene.features[view].points_px.push_back(project(cams[view], x));
       }
     }
     for (int n = 0; n < kLines; ++n) {
       const Vec3 a = on_wall(), b = on_wall();
-      for (ViewId view = 0; view < kViews; ++view) {
-        const Vec2 start_px = project(cams[view.value()], a);
+      for (std::uint32_t view = 0; view < kViews; ++view) {
+        const Vec2 start_px = project(cams[view], a);
         scene.features[view].segments.push_back(
-            {start_px, project(cams[view.value()], b), 0.3});
+            {start_px, project(cams[view], b), 0.3});
       }
     }
-    for (ViewId i = 0; i < kViews; ++i) {
-      for (ViewId j = i.value() + 1; j < kViews; ++j) {
-        const RigidTransform j_from_i =
-            cams[j.value()] * cams[i.value()].Inverse();
+    for (std::uint32_t i = 0; i < kViews; ++i) {
+      for (std::uint32_t j = i + 1; j < kViews; ++j) {
+        const RigidTransform j_from_i = cams[j] * cams[i].Inverse();
         RelativePose pose;
         pose.views = {i, j};
         pose.rotation = j_from_i.rotation;

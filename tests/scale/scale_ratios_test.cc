@@ -115,7 +115,8 @@ TEST(ProfileScaleRatios, AreThoseOfTheEstimatedRatios) {
     for (auto& [views, pose] : row.scene.relative_poses) {
       if (has_lines) continue;
       pose.line_inliers.clear();
-      const FeatureIndex slot = (views.first.value() + views.second) % 3;
+      const FeatureIndex slot =
+          (views.first.value() + views.second.value()) % 3;
       auto& points = pose.point_inliers;
       points.erase(std::remove_if(points.begin(), points.end(),
                                   [&](const FeatureMatch& match) {
@@ -159,7 +160,7 @@ TEST(EstimateScaleRatios, WorkWhenNoFeatureIsSeenThrice) {
   RowOfViews row;
   // Every feature goes to one pair only.
   for (auto& [views, pose] : row.scene.relative_poses) {
-    const FeatureIndex slot = (views.first.value() + views.second) % 3;
+    const FeatureIndex slot = (views.first.value() + views.second.value()) % 3;
     const auto elsewhere = [&](const FeatureMatch& match) {
       return match.first % 3 != slot;
     };

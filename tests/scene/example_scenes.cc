@@ -146,11 +146,10 @@ Scene RandomScene(std::uint64_t seed, std::uint32_t num_views,
   const auto pixel = [&] {
     return Vec2(random.Uniform(0, 640), random.Uniform(0, 480));
   };
-  for (ViewId id = 0; id < num_views; ++id) {
-    scene.views[id] = {"", std::to_string(id.value()) + ".jpg", 640, 480, 0, id,
-                       {}};
-    scene.poses[id.value()] = {RotationFromAngleAxis(RandomVector(random)),
-                               RandomVector(random)};
+  for (std::uint32_t id = 0; id < num_views; ++id) {
+    scene.views[id] = {"", std::to_string(id) + ".jpg", 640, 480, 0, id, {}};
+    scene.poses[id] = {RotationFromAngleAxis(RandomVector(random)),
+                       RandomVector(random)};
     scene.features[id];
   }
   // Every point and line gets its own feature in two or three views.
@@ -162,45 +161,45 @@ Scene RandomScene(std::uint64_t seed, std::uint32_t num_views,
     scene.features[id].segments.push_back({pixel(), pixel(), 0.5});
     return static_cast<FeatureIndex>(scene.features[id].segments.size() - 1);
   };
-  for (ViewId id = 0; id.value() + 1 < num_views; ++id) {
+  for (std::uint32_t id = 0; id + 1 < num_views; ++id) {
     RelativePose edge;
-    edge.views = {id, id.value() + 1};
+    edge.views = {id, id + 1};
     edge.rotation = RotationFromAngleAxis(RandomVector(random));
     edge.direction = RandomVector(random).normalized();
     edge.log10_nfa = -random.Uniform(10, 500);
     scene.relative_poses[edge.views] = edge;
   }
   for (std::uint32_t n = 0; n < num_points; ++n) {
-    const ViewId first = random.Index(num_views - 1);
-    const ViewId last =
-        std::min(num_views - 1, first.value() + 1 + random.Index(2));
+    const std::uint32_t first = random.Index(num_views - 1);
+    const std::uint32_t last =
+        std::min(num_views - 1, first + 1 + random.Index(2));
     Track track;
     Landmark landmark;
     landmark.position = RandomVector(random);
-    for (ViewId id = first; id <= last; ++id) {
+    for (std::uint32_t id = first; id <= last; ++id) {
       track.push_back({id, new_point(id)});
       landmark.observations.push_back(
           {id, track.back().feature,
            scene.features[id].points_px[track.back().feature]});
     }
-    scene.relative_poses[{first, first.value() + 1}].point_inliers.push_back(
+    scene.relative_poses[{first, first + 1}].point_inliers.push_back(
         {track[0].feature, track[1].feature});
     scene.point_tracks[n] = std::move(track);
     scene.structure[n] = std::move(landmark);
   }
   for (std::uint32_t n = 0; n < num_lines; ++n) {
-    const ViewId first = random.Index(num_views - 1);
+    const std::uint32_t first = random.Index(num_views - 1);
     const Track track = {{first, new_segment(first)},
-                         {first.value() + 1, new_segment(first.value() + 1)}};
-    scene.relative_poses[{first, first.value() + 1}].line_inliers.push_back(
+                         {first + 1, new_segment(first + 1)}};
+    scene.relative_poses[{first, first + 1}].line_inliers.push_back(
         {track[0].feature, track[1].feature});
     scene.line_tracks[n] = track;
     scene.line_structure[n] = MakeLine(random, track);
     if (n > 0) scene.coplanar_pairs.push_back({n - 1, n});
   }
-  for (ViewId id = 0; id.value() + 2 < num_views; ++id) {
+  for (std::uint32_t id = 0; id + 2 < num_views; ++id) {
     ScaleRatio ratio;
-    ratio.views = {id, id.value() + 1, id.value() + 2};
+    ratio.views = {id, id + 1, id + 2};
     ratio.verdict = RatioVerdict::kMeaningful;
     ratio.log_ratio = random.Gaussian();
     ratio.log_ratio_stddev = random.Uniform();

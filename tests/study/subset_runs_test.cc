@@ -20,11 +20,10 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-Scene SceneOfViews(ViewId count) {
+Scene SceneOfViews(std::uint32_t count) {
   Scene scene;
-  for (ViewId view = 0; view < count; ++view) {
-    scene.views[2 * view].filename =
-        "image " + std::to_string(view.value()) + ".jpg";
+  for (std::uint32_t view = 0; view < count; ++view) {
+    scene.views[2 * view].filename = "image " + std::to_string(view) + ".jpg";
   }
   return scene;
 }
@@ -62,9 +61,10 @@ TEST(ChooseSubsets, RefusesWhatMakesNoSense) {
   EXPECT_FALSE(ChooseSubsets(SceneOfViews(40), 20, 0, 0));
 }
 
-SubsetOutcome Outcome(ViewId dropped, int placed, double mean, double max) {
+SubsetOutcome Outcome(std::uint32_t dropped, int placed, double mean,
+                      double max) {
   SubsetOutcome outcome;
-  outcome.dropped = {dropped, dropped.value() + 2};
+  outcome.dropped = {dropped, dropped + 2};
   outcome.num_views = 4;
   outcome.num_placed = placed;
   outcome.mean_error = outcome.mean_error_before_adjustment = mean;

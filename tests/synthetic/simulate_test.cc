@@ -174,7 +174,7 @@ TEST(Simulate, PairsAsAsked) {
 TEST(Simulate, TrifocalSharesAsAsked) {
   SyntheticOptions options;
   options.seed = 5;
-  const auto trifocal = [](const std::map<std::uint32_t, Track>& tracks) {
+  const auto trifocal = [](const auto& tracks) {
     return std::count_if(tracks.begin(), tracks.end(), [](const auto& entry) {
       return entry.second.size() > 2;
     });
@@ -201,15 +201,16 @@ TEST(Simulate, NoTrifocalFeatureWhenNoneIsAsked) {
     options.broken_line_share = 0.3;
     options.trifocal_point_share = options.trifocal_line_share = 0;
     const SyntheticScene synthetic = MustSimulate(options);
-    for (const auto* tracks :
-         {&synthetic.scene.point_tracks, &synthetic.scene.line_tracks}) {
-      ASSERT_FALSE(tracks->empty());
-      for (const auto& [id, track] : *tracks) {
+    const auto expect_pairs = [](const auto& tracks) {
+      ASSERT_FALSE(tracks.empty());
+      for (const auto& [id, track] : tracks) {
         std::set<ViewId> views;
         for (const FeatureRef& ref : track) views.insert(ref.view);
         ASSERT_EQ(views.size(), 2u);
       }
-    }
+    };
+    ASSERT_NO_FATAL_FAILURE(expect_pairs(synthetic.scene.point_tracks));
+    ASSERT_NO_FATAL_FAILURE(expect_pairs(synthetic.scene.line_tracks));
     // No feature of a view is matched in two pairs.
     std::set<FeatureRef> points, segments;
     for (const auto& [pair, edge] : synthetic.scene.relative_poses) {

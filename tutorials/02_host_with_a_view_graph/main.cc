@@ -127,19 +127,21 @@ int main() {
   bool right = estimate->poses.size() == graph.views.size();
   for (const lowlap::ScaleRatio& ratio : estimate->ratios) {
     const auto length = [&](lowlap::ViewId a, lowlap::ViewId b) {
-      return (graph.true_centers[a] - graph.true_centers[b]).norm();
+      return (graph.true_centers[a.value()] - graph.true_centers[b.value()])
+          .norm();
     };
     const double truth = length(ratio.views.middle, ratio.views.last) /
                          length(ratio.views.first, ratio.views.middle);
     std::printf("lengths %u-%u : %u-%u  ratio %.4f, true %.4f: %s\n",
-                ratio.views.middle, ratio.views.last, ratio.views.first,
-                ratio.views.middle, std::exp(ratio.log_ratio), truth,
+                ratio.views.middle.value(), ratio.views.last.value(),
+                ratio.views.first.value(), ratio.views.middle.value(),
+                std::exp(ratio.log_ratio), truth,
                 lowlap::RatioVerdictName(ratio.verdict));
     right = right && std::abs(ratio.log_ratio - std::log(truth)) < 0.01;
   }
   for (const auto& [view, pose] : estimate->poses) {
-    std::printf("centre of view %u: %8.4f %8.4f %8.4f\n", view, pose.center.x(),
-                pose.center.y(), pose.center.z());
+    std::printf("centre of view %u: %8.4f %8.4f %8.4f\n", view.value(),
+                pose.center.x(), pose.center.y(), pose.center.z());
   }
   return right ? 0 : 1;
 }

@@ -119,8 +119,9 @@ int main() {
   bool odometry_spoke = false;
   std::printf("views   ratio   true    inliers of candidates by kind\n");
   for (const lowlap::ScaleRatio& ratio : scene.scale_ratios) {
-    std::printf("%u-%u-%u  %6.4f  %6.4f ", ratio.views.first,
-                ratio.views.middle, ratio.views.last, std::exp(ratio.log_ratio),
+    std::printf("%u-%u-%u  %6.4f  %6.4f ", ratio.views.first.value(),
+                ratio.views.middle.value(), ratio.views.last.value(),
+                std::exp(ratio.log_ratio),
                 std::exp(*simulated->TrueLogRatio(ratio.views)));
     for (const lowlap::KindSupport& kind : ratio.kinds) {
       std::printf("  %s %d/%d", kind.kind.c_str(), kind.inliers,

@@ -35,9 +35,11 @@ int main() {
   if (!result) return Fail(result.error());
 
   std::vector<lowlap::Vec3> solved, truth;
-  for (const auto& [id, pose] : scene.poses) {
-    solved.push_back(pose.center);
-    truth.push_back(synthetic->true_poses.at(id).center);
+  for (const auto& [id, true_pose] : synthetic->true_poses) {
+    const lowlap::Pose* pose = scene.FindPose(id);
+    if (!pose) continue;
+    solved.push_back(pose->center);
+    truth.push_back(true_pose.center);
   }
   const auto truth_from_solved = lowlap::AlignPoints(solved, truth);
   if (!truth_from_solved) return Fail(truth_from_solved.error());

@@ -1,3 +1,5 @@
+#include "lowlap/pipeline/internal/decide_hypotheses.h"
+
 #include <gtest/gtest.h>
 
 #include <map>
@@ -7,7 +9,6 @@
 
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
 #include "lowlap/pipeline/internal/output/summary_json.h"
 #include "lowlap/pipeline/solve_scene.h"
@@ -35,8 +36,7 @@ SyntheticScene Wall(const std::string& pairs, std::uint64_t seed) {
 void PutWrongMotionFirst(const ViewPair& views, SyntheticScene* synthetic) {
   Scene& scene = synthetic->scene;
   RelativePose& pose = scene.relative_poses.at(views);
-  const Pose& first =
-      synthetic->true_poses.at(scene.views.at(views.first).pose_id);
+  const Pose& first = synthetic->true_poses.at(views.first);
   const Vec4& plane = synthetic->planes.front();
   const Vec3 normal = plane.head<3>();
   // normal . X = 1 in camera 1, in units of the baseline.
@@ -179,9 +179,9 @@ Scene AmbiguousPair(std::map<ViewPair, PairMatches>* matches) {
   intrinsic.height_px = 1200;
   intrinsic.fx_px = intrinsic.fy_px = testing::kFocalPx;
   intrinsic.principal_point_px = Vec2(800, 600);
-  for (const ViewId id : {0, 1}) {
+  for (const std::uint32_t id : {0u, 1u}) {
     View& view = scene.views[id];
-    view.filename = std::to_string(id.value()) + ".jpg";
+    view.filename = std::to_string(id) + ".jpg";
     view.width_px = intrinsic.width_px;
     view.height_px = intrinsic.height_px;
     view.intrinsic_id = 0;
