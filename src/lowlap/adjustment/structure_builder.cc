@@ -2,7 +2,6 @@
 #include <chrono>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <string>
 #include <utility>
@@ -16,12 +15,6 @@
 
 namespace lowlap {
 namespace {
-
-std::vector<std::size_t> AllOf(std::size_t count) {
-  std::vector<std::size_t> indices(count);
-  std::iota(indices.begin(), indices.end(), std::size_t{0});
-  return indices;
-}
 
 // Median of the thresholds that the relative poses were verified with; 0 if
 // they have none.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "lowlap/adjustment/internal/rounds/pair_gap.h"
@@ -104,12 +103,6 @@ NoiseBounds BoundsOf(const AdjustmentOptions& options) {
   bounds.min_threshold_px = options.min_threshold_px;
   bounds.max_threshold_px = options.max_threshold_px;
   return bounds;
-}
-
-std::vector<std::size_t> AllOf(std::size_t count) {
-  std::vector<std::size_t> indices(count);
-  std::iota(indices.begin(), indices.end(), std::size_t{0});
-  return indices;
 }
 
 std::vector<char> SolvedLines(const AdjustmentOptions& options,

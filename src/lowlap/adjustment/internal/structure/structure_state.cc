@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -263,6 +264,12 @@ NoiseScale EstimateLineNoise(const CameraSet& cameras,
                        BackgroundLaw::PointToLine(cameras.MeanImageArea(),
                                                   cameras.MeanImageDiagonal()),
                        kUnitMedian2 / std::sqrt(2.0), bounds);
+}
+
+std::vector<std::size_t> AllOf(std::size_t count) {
+  std::vector<std::size_t> indices(count);
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  return indices;
 }
 
 Status TriangulatePoints(const CameraSet& cameras,
