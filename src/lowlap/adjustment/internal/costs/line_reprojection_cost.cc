@@ -1,5 +1,7 @@
 #include "lowlap/adjustment/internal/costs/line_reprojection_cost.h"
 
+#include <optional>
+
 #include "lowlap/adjustment/internal/costs/jacobian_map.h"
 #include "lowlap/adjustment/internal/costs/quaternion.h"
 
@@ -36,25 +38,24 @@ bool LineReprojectionCost::Evaluate(const double* const* parameters,
   const Mat3 matrix = rotation.Matrix();
   const Vec3 normal = matrix * moment;
 
-  SegmentRays segment = segment_;
+  std::optional<SegmentRays> moved;
   if (intrinsic_count_ > 0) {
-    for (EndPointRay& end : segment.ends) {
+    moved = segment_;
+    for (EndPointRay& end : moved->ends) {
       for (int n = 0; n < intrinsic_count_; ++n) {
         end.ray +=
             end.by_intrinsic.col(n) * (parameters[3][n] - linearised_at_[n]);
       }
     }
   }
+  const SegmentRays& segment = moved ? *moved : segment_;
   Mat23 by_normal;
-  Eigen::Matrix<double, 2, kMaxIntrinsicParameters> by_intrinsic;
   for (int n = 0; n < 2; ++n) {
-    const EndPointRay& end = segment.ends[n];
     Eigen::RowVector3d row;
-    residuals[n] = weight_ * EndPointDistancePx(end, normal, &row);
-    by_normal.row(n) = weight_ * row;
-    const double length = (end.by_pixel.transpose() * normal).norm();
-    const Vec3 by_ray = length > 0 ? Vec3(normal / length) : Vec3::Zero();
-    by_intrinsic.row(n) = weight_ * by_ray.transpose() * end.by_intrinsic;
+    residuals[n] =
+        weight_ * EndPointDistancePx(segment.ends[n], normal,
+                                     jacobians != nullptr ? &row : nullptr);
+    if (jacobians != nullptr) by_normal.row(n) = weight_ * row;
   }
   if (jacobians == nullptr) return true;
   if (jacobians[0] != nullptr) {
@@ -71,8 +72,14 @@ bool LineReprojectionCost::Evaluate(const double* const* parameters,
     by_line.rightCols<3>() = by_moment * CrossMatrix(arm);
   }
   if (intrinsic_count_ > 0 && jacobians[3] != nullptr) {
-    JacobianMap<2>(jacobians[3], intrinsic_count_) =
-        by_intrinsic.leftCols(intrinsic_count_);
+    auto by_intrinsic = JacobianMap<2>(jacobians[3], intrinsic_count_);
+    for (int n = 0; n < 2; ++n) {
+      const EndPointRay& end = segment.ends[n];
+      const double length = (end.by_pixel.transpose() * normal).norm();
+      const Vec3 by_ray = length > 0 ? Vec3(normal / length) : Vec3::Zero();
+      by_intrinsic.row(n) = weight_ * by_ray.transpose() *
+                            end.by_intrinsic.leftCols(intrinsic_count_);
+    }
   }
   return true;
 }

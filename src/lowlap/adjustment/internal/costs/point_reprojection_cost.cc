@@ -31,11 +31,12 @@ bool PointReprojectionCost::Evaluate(const double* const* parameters,
   const double* values =
       refined ? parameters[3] : intrinsic_->parameters.data();
   Eigen::Map<Vec2> residual(residuals);
-  Mat23 by_x_cam = Mat23::Zero();
+  Mat23 by_x_cam;
   Eigen::Matrix<double, 2, kMaxIntrinsicParameters> by_intrinsic;
-  by_intrinsic.setZero();
   if (!IsProjectable(shape.model, x_cam)) {
     residual.setConstant(kBehindCameraErrorPx);
+    by_x_cam.setZero();
+    by_intrinsic.setZero();
   } else {
     Vec2 difference_px =
         (jacobians == nullptr ? ProjectPoint(shape, values, x_cam)
@@ -45,10 +46,9 @@ bool PointReprojectionCost::Evaluate(const double* const* parameters,
         observed_px_;
     WrapPanorama(shape, &difference_px);
     residual = whitening_ * difference_px;
-    by_x_cam = (whitening_ * by_x_cam).eval();
-    by_intrinsic = (whitening_ * by_intrinsic).eval();
   }
   if (jacobians == nullptr) return true;
+  by_x_cam = (whitening_ * by_x_cam).eval();
   if (jacobians[0] != nullptr) {
     JacobianMap<2, 4>(jacobians[0]) = by_x_cam * rotation.Jacobian(ray);
   }
@@ -57,7 +57,8 @@ bool PointReprojectionCost::Evaluate(const double* const* parameters,
   if (jacobians[2] != nullptr) JacobianMap<2, 3>(jacobians[2]) = by_point;
   if (refined && jacobians[3] != nullptr) {
     const int count = intrinsic_->ParameterCount();
-    JacobianMap<2>(jacobians[3], count) = by_intrinsic.leftCols(count);
+    JacobianMap<2>(jacobians[3], count) =
+        (whitening_ * by_intrinsic).leftCols(count);
   }
   return true;
 }

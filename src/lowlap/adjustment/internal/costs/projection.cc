@@ -52,11 +52,6 @@ Vec2 ProjectWithJacobian(const Intrinsic& shape, const double* values,
 
 }  // namespace
 
-bool IsProjectable(CameraModel model, const Vec3& x_cam) {
-  return model == CameraModel::kSpherical ? x_cam.squaredNorm() > 0
-                                          : x_cam.z() > 1e-12 * x_cam.norm();
-}
-
 void WrapPanorama(const Intrinsic& shape, Vec2* difference_px) {
   if (shape.model != CameraModel::kSpherical) return;
   const double turn = 2 * kPi * shape.MeanFocalPx();

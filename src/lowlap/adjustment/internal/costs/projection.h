@@ -11,7 +11,10 @@ namespace lowlap {
 using Mat23 = Eigen::Matrix<double, 2, 3>;
 
 /// Can the model see a point there at all? Perspective ones need z > 0.
-bool IsProjectable(CameraModel model, const Vec3& x_cam);
+inline bool IsProjectable(CameraModel model, const Vec3& x_cam) {
+  return model == CameraModel::kSpherical ? x_cam.squaredNorm() > 0
+                                          : x_cam.z() > 1e-12 * x_cam.norm();
+}
 
 /// A panorama is 2 pi round: the difference of two pixels across its seam.
 void WrapPanorama(const Intrinsic& shape, Vec2* difference_px);

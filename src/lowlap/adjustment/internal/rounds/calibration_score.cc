@@ -1,7 +1,6 @@
 #include "lowlap/adjustment/internal/rounds/calibration_score.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
@@ -18,7 +17,7 @@ namespace {
 
 using MatX = Eigen::MatrixXd;
 using VecX = Eigen::VectorXd;
-using SparseMat = LinearisedProblem::SparseMat;
+using SparseMat = Eigen::SparseMatrix<double>;
 
 constexpr std::size_t kMaxSeparate = 16;
 constexpr double kFalseAlarms = 0.01;
@@ -96,87 +95,6 @@ std::vector<Group> MakeGroups(const AdjustmentOptions& options,
   return groups;
 }
 
-// The score test in the held parameters alone; see the header.
-struct Score {
-  VecX u;
-  MatX information;
-  MatX prior_information;  // if everything else were known
-  MatX variance;           // of u, from the landmarks' shares
-};
-
-// Columns: the free directions, and how the held parameters move the kept ones.
-struct Directions {
-  SparseMat free;
-  MatX held;
-};
-
-std::optional<Score> ComputeScore(const LinearisedProblem& linearised,
-                                  const Directions& directions) {
-  const SparseMat hessian =
-      linearised.jacobian.transpose() * linearised.jacobian;
-  const SparseMat inverse = linearised.InverseOfEliminated(hessian);
-  const SparseMat kept = linearised.SchurComplement(hessian, inverse);
-  const int first = linearised.eliminated_size, size = linearised.KeptSize();
-
-  // What nothing determines (the scale of a link of two views) has no gradient
-  // either: it stays where it is.
-  constexpr double kDamping = 1e-10;
-  SparseMat free = directions.free.transpose() * kept * directions.free;
-  const VecX own =
-      SparseMat(hessian.block(first, first, size, size)).diagonal();
-  const VecX own_free = directions.free.transpose() * own;
-  for (Eigen::Index n = 0; n < free.cols(); ++n) {
-    free.coeffRef(n, n) += kDamping * own_free(n);
-  }
-  const Eigen::SimplicialLDLT<SparseMat> factor(free);
-  if (factor.info() != Eigen::Success) return std::nullopt;
-  const MatX kept_held = kept * directions.held;
-  const MatX cross = directions.free.transpose() * kept_held;
-  const MatX solved = factor.solve(cross);
-  Score score;
-  score.prior_information = directions.held.transpose() * kept_held;
-  score.information = score.prior_information - cross.transpose() * solved;
-  const MatX efficient = directions.held - directions.free * solved;
-
-  // The residuals without what the landmarks' own freedom explains.
-  const SparseMat by_landmarks = linearised.jacobian.leftCols(first);
-  const VecX residuals =
-      linearised.residuals -
-      by_landmarks *
-          (inverse * (by_landmarks.transpose() * linearised.residuals));
-  using RowMajor = Eigen::SparseMatrix<double, Eigen::RowMajor>;
-  const RowMajor rows = linearised.jacobian;
-  const Eigen::Index count = directions.held.cols();
-  score.u = VecX::Zero(count);
-  score.variance = MatX::Zero(count, count);
-  VecX share = VecX::Zero(count);
-  Eigen::Index landmark = -1;
-  const auto finish_landmark = [&] {
-    score.u += share;
-    score.variance += share * share.transpose();
-    share.setZero();
-  };
-  for (Eigen::Index row = 0; row < rows.rows(); ++row) {
-    bool at_landmark = true;  // the first column of the row
-    for (RowMajor::InnerIterator it(rows, row); it; ++it) {
-      if (it.col() >= first) {
-        share += residuals(row) * it.value() *
-                 efficient.row(it.col() - first).transpose();
-      } else if (at_landmark && it.col() != landmark) {
-        finish_landmark();
-        landmark = it.col();
-      }
-      at_landmark = false;
-    }
-  }
-  finish_landmark();
-  const double redundancy = static_cast<double>(rows.rows()) - first;
-  const double unknowns = static_cast<double>(free.cols() + count);
-  if (!(redundancy > unknowns)) return std::nullopt;
-  score.variance *= redundancy / (redundancy - unknowns);
-  return score;
-}
-
 MatX Block(const MatX& matrix, const std::vector<int>& rows,
            const std::vector<int>& cols) {
   MatX block(rows.size(), cols.size());
@@ -189,37 +107,99 @@ MatX Block(const MatX& matrix, const std::vector<int>& rows,
   return block;
 }
 
+// a^T b. A function of its own, as every form of a product takes the compiler a
+// second.
+MatX TransposedProduct(const MatX& a, const MatX& b) {
+  return a.transpose().lazyProduct(b);
+}
+
+// The score test in the held parameters alone; see the header.
+struct Score {
+  VecX u;
+  MatX information;
+  MatX prior_information;  // if everything else were known
+  MatX variance;           // of u, from the landmarks' shares
+};
+
+// `held` says how the held parameters move the kept columns; the columns
+// `free` move by themselves.
+std::optional<Score> ComputeScore(const LinearisedProblem& linearised,
+                                  const std::vector<int>& free,
+                                  const MatX& held) {
+  std::vector<int> place(static_cast<std::size_t>(linearised.kept_size), -1);
+  for (std::size_t n = 0; n < free.size(); ++n) {
+    place[free[n]] = static_cast<int>(n);
+  }
+  const auto free_count = static_cast<Eigen::Index>(free.size());
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const int n : free) {
+    for (SparseMat::InnerIterator it(linearised.schur_complement, n); it;
+         ++it) {
+      const int row = place[it.row()];
+      if (row >= 0) entries.emplace_back(row, place[n], it.value());
+    }
+    // What nothing determines (the scale of a link of two views) has no
+    // gradient either: it stays where it is.
+    constexpr double kDamping = 1e-10;
+    entries.emplace_back(place[n], place[n],
+                         kDamping * linearised.kept_diagonal(n));
+  }
+  SparseMat free_part(free_count, free_count);
+  free_part.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<SparseMat> factor(free_part);
+  if (factor.info() != Eigen::Success) return std::nullopt;
+  const MatX kept_held = linearised.schur_complement * held;
+  MatX cross(free_count, held.cols());
+  for (const int n : free) cross.row(place[n]) = kept_held.row(n);
+  const MatX solved = factor.solve(cross);
+  Score score;
+  score.prior_information = TransposedProduct(held, kept_held);
+  score.information =
+      score.prior_information - TransposedProduct(cross, solved);
+  MatX efficient = held;
+  for (const int n : free) efficient.row(n) -= solved.row(place[n]);
+  const MatX shares = linearised.gradients * efficient;  // by landmark
+  score.u = shares.colwise().sum().transpose();
+  const double unknowns = static_cast<double>(free_count + held.cols());
+  if (!(linearised.redundancy > unknowns)) return std::nullopt;
+  score.variance = TransposedProduct(shares, shares) *
+                   (linearised.redundancy / (linearised.redundancy - unknowns));
+  return score;
+}
+
 // The statistic of the parameters `which`, given that those in `free` are free;
 // 0 where the images do not determine them.
 double Statistic(const Score& score, const std::vector<int>& which,
                  const std::vector<int>& free) {
-  // u' = M (u_which, u_free).
+  // u' = M^T (u_which, u_free).
   std::vector<int> both = which;
   both.insert(both.end(), free.begin(), free.end());
   const auto size = static_cast<Eigen::Index>(which.size());
-  MatX reduce = MatX::Identity(size, static_cast<Eigen::Index>(both.size()));
+  MatX reduce = MatX::Identity(static_cast<Eigen::Index>(both.size()), size);
   if (!free.empty()) {
-    reduce.rightCols(static_cast<Eigen::Index>(free.size())) =
-        -Block(score.information, which, free) *
-        PseudoInverse(Block(score.information, free, free));
+    reduce.bottomRows(static_cast<Eigen::Index>(free.size())) =
+        -TransposedProduct(PseudoInverse(Block(score.information, free, free)),
+                           Block(score.information, free, which));
   }
-  const VecX u = reduce * Block(score.u, both, {0});
-  const MatX information =
-      reduce * Block(score.information, both, both) * reduce.transpose();
-  const MatX variance =
-      reduce * Block(score.variance, both, both) * reduce.transpose();
-  constexpr double kLeastShare = 1e-7;
+  const auto reduced = [&](const MatX& matrix) {
+    return TransposedProduct(
+        reduce, TransposedProduct(Block(matrix, both, both), reduce));
+  };
+  const VecX u = TransposedProduct(reduce, Block(score.u, both, {0}));
+  const MatX information = reduced(score.information);
   const VecX scale = Block(score.prior_information, which, which)
                          .diagonal()
                          .cwiseSqrt()
                          .cwiseInverse();
   if (!scale.allFinite()) return 0;
-  const Eigen::SelfAdjointEigenSolver<MatX> eigen(
-      MatX(scale.asDiagonal() * information * scale.asDiagonal()),
-      Eigen::EigenvaluesOnly);
-  if (!(eigen.eigenvalues()(0) > kLeastShare)) return 0;
-  const double by_model = u.dot(information.ldlt().solve(u));
-  const double by_spread = u.dot(PseudoInverse(variance) * u);
+  // No eigenvalue of the scaled information may be below this.
+  constexpr double kLeastShare = 1e-7;
+  MatX beyond = scale.asDiagonal() * information * scale.asDiagonal();
+  beyond.diagonal().array() -= kLeastShare;
+  if (!(Eigen::LDLT<MatX>(beyond).vectorD().minCoeff() > 0)) return 0;
+  const double by_model = u.dot(VecX(Eigen::LDLT<MatX>(information).solve(u)));
+  const double by_spread =
+      u.dot(VecX(TransposedProduct(PseudoInverse(reduced(score.variance)), u)));
   const double least = std::min(by_model, by_spread);
   return std::isfinite(least) ? std::max(0.0, least) : 0;
 }
@@ -296,10 +276,9 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
                          &state);
   const LinearisedProblem linearised(&builder);
 
-  // A column for every free direction and every held parameter.
   std::vector<Candidate> candidates;
-  std::vector<Eigen::Triplet<double>> free, moves;
-  std::vector<char> is_free(static_cast<std::size_t>(linearised.KeptSize()), 1);
+  std::vector<Eigen::Triplet<double>> moves;
+  std::vector<char> is_free(static_cast<std::size_t>(linearised.kept_size), 1);
   int count = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<int> column(groups[g].intrinsics.size());
@@ -326,20 +305,17 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
     }
   }
   if (candidates.empty()) return {};
-  int free_count = 0;
-  for (int n = 0; n < linearised.KeptSize(); ++n) {
-    if (is_free[static_cast<std::size_t>(n)]) {
-      free.emplace_back(n, free_count++, 1);
-    }
+  std::vector<int> free;
+  for (int n = 0; n < linearised.kept_size; ++n) {
+    if (is_free[static_cast<std::size_t>(n)]) free.push_back(n);
   }
-  Directions directions;
-  directions.free.resize(linearised.KeptSize(), free_count);
-  directions.free.setFromTriplets(free.begin(), free.end());
-  SparseMat held_directions(linearised.KeptSize(), count);
-  held_directions.setFromTriplets(moves.begin(), moves.end());
-  directions.held = held_directions;
+  MatX held_directions = MatX::Zero(linearised.kept_size, count);
+  for (const Eigen::Triplet<double>& move : moves) {
+    held_directions(move.row(), move.col()) = move.value();
+  }
 
-  const std::optional<Score> score = ComputeScore(linearised, directions);
+  const std::optional<Score> score =
+      ComputeScore(linearised, free, held_directions);
   if (!score) return {};
   Choose(*score, &candidates);
 
@@ -347,8 +323,9 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
       Columns(candidates, [](const Candidate& c) { return c.chosen; });
   if (chosen.empty()) return {};
   VecX change = VecX::Zero(count);
-  const VecX step = -(PseudoInverse(Block(score->information, chosen, chosen)) *
-                      Block(score->u, chosen, {0}));
+  const VecX step = -TransposedProduct(
+      PseudoInverse(Block(score->information, chosen, chosen)),
+      Block(score->u, chosen, {0}));
   for (std::size_t n = 0; n < chosen.size(); ++n) {
     change(chosen[n]) = step(static_cast<Eigen::Index>(n));
   }

@@ -27,11 +27,8 @@ std::map<PoseId, Mat3> CenterCovariances(
     ProblemBuilder* builder) {
   const ceres::Problem& problem = builder->problem();
   const LinearisedProblem linearised(builder);
-  if (linearised.KeptSize() == 0) return {};
-  const LinearisedProblem::SparseMat hessian =
-      linearised.jacobian.transpose() * linearised.jacobian;
-  const MatX covariance = PseudoInverse(MatX(linearised.SchurComplement(
-      hessian, linearised.InverseOfEliminated(hessian))));
+  if (linearised.kept_size == 0) return {};
+  const MatX covariance = PseudoInverse(MatX(linearised.schur_complement));
   std::map<PoseId, Mat3> result;
   for (std::size_t n = 0; n < components.size(); ++n) {
     const Component& component = components[n];

@@ -1,11 +1,8 @@
 #include "lowlap/adjustment/internal/rounds/problem_builder.h"
 
-#include <ceres/line_manifold.h>
-#include <ceres/manifold.h>
-#include <ceres/sphere_manifold.h>
-
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lowlap/adjustment/internal/costs/coplanar_costs.h"
 #include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
@@ -20,6 +17,16 @@ constexpr int kPoseSize = 4 + 3;
 constexpr int kPointSize = 3;
 constexpr int kLineSize = 6;
 
+// Ceres counts the owners of what it owns in a tree, for every residual.
+ceres::Problem::Options OwnNothing() {
+  ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.disable_all_safety_checks = true;
+  return options;
+}
+
 }  // namespace
 
 ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
@@ -32,10 +39,8 @@ ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
       selection_(selection),
       components_(components),
       cameras_(cameras),
-      state_(state) {
-  ceres::Problem::Options problem_options;
-  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  problem_ = std::make_unique<ceres::Problem>(problem_options);
+      state_(state),
+      problem_(OwnNothing()) {
   CopyIntoBlocks();
   AddPoints();
   AddLines();
@@ -43,6 +48,7 @@ ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
   AddRelativePoses();
   AddPrincipalPoints();
   SetManifolds();
+  SplitBlocks();
 }
 
 double* ProblemBuilder::RotationBlock(int pose) {
@@ -106,21 +112,38 @@ ceres::LossFunction* ProblemBuilder::MakeLoss(const NoiseScale& noise,
   return losses_.back().get();
 }
 
+void ProblemBuilder::AddResiduals(std::unique_ptr<ceres::CostFunction> cost,
+                                  ceres::LossFunction* loss,
+                                  std::initializer_list<double*> blocks) {
+  problem_.AddResidualBlock(cost.get(), loss, blocks.begin(),
+                            static_cast<int>(blocks.size()));
+  costs_.push_back(std::move(cost));
+}
+
+void ProblemBuilder::AddObservation(std::unique_ptr<ceres::CostFunction> cost,
+                                    ceres::LossFunction* loss,
+                                    const CameraView& view, double* landmark) {
+  double* const rotation = RotationBlock(view.pose);
+  double* const center = CenterBlock(view.pose);
+  if (IsRefined(view.intrinsic)) {
+    AddResiduals(std::move(cost), loss,
+                 {rotation, center, landmark, IntrinsicBlock(view.intrinsic)});
+  } else {
+    AddResiduals(std::move(cost), loss, {rotation, center, landmark});
+  }
+}
+
 void ProblemBuilder::AddPoints() {
   ceres::LossFunction* loss = MakeLoss(request_.noise.points, 1);
   for (const int n : selection_.points) {
     for (const PointCandidate& candidate : state_->points[n].candidates) {
       if (!candidate.used) continue;
       const CameraView& view = cameras_->views[candidate.view];
-      const IntrinsicState& intrinsic = cameras_->intrinsics[view.intrinsic];
-      const bool refined = IsRefined(view.intrinsic);
-      std::vector<double*> blocks = {RotationBlock(view.pose),
-                                     CenterBlock(view.pose), PointBlock(n)};
-      if (refined) blocks.push_back(IntrinsicBlock(view.intrinsic));
-      problem_->AddResidualBlock(
-          new PointReprojectionCost(&intrinsic, refined, candidate.pixel_px,
-                                    candidate.whitening),
-          loss, blocks);
+      AddObservation(
+          std::make_unique<PointReprojectionCost>(
+              &cameras_->intrinsics[view.intrinsic], IsRefined(view.intrinsic),
+              candidate.pixel_px, candidate.whitening),
+          loss, view, PointBlock(n));
     }
   }
 }
@@ -131,15 +154,11 @@ void ProblemBuilder::AddLines() {
     for (const LineCandidate& candidate : state_->lines[n].candidates) {
       if (!candidate.used) continue;
       const CameraView& view = cameras_->views[candidate.view];
-      const IntrinsicState& intrinsic = cameras_->intrinsics[view.intrinsic];
-      const bool refined = IsRefined(view.intrinsic);
-      std::vector<double*> blocks = {RotationBlock(view.pose),
-                                     CenterBlock(view.pose), LineBlock(n)};
-      if (refined) blocks.push_back(IntrinsicBlock(view.intrinsic));
-      problem_->AddResidualBlock(
-          new LineReprojectionCost(candidate.rays, candidate.weight, intrinsic,
-                                   refined),
-          loss, blocks);
+      AddObservation(
+          std::make_unique<LineReprojectionCost>(
+              candidate.rays, candidate.weight,
+              cameras_->intrinsics[view.intrinsic], IsRefined(view.intrinsic)),
+          loss, view, LineBlock(n));
     }
   }
 }
@@ -164,16 +183,15 @@ void ProblemBuilder::AddPairs() {
     for (const PairTerm& term : terms) {
       const double focal_px =
           cameras_->IntrinsicOf(term.view).value.MeanFocalPx();
-      const std::vector<double*> blocks = {
-          CenterBlock(cameras_->views[term.view].pose), LineBlock(term.on),
-          LineBlock(term.to)};
-      ceres::CostFunction* cost = nullptr;
+      std::unique_ptr<ceres::CostFunction> cost;
       if (options_.coplanar_residual == AdjustedCoplanarResidual::kTransfer) {
-        cost = new CoplanarTransferCost(focal_px);
+        cost = std::make_unique<CoplanarTransferCost>(focal_px);
       } else {
-        cost = new CoplanarImageDistanceCost(focal_px);
+        cost = std::make_unique<CoplanarImageDistanceCost>(focal_px);
       }
-      problem_->AddResidualBlock(cost, loss, blocks);
+      AddResiduals(std::move(cost), loss,
+                   {CenterBlock(cameras_->views[term.view].pose),
+                    LineBlock(term.on), LineBlock(term.to)});
     }
   }
 }
@@ -183,9 +201,9 @@ void ProblemBuilder::AddPrincipalPoints() {
     const IntrinsicState& intrinsic = cameras_->intrinsics[n];
     double* parameters = IntrinsicBlock(static_cast<int>(n));
     const double stddev_px = PrincipalPointStddevPx(options_, intrinsic);
-    if (stddev_px > 0 && problem_->HasParameterBlock(parameters)) {
-      problem_->AddResidualBlock(new PrincipalPointCost(intrinsic, stddev_px),
-                                 nullptr, parameters);
+    if (stddev_px > 0 && problem_.HasParameterBlock(parameters)) {
+      AddResiduals(std::make_unique<PrincipalPointCost>(intrinsic, stddev_px),
+                   nullptr, {parameters});
     }
   }
 }
@@ -204,55 +222,60 @@ void ProblemBuilder::AddRelativePoses() {
   for (const RelativePosePrior& prior : state_->priors) {
     const int component = component_of[prior.first];
     if (component < 0 || component != component_of[prior.second]) continue;
-    problem_->AddResidualBlock(
-        new RelativePoseCost(prior.measured), loss, RotationBlock(prior.first),
-        CenterBlock(prior.first), RotationBlock(prior.second),
-        CenterBlock(prior.second));
+    AddResiduals(std::make_unique<RelativePoseCost>(prior.measured), loss,
+                 {RotationBlock(prior.first), CenterBlock(prior.first),
+                  RotationBlock(prior.second), CenterBlock(prior.second)});
   }
 }
 
 void ProblemBuilder::SetManifolds() {
   for (const int n : selection_.lines) {
-    problem_->SetManifold(LineBlock(n), new ceres::LineManifold<3>());
+    problem_.SetManifold(LineBlock(n), &line_manifold_);
   }
   for (const Component& component : components_) {
     for (const int n : component.poses) {
       double* rotation = RotationBlock(n);
       if (request_.fixed_rotations || n == component.reference) {
-        problem_->SetParameterBlockConstant(rotation);
+        problem_.SetParameterBlockConstant(rotation);
       } else {
-        problem_->SetManifold(rotation, new ceres::EigenQuaternionManifold());
+        problem_.SetManifold(rotation, &rotation_manifold_);
       }
     }
-    problem_->SetParameterBlockConstant(CenterBlock(component.reference));
+    problem_.SetParameterBlockConstant(CenterBlock(component.reference));
     // The reference is the origin of the frame: a sphere about it keeps the
     // length of the baseline.
     if (component.partner >= 0) {
-      problem_->SetManifold(CenterBlock(component.partner),
-                            new ceres::SphereManifold<3>());
+      problem_.SetManifold(CenterBlock(component.partner), &sphere_manifold_);
     }
   }
   for (std::size_t index = 0; index < cameras_->intrinsics.size(); ++index) {
     const IntrinsicState& intrinsic = cameras_->intrinsics[index];
     double* parameters = IntrinsicBlock(static_cast<int>(index));
-    if (!problem_->HasParameterBlock(parameters)) continue;
+    if (!problem_.HasParameterBlock(parameters)) continue;
     const Eigen::MatrixXd basis =
         FreeDirections(RefinementOf(options_, intrinsic), intrinsic);
     if (basis.cols() == 0) {
-      problem_->SetParameterBlockConstant(parameters);
+      problem_.SetParameterBlockConstant(parameters);
     } else {
-      problem_->SetManifold(parameters, new SubspaceManifold(basis));
+      intrinsic_manifolds_.push_back(std::make_unique<SubspaceManifold>(basis));
+      problem_.SetManifold(parameters, intrinsic_manifolds_.back().get());
     }
   }
 }
 
-std::shared_ptr<ceres::ParameterBlockOrdering> ProblemBuilder::Ordering() {
-  auto ordering = std::make_shared<ceres::ParameterBlockOrdering>();
-  std::vector<double*> blocks;
-  problem_->GetParameterBlocks(&blocks);
-  for (double* block : blocks) ordering->AddElementToGroup(block, 1);
-  for (const int n : selection_.points) {
-    ordering->AddElementToGroup(PointBlock(n), 0);
+void ProblemBuilder::SplitBlocks() {
+  const auto keep = [&](double* block) {
+    if (problem_.HasParameterBlock(block) &&
+        !problem_.IsParameterBlockConstant(block)) {
+      kept_.push_back(block);
+    }
+  };
+  for (std::size_t n = 0; n < cameras_->poses.size(); ++n) {
+    keep(RotationBlock(static_cast<int>(n)));
+    keep(CenterBlock(static_cast<int>(n)));
+  }
+  for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
+    keep(IntrinsicBlock(static_cast<int>(n)));
   }
   // Two lines of a pair share residuals: only one of them may be eliminated.
   std::vector<std::vector<int>> partners(state_->lines.size());
@@ -261,31 +284,18 @@ std::shared_ptr<ceres::ParameterBlockOrdering> ProblemBuilder::Ordering() {
     partners[pair.first].push_back(pair.second);
     partners[pair.second].push_back(pair.first);
   }
-  std::vector<char> eliminated(state_->lines.size(), 0);
+  std::vector<char> is_eliminated(state_->lines.size(), 0);
   for (const int n : selection_.lines) {
-    bool independent = true;
-    for (const int partner : partners[n]) {
-      independent = independent && !eliminated[partner];
-    }
-    if (!independent) continue;
-    eliminated[n] = 1;
-    ordering->AddElementToGroup(LineBlock(n), 0);
-  }
-  return ordering;
-}
-
-int ProblemBuilder::ReducedSize() {
-  const auto ordering = Ordering();
-  int size = 0;
-  std::vector<double*> blocks;
-  problem_->GetParameterBlocks(&blocks);
-  for (double* block : blocks) {
-    if (ordering->GroupId(block) == 1 &&
-        !problem_->IsParameterBlockConstant(block)) {
-      size += problem_->ParameterBlockTangentSize(block);
+    is_eliminated[n] =
+        std::none_of(partners[n].begin(), partners[n].end(),
+                     [&](int partner) { return is_eliminated[partner]; });
+    if (is_eliminated[n]) {
+      eliminated_.push_back(LineBlock(n));
+    } else {
+      keep(LineBlock(n));
     }
   }
-  return size;
+  for (const int n : selection_.points) eliminated_.push_back(PointBlock(n));
 }
 
 void ProblemBuilder::TakeResults() {

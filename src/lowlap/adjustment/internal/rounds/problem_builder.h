@@ -1,9 +1,13 @@
 #pragma once
 
+#include <ceres/line_manifold.h>
 #include <ceres/loss_function.h>
+#include <ceres/manifold.h>
 #include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
+#include <ceres/sphere_manifold.h>
 
+#include <initializer_list>
 #include <memory>
 #include <vector>
 
@@ -26,12 +30,12 @@ class ProblemBuilder {
                  const std::vector<Component>& components, CameraSet* cameras,
                  StructureState* state);
 
-  ceres::Problem& problem() { return *problem_; }
-  /// Points and an independent set of the lines first: what the Schur
-  /// complement eliminates.
-  std::shared_ptr<ceres::ParameterBlockOrdering> Ordering();
-  /// Degrees of freedom of the blocks that are not eliminated.
-  int ReducedSize();
+  ceres::Problem& problem() { return problem_; }
+  /// Points and an independent set of the lines: what the Schur complement
+  /// eliminates.
+  const std::vector<double*>& eliminated() const { return eliminated_; }
+  /// The other blocks of the problem, without those that are constant.
+  const std::vector<double*>& kept() const { return kept_; }
   double* CenterBlock(int pose);
   double* IntrinsicBlock(int intrinsic);
   /// From the solver's blocks into cameras and state.
@@ -44,11 +48,18 @@ class ProblemBuilder {
   void AddRelativePoses();
   void AddPrincipalPoints();
   void SetManifolds();
+  void SplitBlocks();
   bool IsRefined(int intrinsic) const;
   double* RotationBlock(int pose);
   double* PointBlock(int point);
   double* LineBlock(int line);
   void CopyIntoBlocks();
+  void AddResiduals(std::unique_ptr<ceres::CostFunction> cost,
+                    ceres::LossFunction* loss,
+                    std::initializer_list<double*> blocks);
+  void AddObservation(std::unique_ptr<ceres::CostFunction> cost,
+                      ceres::LossFunction* loss, const CameraView& view,
+                      double* landmark);
   /// Loss for residuals in pixels, in units of the noise.
   ceres::LossFunction* MakeLoss(const NoiseScale& noise, double weight);
 
@@ -60,8 +71,14 @@ class ProblemBuilder {
   StructureState* state_;
 
   std::vector<double> blocks_;
+  std::vector<double*> eliminated_, kept_;
   std::vector<std::unique_ptr<ceres::LossFunction>> losses_;
-  std::unique_ptr<ceres::Problem> problem_;
+  std::vector<std::unique_ptr<ceres::CostFunction>> costs_;
+  std::vector<std::unique_ptr<ceres::Manifold>> intrinsic_manifolds_;
+  ceres::EigenQuaternionManifold rotation_manifold_;
+  ceres::SphereManifold<3> sphere_manifold_;
+  ceres::LineManifold<3> line_manifold_;
+  ceres::Problem problem_;
 };
 
 }  // namespace lowlap

@@ -39,12 +39,20 @@ ceres::Solver::Options SolverOptions(const AdjustmentOptions& options,
                                      const SolveRequest& request,
                                      ProblemBuilder* builder) {
   ceres::Solver::Options solver;
+  solver.linear_solver_ordering =
+      std::make_shared<ceres::ParameterBlockOrdering>();
+  for (double* block : builder->eliminated()) {
+    solver.linear_solver_ordering->AddElementToGroup(block, 0);
+  }
+  int reduced_size = 0;
+  for (double* block : builder->kept()) {
+    solver.linear_solver_ordering->AddElementToGroup(block, 1);
+    reduced_size += builder->problem().ParameterBlockTangentSize(block);
+  }
   // The dense reduced system of a hundred cameras factorises in milliseconds.
   constexpr int kMaxDenseSize = 600;
-  solver.linear_solver_type = builder->ReducedSize() <= kMaxDenseSize
-                                  ? ceres::DENSE_SCHUR
-                                  : ceres::SPARSE_SCHUR;
-  solver.linear_solver_ordering = builder->Ordering();
+  solver.linear_solver_type =
+      reduced_size <= kMaxDenseSize ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   solver.max_num_iterations = options.max_iterations;
   solver.function_tolerance = request.function_tolerance;
   solver.parameter_tolerance = 1e-10;

@@ -266,6 +266,12 @@ NoiseScale EstimateLineNoise(const CameraSet& cameras,
                        kUnitMedian2 / std::sqrt(2.0), bounds);
 }
 
+std::vector<std::size_t> AllOf(std::size_t count) {
+  std::vector<std::size_t> indices(count);
+  std::iota(indices.begin(), indices.end(), std::size_t{0});
+  return indices;
+}
+
 Status TriangulatePoints(const CameraSet& cameras,
                          const PointTriangulationLimits& limits,
                          const RunContext& context,

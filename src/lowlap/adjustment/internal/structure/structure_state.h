@@ -77,6 +77,9 @@ NoiseScale EstimateLineNoise(const CameraSet& cameras,
                              const std::vector<LineTrackState>& lines,
                              const NoiseBounds& bounds);
 
+/// The indices of so many tracks.
+std::vector<std::size_t> AllOf(std::size_t count);
+
 /// Triangulates the tracks with the given indices, on the context's threads.
 Status TriangulatePoints(const CameraSet& cameras,
                          const PointTriangulationLimits& limits,
