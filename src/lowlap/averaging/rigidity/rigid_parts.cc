@@ -1,6 +1,6 @@
 #include "lowlap/averaging/rigidity/internal/rigid_parts.h"
 
-#include <Eigen/SVD>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cstddef>
 #include <map>
@@ -115,14 +115,13 @@ void MergeByNullSpace(const std::vector<RigidPart>& parts, UnionFind* sets) {
     }
     view_column += 2;
   }
-  const Eigen::BDCSVD<Eigen::MatrixXd> svd(equations, Eigen::ComputeFullV);
-  Eigen::Index rank = 0;
-  while (rank < svd.singularValues().size() &&
-         svd.singularValues()(rank) > 1e-9 * svd.singularValues()(0)) {
-    ++rank;
-  }
+  // A basis of the null space: the columns of Q beyond the rank.
+  Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+  qr.setThreshold(1e-9);
+  qr.compute(equations.transpose());
+  const Eigen::MatrixXd q = qr.householderQ();
   const Eigen::MatrixXd scales =
-      svd.matrixV().topRightCorner(num_parts, equations.cols() - rank);
+      q.topRightCorner(num_parts, equations.cols() - qr.rank());
   // The true scales are 1, so proportional means equal.
   for (Eigen::Index a = 0; a < num_parts; ++a) {
     for (Eigen::Index b = a + 1; b < num_parts; ++b) {
