@@ -196,8 +196,10 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
   result.poses_before_adjustment = scene->poses;
   auto refinement = RefineSolution(scene, options, context, stages);
   if (!refinement && options.adjust &&
-      refinement.error().code == ErrorCode::kInsufficientData) {
-    // The poses of a graph without features are a result too.
+      (refinement.error().code == ErrorCode::kInsufficientData ||
+       refinement.error().code == ErrorCode::kNumerical)) {
+    // The poses of a graph without features are a result too, and so are those
+    // that are too poor to start from.
     context.Log(LogLevel::kWarning,
                 "not adjusted: " + refinement.error().message);
     SolveOptions structure_only = options;

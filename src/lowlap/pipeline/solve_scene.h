@@ -96,8 +96,8 @@ Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
 /// (DecideHypotheses), rotations and the choice of relative poses, ratios of
 /// the triplets of those believed, absolute poses, structure, bundle
 /// adjustment. Where there is nothing to adjust (a graph without features,
-/// views without intrinsics), the poses stay as they are, with a warning in the
-/// log. Views that lost most of their features in the end are added to
+/// views without intrinsics), or the adjustment finds no solution, the poses
+/// stay as they are, with a warning in the log. Views that lost most of their features in the end are added to
 /// PoseSummary::reliability_warnings (FindLostFeatures).
 /// Reads intrinsics, features, relative poses and tracks; settles alternatives
 /// and replaces scale ratios, poses and structure. Errors leave
