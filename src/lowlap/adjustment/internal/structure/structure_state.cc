@@ -292,10 +292,4 @@ Status TriangulateLines(const CameraSet& cameras,
   });
 }
 
-std::vector<std::size_t> AllOf(std::size_t count) {
-  std::vector<std::size_t> indices(count);
-  std::iota(indices.begin(), indices.end(), std::size_t{0});
-  return indices;
-}
-
 }  // namespace lowlap

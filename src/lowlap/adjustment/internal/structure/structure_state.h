@@ -92,7 +92,4 @@ Status TriangulateLines(const CameraSet& cameras,
                         const std::vector<std::size_t>& which,
                         std::vector<LineTrackState>* lines);
 
-/// 0 to count - 1.
-std::vector<std::size_t> AllOf(std::size_t count);
-
 }  // namespace lowlap
