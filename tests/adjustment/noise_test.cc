@@ -8,6 +8,7 @@
 #include "lowlap/adjustment/internal/structure/noise_scale.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
 #include "lowlap/core/internal/random.h"
+#include "lowlap/robust/internal/median_deviation.h"
 #include "test_scene.h"
 
 namespace lowlap {
@@ -26,7 +27,7 @@ TEST(NoiseTest, ThresholdSeparatesNoiseFromOutliers) {
     }
     for (int n = 0; n < 400; ++n) errors.push_back(random.Uniform(0, 400));
     const NoiseScale noise = EstimateNoise(
-        errors, BackgroundLaw::PointToPoint(kArea), kUnitMedian2, {});
+        errors, BackgroundLaw::PointToPoint(kArea), kMedianOfNorm<2>, {});
     EXPECT_NEAR(noise.stddev_px, stddev, 0.1 * stddev);
     EXPECT_GT(noise.threshold_px, 2 * stddev);
     EXPECT_LT(noise.threshold_px, 5 * stddev);
@@ -38,7 +39,7 @@ TEST(NoiseTest, ExactDataKeepsTheLowerBound) {
   NoiseBounds bounds;
   const NoiseScale noise =
       EstimateNoise(errors, BackgroundLaw::PointToLine(kArea, kDiagonal),
-                    kUnitMedian1, bounds);
+                    kMedianOfNorm<1>, bounds);
   EXPECT_GE(noise.threshold_px, bounds.min_threshold_px);
   EXPECT_LT(noise.threshold_px, 1.1 * bounds.min_threshold_px);
   EXPECT_EQ(noise.stddev_px, bounds.min_threshold_px / 20);
@@ -51,7 +52,8 @@ TEST(NoiseTest, TooFewOrMeaninglessErrorsFallBack) {
   for (const std::vector<double>& errors :
        {std::vector<double>{}, std::vector<double>{0.1, 0.2},
         std::vector<double>(100, std::numeric_limits<double>::infinity())}) {
-    const NoiseScale noise = EstimateNoise(errors, law, kUnitMedian2, bounds);
+    const NoiseScale noise =
+        EstimateNoise(errors, law, kMedianOfNorm<2>, bounds);
     EXPECT_EQ(noise.stddev_px, 0.7);
     EXPECT_EQ(noise.threshold_px, 2.1);
   }

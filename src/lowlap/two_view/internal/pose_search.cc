@@ -8,6 +8,7 @@
 #include "lowlap/geometry/internal/epipolar.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/a_contrario_ransac.h"
+#include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/two_view/internal/chance_support.h"
 #include "lowlap/two_view/internal/kernels/five_point.h"
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
@@ -125,7 +126,7 @@ double PoseSearch::PointVariancePx2(const RigidTransform& cam2_from_cam1,
   }
   if (errors_px.empty()) return threshold_px * threshold_px;
   const double stddev_px =
-      std::max(kMinThresholdPx, 1.4826 * Median(errors_px));
+      std::max(kMinThresholdPx, Median(errors_px) / kMedianOfNorm<1>);
   return stddev_px * stddev_px;
 }
 

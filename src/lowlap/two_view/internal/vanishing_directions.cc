@@ -10,6 +10,7 @@
 
 #include "lowlap/core/internal/median.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/median_deviation.h"
 
 namespace lowlap {
 namespace {
@@ -72,7 +73,7 @@ class DirectionFit {
       information_ += gain * gain / variance / ((1 + x * x) * (1 + x * x)) *
                       s->moment * s->moment.transpose();
     }
-    scatter_ = std::max(1.0, 1.4826 * Median(deviations));
+    scatter_ = std::max(1.0, Median(deviations) / kMedianOfNorm<1>);
     const Eigen::SelfAdjointEigenSolver<Mat3> solver(information_);
     direction_ = solver.eigenvectors().col(0);
   }

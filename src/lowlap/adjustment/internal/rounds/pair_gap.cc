@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/median_deviation.h"
 
 namespace lowlap {
 
@@ -61,7 +62,7 @@ NoiseScale EstimatePairNoise(const CameraSet& cameras,
       EstimateNoise(gaps_px,
                     BackgroundLaw::PointToLine(cameras.MeanImageArea(),
                                                cameras.MeanImageDiagonal()),
-                    kUnitMedian1, pair_bounds);
+                    kMedianOfNorm<1>, pair_bounds);
   noise.stddev_px = std::max(noise.stddev_px, line_noise.stddev_px);
   noise.threshold_px = std::max(noise.threshold_px, line_noise.threshold_px);
   return noise;

@@ -26,7 +26,7 @@ inline constexpr int kMinErrors = 8;
 /// The threshold that separates the errors from those of the background law
 /// with the least number of false alarms, and the noise level of the errors
 /// below it: their median over `unit_median`, the median error at unit noise
-/// (chi distribution: 0.6745 in one dimension, 1.1774 in two).
+/// (kMedianOfNorm).
 ///
 /// Errors with little redundancy (points of two views, ...) should be scaled up
 /// to what they would be without their own landmark's freedom. The noise level
@@ -34,8 +34,5 @@ inline constexpr int kMinErrors = 8;
 NoiseScale EstimateNoise(const std::vector<double>& errors_px,
                          const BackgroundLaw& law, double unit_median,
                          const NoiseBounds& bounds);
-
-inline constexpr double kUnitMedian1 = 0.674490;
-inline constexpr double kUnitMedian2 = 1.177410;
 
 }  // namespace lowlap

@@ -9,6 +9,7 @@
 
 #include "lowlap/core/internal/median.h"
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/robust/internal/median_deviation.h"
 
 namespace lowlap {
 namespace {
@@ -253,7 +254,7 @@ NoiseScale EstimatePointNoise(const CameraSet& cameras,
                               const NoiseBounds& bounds) {
   return EstimateNoise(PointErrorsPx(cameras, points),
                        BackgroundLaw::PointToPoint(cameras.MeanImageArea()),
-                       kUnitMedian2, bounds);
+                       kMedianOfNorm<2>, bounds);
 }
 
 NoiseScale EstimateLineNoise(const CameraSet& cameras,
@@ -263,7 +264,7 @@ NoiseScale EstimateLineNoise(const CameraSet& cameras,
   return EstimateNoise(LineErrorsPx(cameras, lines),
                        BackgroundLaw::PointToLine(cameras.MeanImageArea(),
                                                   cameras.MeanImageDiagonal()),
-                       kUnitMedian2 / std::sqrt(2.0), bounds);
+                       kMedianOfNorm<2> / std::sqrt(2.0), bounds);
 }
 
 std::vector<std::size_t> AllOf(std::size_t count) {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "lowlap/robust/internal/median_deviation.h"
+
 namespace lowlap {
 namespace {
 
@@ -119,8 +121,9 @@ double MedianAbsolute(const Line& line,
 std::optional<Line> RobustFit(std::vector<EdgeSample>* samples) {
   std::optional<Line> line = WeightedFit(*samples);
   for (int i = 0; line && i < kIterations; ++i) {
-    const double scale = std::max(
-        4.685 * 1.4826 * MedianAbsolute(*line, *samples), 4 * kMinStddevPx);
+    const double scale =
+        std::max(4.685 / kMedianOfNorm<1> * MedianAbsolute(*line, *samples),
+                 4 * kMinStddevPx);
     for (EdgeSample& s : *samples) {
       const double u = line->Residual(s) / scale;
       s.weight = std::abs(u) < 1 ? (1 - u * u) * (1 - u * u) : 0;

@@ -11,7 +11,7 @@ namespace lowlap {
 
 /// Raised whenever the segments change for the same input and options: what is
 /// cached is then computed anew.
-inline constexpr int kLineDetectorVersion = 1;
+inline constexpr int kLineDetectorVersion = 2;
 
 /// Straight segments over several scales: LSD (Grompone von Gioi et al. 2012,
 /// by OpenCV) on every level of a pyramid; segments of different levels that

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lowlap/core/internal/median.h"
+#include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/scale/internal/candidate_limits.h"
 #include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
 #include "lowlap/scale/internal/uncertainty/ratio_refinement.h"
@@ -58,7 +59,6 @@ struct Measurements {
 // narrows more surely than a narrow one widens.
 double InitialNoise(const std::vector<RatioCandidate>& ratios,
                     const Indices& inliers, double log_ratio) {
-  constexpr double kStddevOfMedianDeviation = 1.4826;
   constexpr double kPriorCount = 2.0;
   if (inliers.empty()) return 1.0;
   std::vector<double> deviations;
@@ -67,8 +67,7 @@ double InitialNoise(const std::vector<RatioCandidate>& ratios,
                          ratios[index].log_ratio_stddev);
   }
   const double count = static_cast<double>(inliers.size());
-  const double spread =
-      kStddevOfMedianDeviation * Median(std::move(deviations));
+  const double spread = Median(std::move(deviations)) / kMedianOfNorm<1>;
   return 2.0 * std::sqrt((count * spread * spread + kPriorCount) /
                          (count + kPriorCount));
 }
