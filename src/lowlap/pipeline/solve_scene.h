@@ -97,11 +97,11 @@ Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
 /// the triplets of those believed, absolute poses, structure, bundle
 /// adjustment. Where there is nothing to adjust (a graph without features,
 /// views without intrinsics), or the adjustment finds no solution, the poses
-/// stay as they are, with a warning in the log. Views that lost most of their features in the end are added to
-/// PoseSummary::reliability_warnings (FindLostFeatures).
-/// Reads intrinsics, features, relative poses and tracks; settles alternatives
-/// and replaces scale ratios, poses and structure. Errors leave
-/// the scene in an intermediate state: keep a copy if you need it.
+/// stay as they are, with a warning in the log. Views that lost most of their
+/// features in the end are added to PoseSummary::reliability_warnings
+/// (FindLostFeatures). Reads intrinsics, features, relative poses and tracks;
+/// settles alternatives and replaces scale ratios, poses and structure. Errors
+/// leave the scene in an intermediate state: keep a copy if you need it.
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
                                const RunContext& context, StageLog* stages);
 
