@@ -13,7 +13,7 @@ using testing::IntervalCoverage;
 
 // The table by class; each to within what chance does to its count.
 TEST(RatioInterval, HoldsTheTruthInEveryClass) {
-  constexpr int kRight = 400, kMost = 2000;
+  constexpr int kRight = 400, kMost = 3000;
   std::uint64_t class_seed = 1;
   IntervalCoverage all;
   std::printf("%-40s %10s %6s %7s\n", "class", "meaningful", "right", "inside");
