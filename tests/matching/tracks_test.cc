@@ -128,6 +128,19 @@ TEST(BuildLineTracksTest, CollinearPiecesOfOneViewShareATrack) {
                                          FeatureRef{1, 1}, FeatureRef{2, 0}))));
 }
 
+TEST(BuildLineTracksTest, PiecesOfSeveralViewsShareATrack) {
+  Scene scene = LineScene(Segment(60, 10, 100, 10));
+  scene.features[0].segments = {Segment(0, 0, 50, 0), Segment(55, 0, 100, 0)};
+  scene.relative_poses[{0, 1}].line_inliers = {{0, 0}, {1, 1}};
+  scene.relative_poses[{1, 2}].line_inliers = {{0, 0}, {1, 0}};
+  scene.relative_poses.erase({0, 2});
+  EXPECT_THAT(
+      BuildLineTracks(scene, {}),
+      ElementsAre(Pair(
+          0, ElementsAre(FeatureRef{0, 0}, FeatureRef{0, 1}, FeatureRef{1, 0},
+                         FeatureRef{1, 1}, FeatureRef{2, 0}))));
+}
+
 TEST(BuildLineTracksTest, OtherSegmentsOfOneViewDoNot) {
   const auto tracks = BuildLineTracks(LineScene(Segment(60, 30, 100, 30)), {});
   std::size_t in_view_1 = 0;

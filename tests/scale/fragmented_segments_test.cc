@@ -1,6 +1,4 @@
-#include "lowlap/scale/internal/fragmented_segments.h"
-
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
@@ -9,55 +7,10 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/scale_ratios.h"
-#include "scale/synthetic_room.h"
-#include "scale/synthetic_triplet.h"
+#include "lowlap/scale/triplet_view.h"
 
 namespace lowlap {
 namespace {
-
-using ::testing::ElementsAre;
-using ::testing::IsEmpty;
-using testing::MakeSegment;
-
-ObservedSegment Piece(const Vec3& a, const Vec3& b, double stddev_px = 0.2) {
-  return {MakeSegment(a, b), stddev_px};
-}
-
-TEST(GroupMatches, EveryMatchIsAnEdgeIfNoneSharesASegment) {
-  const MatchedEdges matched = GroupMatches({{4, 1}, {2, 3}}, {{2, 7}, {9, 8}});
-  ASSERT_EQ(matched.edges.size(), 3u);
-  EXPECT_THAT(matched.edge_of_ij, ElementsAre(0, 1));
-  EXPECT_THAT(matched.edge_of_jk, ElementsAre(1, 2));
-  EXPECT_THAT(matched.edges[0].in_i, ElementsAre(1));
-  EXPECT_THAT(matched.edges[0].in_k, IsEmpty());
-  EXPECT_THAT(matched.edges[1].in_i, ElementsAre(3));
-  EXPECT_THAT(matched.edges[1].in_j, ElementsAre(2));
-  EXPECT_THAT(matched.edges[1].in_k, ElementsAre(7));
-  EXPECT_THAT(matched.edges[2].in_i, IsEmpty());
-}
-
-TEST(GroupMatches, PiecesOfAnyViewAreOneEdge) {
-  // Segment 1 of i is fragmented into 4 and 5 in j, and these are whole again
-  // in k; segment 6 of j is fragmented in i alone.
-  const MatchedEdges matched =
-      GroupMatches({{5, 1}, {6, 8}, {4, 1}, {6, 7}}, {{4, 2}, {6, 3}, {5, 2}});
-  ASSERT_EQ(matched.edges.size(), 2u);
-  EXPECT_THAT(matched.edge_of_ij, ElementsAre(0, 1, 0, 1));
-  EXPECT_THAT(matched.edge_of_jk, ElementsAre(0, 1, 0));
-  EXPECT_THAT(matched.edges[0].in_j, ElementsAre(4, 5));
-  EXPECT_THAT(matched.edges[0].in_k, ElementsAre(2));
-  EXPECT_THAT(matched.edges[1].in_i, ElementsAre(7, 8));
-  EXPECT_THAT(matched.edges[1].in_j, ElementsAre(6));
-}
-
-TEST(LongestPiece, IsOneOfThem) {
-  const ObservedSegment longest = Piece({0, 0, 1}, {0.5, 0, 1}, 0.3);
-  EXPECT_EQ(LongestPiece({Piece({0.6, 0.01, 1}, {0.8, 0.02, 1}),
-                          longest,
-                          {NormalizedSegment{}, 0.5}})
-                .stddev_px,
-            0.3);
-}
 
 // Three views before two walls that carry lines; all lines are in every view.
 class FragmentedSegments : public ::testing::TestWithParam<ViewId> {
@@ -107,10 +60,13 @@ class FragmentedSegments : public ::testing::TestWithParam<ViewId> {
       }
       scene_.relative_poses[pose.views] = pose;
     }
+    for (FeatureIndex n = 0; n < kLines; ++n) {
+      scene_.line_tracks[n] = {{0, n}, {1, n}, {2, n}};
+    }
   }
 
   // Cuts every segment of a view in two, with a gap of a tenth; matches of one
-  // become matches of both.
+  // become matches of both, and both are on the track.
   Scene Fragmented(ViewId view) const {
     Scene scene = scene_;
     std::vector<LineSegment>& segments = scene.features[view].segments;
@@ -127,6 +83,10 @@ class FragmentedSegments : public ::testing::TestWithParam<ViewId> {
         if (views.second == view) pose.line_inliers.push_back({n, n + kLines});
       }
       std::sort(pose.line_inliers.begin(), pose.line_inliers.end());
+    }
+    for (auto& [id, track] : scene.line_tracks) {
+      track.push_back({view, id.value() + kLines});
+      std::sort(track.begin(), track.end());
     }
     return scene;
   }

@@ -34,6 +34,70 @@ TEST(MakeTripletView, ChainsThroughTheFeaturesOfTheMiddleView) {
   EXPECT_EQ(reversed->points[0].in_i, features.normalized.at(2).points[7]);
 }
 
+// A line that view 1 breaks into segments 6 and 7, each matched in one pair; 7
+// is the longer one. Line 8 is whole.
+Scene BrokenInTheMiddle() {
+  Scene scene = RowOfViews().scene;
+  scene.relative_poses.at({0, 1}).line_inliers = {{5, 6}, {8, 8}};
+  scene.relative_poses.at({1, 2}).line_inliers = {{7, 9}, {8, 8}};
+  std::vector<LineSegment>& segments = scene.features.at(1).segments;
+  segments[6] = {{100, 300}, {200, 300}, 0.1};
+  segments[7] = {{300, 300}, {500, 300}, 0.2};
+  return scene;
+}
+
+TEST(MakeTripletView, SegmentsOfOneTrackAreOneLine) {
+  Scene scene = BrokenInTheMiddle();
+  scene.line_tracks[3] = {{0, 5}, {1, 6}, {1, 7}, {2, 9}};
+  scene.line_tracks[4] = {{0, 8}, {1, 8}, {2, 8}};
+  const SceneFeatures features(scene);
+  const auto triplet = MakeTripletView(features, {0, 1, 2});
+  ASSERT_TRUE(triplet.has_value());
+  ASSERT_EQ(triplet->lines.size(), 2u);
+  EXPECT_EQ(triplet->lines_ij.size(), 2u);
+  EXPECT_EQ(triplet->lines_jk.size(), 2u);
+  const TripletLine& broken = triplet->lines[0];
+  EXPECT_EQ(broken.segment_in_middle, 7u);
+  EXPECT_EQ(broken.in_j.stddev_px, 0.2);
+  const auto start = [&](ViewId view, FeatureIndex segment) {
+    return features.normalized.at(view).segments[segment].start;
+  };
+  EXPECT_EQ(broken.in_i.segment.start, start(0, 5));
+  EXPECT_EQ(broken.in_j.segment.start, start(1, 7));
+  EXPECT_EQ(broken.in_k.segment.start, start(2, 9));
+  EXPECT_EQ(triplet->lines_ij[0].segment_in_middle, 7u);
+  EXPECT_EQ(triplet->lines_jk[0].segment_in_middle, 7u);
+  EXPECT_EQ(triplet->lines[1].segment_in_middle, 8u);
+}
+
+TEST(MakeTripletView, SegmentsWithoutATrackAreLinesOfTheirOwn) {
+  Scene scene = BrokenInTheMiddle();
+  scene.relative_poses.at({0, 1}).line_inliers = {{4, 6}, {5, 6}, {8, 8}};
+  scene.features.at(0).segments[4] = {{100, 310}, {450, 310}, 0.3};
+  scene.features.at(0).segments[5] = {{500, 310}, {600, 310}, 0.4};
+  const auto triplet = MakeTripletView(SceneFeatures(scene), {0, 1, 2});
+  ASSERT_TRUE(triplet.has_value());
+  ASSERT_EQ(triplet->lines.size(), 1u);
+  EXPECT_EQ(triplet->lines[0].segment_in_middle, 8u);
+  ASSERT_EQ(triplet->lines_ij.size(), 2u);
+  EXPECT_EQ(triplet->lines_ij[0].segment_in_middle, 6u);
+  EXPECT_EQ(triplet->lines_ij[0].in_neighbor.stddev_px, 0.3);
+  EXPECT_EQ(triplet->lines_jk.size(), 2u);
+}
+
+TEST(MakeTripletView, MatchesThatTheTracksRefuseAreLeftOut) {
+  Scene scene = BrokenInTheMiddle();
+  scene.line_tracks[3] = {{0, 5}, {2, 9}};
+  scene.line_tracks[4] = {{0, 8}, {1, 6}, {1, 8}, {2, 8}};
+  const auto triplet = MakeTripletView(SceneFeatures(scene), {0, 1, 2});
+  ASSERT_TRUE(triplet.has_value());
+  // Segment 6 is on another track than 5, and 7 on none.
+  for (const auto* lines : {&triplet->lines_ij, &triplet->lines_jk}) {
+    ASSERT_EQ(lines->size(), 1u);
+    EXPECT_EQ(lines->front().segment_in_middle, 8u);
+  }
+}
+
 TEST(MakeTripletView, PerturbsThePosesByTheirCovariances) {
   RowOfViews row;
   const SceneFeatures features(row.scene);

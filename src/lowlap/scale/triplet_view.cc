@@ -4,11 +4,16 @@
 #include <string>
 #include <utility>
 
-#include "lowlap/scale/internal/fragmented_segments.h"
 #include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
 
 namespace lowlap {
 namespace {
+
+// A match seen from the middle view.
+struct MiddleMatch {
+  FeatureIndex middle = 0;
+  FeatureIndex neighbor = 0;
+};
 
 std::vector<MiddleMatch> FromMiddle(const std::vector<FeatureMatch>& matches,
                                     bool middle_is_first) {
@@ -21,12 +26,24 @@ std::vector<MiddleMatch> FromMiddle(const std::vector<FeatureMatch>& matches,
   return result;
 }
 
-// One neighbour of the middle view.
-struct Neighbor {
-  const RelativePose* edge = nullptr;
+// A view of the triplet.
+struct SeenView {
   const NormalizedFeatures* features = nullptr;
   const ViewFeatures* raw = nullptr;
-  bool middle_is_first = false;
+  const std::vector<LineTrackId>* line_tracks = nullptr;
+
+  SeenView(const SceneFeatures& scene, ViewId view)
+      : features(&scene.normalized.at(view)),
+        raw(&scene.scene.features.at(view)),
+        line_tracks(&scene.line_tracks.at(view)) {}
+
+  ObservedSegment Observe(FeatureIndex segment) const {
+    return {features->segments[segment], raw->segments[segment].stddev_px};
+  }
+  double SquaredLength(FeatureIndex segment) const {
+    const NormalizedSegment& seen = features->segments[segment];
+    return (seen.end - seen.start).squaredNorm();
+  }
 };
 
 Status CheckMatches(const Scene& scene, const RelativePose& edge,
@@ -69,15 +86,20 @@ void Chain(const std::vector<MiddleMatch>& ij,
   }
 }
 
-ObservedSegment Observe(const NormalizedFeatures& features,
-                        const ViewFeatures& raw,
-                        const std::vector<FeatureIndex>& pieces) {
-  std::vector<ObservedSegment> observed;
-  for (const FeatureIndex piece : pieces) {
-    observed.push_back(
-        {features.segments[piece], raw.segments[piece].stddev_px});
+// The longest piece of a line in each view, kInvalidId where there is none. (A
+// segment through all pieces is longer, but no better: pieces are matched to a
+// line by mistake often enough. Measured on coplanar pairs.)
+struct LinePieces {
+  FeatureIndex in_middle = kInvalidId;
+  FeatureIndex in_neighbor[2] = {kInvalidId, kInvalidId};
+};
+
+void KeepLonger(const SeenView& view, FeatureIndex piece,
+                FeatureIndex* longest) {
+  if (*longest == kInvalidId ||
+      view.SquaredLength(piece) > view.SquaredLength(*longest)) {
+    *longest = piece;
   }
-  return LongestPiece(observed);
 }
 
 }  // namespace
@@ -87,6 +109,18 @@ SceneFeatures::SceneFeatures(const Scene& of_scene) : scene(of_scene) {
     const Intrinsic* intrinsic = scene.FindIntrinsic(view);
     if (intrinsic == nullptr) continue;
     normalized.emplace(view, NormalizeFeatures(features, *intrinsic));
+    line_tracks[view].resize(features.segments.size(), kInvalidId);
+  }
+  for (const auto& [id, track] : scene.line_tracks) {
+    for (const FeatureRef& ref : track) {
+      const auto of_view = line_tracks.find(ref.view);
+      if (of_view == line_tracks.end() ||
+          ref.feature >= of_view->second.size()) {
+        continue;
+      }
+      LineTrackId& of_segment = of_view->second[ref.feature];
+      if (of_segment == kInvalidId) of_segment = id;
+    }
   }
 }
 
@@ -106,13 +140,11 @@ Result<TripletView> MakeTripletView(const SceneFeatures& features,
     return MakeError(ErrorCode::kInvalidArgument,
                      name + ": the middle view has no intrinsic");
   }
-  Neighbor neighbors[2];
+  const ViewId outer[2] = {views.first, views.last};
+  const RelativePose* edges[2];
   for (int n = 0; n < 2; ++n) {
-    const ViewId view = n == 0 ? views.first : views.last;
-    Neighbor& neighbor = neighbors[n];
-    neighbor.edge = scene.FindRelativePose(view, views.middle);
-    if (neighbor.edge == nullptr || features.normalized.count(view) == 0 ||
-        features.normalized.count(views.middle) == 0) {
+    edges[n] = scene.FindRelativePose(outer[n], views.middle);
+    if (edges[n] == nullptr || !features.HasAll(views)) {
       return MakeError(ErrorCode::kInvalidArgument,
                        name +
                            ": a relative pose, or the normalised features "
@@ -120,31 +152,30 @@ Result<TripletView> MakeTripletView(const SceneFeatures& features,
     }
     for (const bool points : {true, false}) {
       const Status status = CheckMatches(
-          scene, *neighbor.edge,
-          points ? neighbor.edge->point_inliers : neighbor.edge->line_inliers,
-          points);
+          scene, *edges[n],
+          points ? edges[n]->point_inliers : edges[n]->line_inliers, points);
       if (!status) return tl::unexpected<Error>(status.error());
     }
-    neighbor.features = &features.normalized.at(view);
-    neighbor.raw = &scene.features.at(view);
-    neighbor.middle_is_first = neighbor.edge->views.first == views.middle;
   }
-  const auto& [i, k] = neighbors;
-  const NormalizedFeatures& middle = features.normalized.at(views.middle);
-  const ViewFeatures& middle_raw = scene.features.at(views.middle);
+  const SeenView i(features, views.first), j(features, views.middle),
+      k(features, views.last);
+  const auto from_middle = [&](int n, auto matches) {
+    return FromMiddle(edges[n]->*matches,
+                      edges[n]->views.first == views.middle);
+  };
 
   TripletView triplet;
   triplet.views = views;
   triplet.geometry.cami_from_camj =
-      UnitTransform(*i.edge, views.middle, views.first);
+      UnitTransform(*edges[0], views.middle, views.first);
   triplet.geometry.camk_from_camj =
-      UnitTransform(*k.edge, views.middle, views.last);
+      UnitTransform(*edges[1], views.middle, views.last);
   triplet.geometry.focal_i_px = i.features->focal_px;
-  triplet.geometry.focal_j_px = middle.focal_px;
+  triplet.geometry.focal_j_px = j.features->focal_px;
   triplet.geometry.focal_k_px = k.features->focal_px;
-  for (const Neighbor& neighbor : neighbors) {
+  for (const RelativePose* edge : edges) {
     for (const TripletGeometry& geometry :
-         PerturbPose(triplet.geometry, *neighbor.edge, views)) {
+         PerturbPose(triplet.geometry, *edge, views)) {
       triplet.pose_perturbations.push_back(geometry);
     }
   }
@@ -152,48 +183,47 @@ Result<TripletView> MakeTripletView(const SceneFeatures& features,
   triplet.image_diagonal_px = intrinsic->ImageDiagonal();
 
   triplet.points.reserve(
-      std::min(i.edge->point_inliers.size(), k.edge->point_inliers.size()));
+      std::min(edges[0]->point_inliers.size(), edges[1]->point_inliers.size()));
   const auto is_valid = [](const Vec3& point) { return point.z() > 0; };
-  Chain(FromMiddle(i.edge->point_inliers, i.middle_is_first),
-        FromMiddle(k.edge->point_inliers, k.middle_is_first),
-        middle.points.size(),
+  Chain(from_middle(0, &RelativePose::point_inliers),
+        from_middle(1, &RelativePose::point_inliers), j.features->points.size(),
         [&](const MiddleMatch& ij, const MiddleMatch& jk) {
           const TripletPoint point{ij.middle, i.features->points[ij.neighbor],
-                                   middle.points[ij.middle],
+                                   j.features->points[ij.middle],
                                    k.features->points[jk.neighbor]};
           if (is_valid(point.in_i) && is_valid(point.in_j) &&
               is_valid(point.in_k)) {
             triplet.points.push_back(point);
           }
         });
-  const std::vector<MiddleMatch> lines_ij =
-      FromMiddle(i.edge->line_inliers, i.middle_is_first);
-  const std::vector<MiddleMatch> lines_jk =
-      FromMiddle(k.edge->line_inliers, k.middle_is_first);
-  const MatchedEdges matched = GroupMatches(lines_ij, lines_jk);
-  std::vector<bool> is_new(matched.edges.size(), true);
-  for (std::size_t n = 0; n < lines_ij.size(); ++n) {
-    const int index = matched.edge_of_ij[n];
-    if (!is_new[index]) continue;
-    is_new[index] = false;
-    const MatchedPieces& edge = matched.edges[index];
-    const ObservedSegment in_i = Observe(*i.features, *i.raw, edge.in_i);
-    const ObservedSegment in_j = Observe(middle, middle_raw, edge.in_j);
-    if (!edge.in_k.empty()) {
-      triplet.lines.push_back({lines_ij[n].middle, in_i, in_j,
-                               Observe(*k.features, *k.raw, edge.in_k)});
+
+  // By track; without one by the segment of the middle view.
+  std::map<std::pair<LineTrackId, FeatureIndex>, LinePieces> lines;
+  for (int n = 0; n < 2; ++n) {
+    const SeenView& neighbor = n == 0 ? i : k;
+    for (const MiddleMatch& match :
+         from_middle(n, &RelativePose::line_inliers)) {
+      const LineTrackId track = (*j.line_tracks)[match.middle];
+      if ((*neighbor.line_tracks)[match.neighbor] != track) continue;
+      LinePieces& pieces =
+          lines[{track, track == kInvalidId ? match.middle : 0}];
+      KeepLonger(j, match.middle, &pieces.in_middle);
+      KeepLonger(neighbor, match.neighbor, &pieces.in_neighbor[n]);
     }
-    triplet.lines_ij.push_back({lines_ij[n].middle, in_j, in_i});
   }
-  is_new.assign(matched.edges.size(), true);
-  for (std::size_t n = 0; n < lines_jk.size(); ++n) {
-    const int index = matched.edge_of_jk[n];
-    if (!is_new[index]) continue;
-    is_new[index] = false;
-    const MatchedPieces& edge = matched.edges[index];
-    triplet.lines_jk.push_back({lines_jk[n].middle,
-                                Observe(middle, middle_raw, edge.in_j),
-                                Observe(*k.features, *k.raw, edge.in_k)});
+  for (const auto& [key, pieces] : lines) {
+    const auto& [in_i, in_k] = pieces.in_neighbor;
+    const ObservedSegment seen = j.Observe(pieces.in_middle);
+    if (in_i != kInvalidId) {
+      triplet.lines_ij.push_back({pieces.in_middle, seen, i.Observe(in_i)});
+    }
+    if (in_k != kInvalidId) {
+      triplet.lines_jk.push_back({pieces.in_middle, seen, k.Observe(in_k)});
+    }
+    if (in_i != kInvalidId && in_k != kInvalidId) {
+      triplet.lines.push_back(
+          {pieces.in_middle, i.Observe(in_i), seen, k.Observe(in_k)});
+    }
   }
   return triplet;
 }

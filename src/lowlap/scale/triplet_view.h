@@ -84,6 +84,9 @@ struct SceneFeatures {
   const Scene& scene;
   /// NormalizeFeatures of every view that has features and an intrinsic.
   std::map<ViewId, NormalizedFeatures> normalized;
+  /// Of the same views: the line track of every segment, kInvalidId without
+  /// one, the first if there are several.
+  std::map<ViewId, std::vector<LineTrackId>> line_tracks;
 
   /// False if a view of the triplet has no intrinsic or no features.
   bool HasAll(const ViewTriplet& views) const;
@@ -109,9 +112,13 @@ struct TripletView {
 };
 
 /// Reads a triplet out of the scene: the inlier matches of its two relative
-/// poses, chained through the feature index in the middle view. Points: every
-/// combination, where one is matched more than once; lines: the pieces of a
-/// fragmented segment joined (GroupMatches).
+/// poses, chained through the middle view. Points: through the feature index,
+/// every combination where one is matched more than once. Lines: through the
+/// line track of the segments; the longest of its matched pieces in a view
+/// stands for the line, which says what one line says however often it is
+/// broken. Matches of segments of different tracks, which BuildLineTracks
+/// refused, are left out. A segment of the middle view without a track is a
+/// line of its own, with the longest of its matches.
 ///
 /// Errors: kInvalidArgument if one of the two relative poses, or the middle
 /// view's intrinsic, is missing; kInvalidScene if a match refers to a feature
