@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "lowlap/matching/internal/tracks.h"
+#include "lowlap/scale/scale_ratios.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "support/matchers.h"
 
@@ -109,6 +111,31 @@ TEST(TranslationScaleEstimator, IsTheFirstHalfOfSolveScene) {
   ASSERT_THAT(SolveScene(&scene, options, {}, nullptr), IsOk());
   for (const auto& [view, pose] : estimate->poses) {
     EXPECT_THAT(pose, testing::PoseNear(*scene.FindPose(view), 1e-6, 1e-6));
+  }
+}
+
+TEST(TranslationScaleEstimator, JoinsThePiecesOfBrokenLines) {
+  SyntheticOptions options;
+  options.num_views = 4;
+  options.pairs = "chain";
+  options.trifocal_point_share = 0;
+  options.broken_line_share = 0.5;
+  const SyntheticScene broken = *Simulate(options);
+  const auto estimate = HostOf(broken.scene, Order::kAscending).Estimate();
+  ASSERT_THAT(estimate, IsOk());
+  Scene scene = broken.scene;
+  scene.line_tracks = BuildLineTracks(scene, {});
+  const auto joined = *EstimateScaleRatios(scene, {}, {});
+  scene.line_tracks.clear();
+  const auto apart = *EstimateScaleRatios(scene, {}, {});
+  ASSERT_EQ(estimate->ratios.size(), joined.size());
+  for (std::size_t n = 0; n < joined.size(); ++n) {
+    const auto candidates = [](const ScaleRatio& ratio) {
+      return ratio.FindKind("coplanar")->candidates;
+    };
+    EXPECT_NEAR(estimate->ratios[n].log_ratio, joined[n].log_ratio, 1e-9);
+    EXPECT_EQ(candidates(estimate->ratios[n]), candidates(joined[n]));
+    EXPECT_LT(candidates(joined[n]), candidates(apart[n]));
   }
 }
 

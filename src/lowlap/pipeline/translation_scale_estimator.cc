@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/matching/internal/tracks.h"
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
@@ -136,6 +137,7 @@ Result<TranslationEstimate> TranslationScaleEstimator::Estimate(
   }
 
   Scene scene = scene_;
+  scene.line_tracks = BuildLineTracks(scene, LineTrackOptions());
   SolveStart start;
   if (cam_from_world_.empty()) {
     auto averaged = StartSolution(&scene, options_, context, nullptr);

@@ -32,8 +32,9 @@ struct TranslationEstimate {
 /// that bear them out, go in; relative scales and camera centres come out.
 /// Points and lines that three views share are used where there are any;
 /// coplanar lines relate the scales of two relative poses where there are none
-/// (Salaün, Marlet and Monasse 2017). Nothing is refined: bundle adjustment is
-/// the host's, or AdjustScene's.
+/// (Salaün, Marlet and Monasse 2017). Line matches are joined to tracks
+/// (BuildLineTracks), so that a broken line counts once. Nothing is refined:
+/// bundle adjustment is the host's, or AdjustScene's.
 ///
 /// Pixels: the centre of the top-left pixel is (0, 0). Frames:
 /// x_cam = rotation (X - centre); +z forward, x right, y down.
