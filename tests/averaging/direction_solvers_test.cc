@@ -8,8 +8,9 @@
 
 #include "averaging/random_problem.h"
 #include "lowlap/averaging/averager_registry.h"
-#include "lowlap/averaging/strategies/internal/angle_objective.h"
-#include "lowlap/averaging/strategies/internal/bounded_directions.h"
+#include "lowlap/averaging/strategies/internal/bata.h"
+#include "lowlap/averaging/strategies/internal/bounded_lengths.h"
+#include "lowlap/averaging/strategies/internal/revised_lud.h"
 
 namespace lowlap {
 namespace {
@@ -215,7 +216,7 @@ TEST_P(DirectionSolvers, RevisedLudIsALocalAndSoGlobalMinimum) {
 TEST_P(DirectionSolvers, BataMeetsCeresFromTheSameStart) {
   int iterations = 0;
   const auto start =
-      SolveRevisedLud(small_.part, 200, RunContext(), &iterations);
+      SolveRevisedLud(small_.part, {}, RunContext(), &iterations);
   ASSERT_TRUE(start);
   const double theirs = MinimiseAngles(small_.part, *start);
   const double jointly =

@@ -4,6 +4,7 @@
 
 #include "lowlap/averaging/strategies/internal/bata.h"
 #include "lowlap/averaging/strategies/internal/bounded_lengths.h"
+#include "lowlap/averaging/strategies/internal/direction_parts.h"
 #include "lowlap/averaging/strategies/internal/global_positioning.h"
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
 #include "lowlap/averaging/strategies/internal/one_dsfm.h"
@@ -110,27 +111,30 @@ AveragerRegistry AveragerRegistry::WithBuiltIns() {
   r.Register("global_positioning",
              "centres and points from the rays of tracks (Pan et al. 2024)",
              GlobalPositioningOptions(), Maker<GlobalPositioningAverager>());
-  const auto bounded = [&](const char* name, const char* description,
-                           const BoundedLengthsOptions& defaults) {
-    r.Register(name, description, defaults,
-               [name](const BoundedLengthsOptions& options) {
-                 return std::make_shared<const BoundedLengthsAverager>(name,
-                                                                       options);
-               });
+  // What solves the parts that directions fix, one by one.
+  const auto by_parts = [&r](const char* name, const char* description,
+                             const auto& defaults, auto* solve) {
+    r.Register(name, description, defaults, [name, solve](const auto& options) {
+      return std::make_shared<const DirectionAverager>(
+          name, [solve, options](const DirectionPart& part,
+                                 const RunContext& context, int* iterations) {
+            return solve(part, options, context, iterations);
+          });
+    });
   };
-  bounded("l2_chordal", "constrained least squares (Tron, Vidal 2009)",
-          BoundedLengthsOptions::L2Chordal());
-  bounded("soft_l1", "soft L1 on directions, as in OpenMVG",
-          BoundedLengthsOptions::SoftL1());
-  bounded("lud", "least unsquared deviations (Ozyesil, Singer 2015)",
-          BoundedLengthsOptions::Lud());
-  r.Register("revised_lud",
-             "LUD with one constraint on the scale (Zhuang et al. 2018)",
-             RevisedLudOptions(), Maker<RevisedLudAverager>());
-  r.Register("bata", "bilinear angle-based averaging (Zhuang et al. 2018)",
-             BataOptions(), Maker<BataAverager>());
-  r.Register("revised_bata", "the objective of bata at its minimum",
-             RevisedBataOptions(), Maker<RevisedBataAverager>());
+  by_parts("l2_chordal", "constrained least squares (Tron, Vidal 2009)",
+           BoundedLengthsOptions::L2Chordal(), SolveBoundedLengths);
+  by_parts("soft_l1", "soft L1 on directions, as in OpenMVG",
+           BoundedLengthsOptions::SoftL1(), SolveBoundedLengths);
+  by_parts("lud", "least unsquared deviations (Ozyesil, Singer 2015)",
+           BoundedLengthsOptions::Lud(), SolveBoundedLengths);
+  by_parts("revised_lud",
+           "LUD with one constraint on the scale (Zhuang et al. 2018)",
+           RevisedLudOptions(), SolveRevisedLud);
+  by_parts("bata", "bilinear angle-based averaging (Zhuang et al. 2018)",
+           BataOptions(), SolveBata);
+  by_parts("revised_bata", "the objective of bata at its minimum",
+           RevisedBataOptions(), SolveRevisedBata);
   Filter filter;
   filter.name = "1dsfm";
   filter.description =

@@ -5,7 +5,6 @@
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
-#include "lowlap/averaging/strategies/internal/angle_objective.h"
 #include "lowlap/averaging/strategies/internal/revised_lud.h"
 #include "lowlap/robust/internal/robust_loss.h"
 
@@ -18,15 +17,22 @@ double InverseLength(const DirectionEdge& edge, const Vec3& offset) {
   return along > 0 ? along / offset.squaredNorm() : 0.0;
 }
 
-Result<std::vector<Vec3>> DescendBlocks(const DirectionPart& part,
-                                        const BataOptions& options,
-                                        const RunContext& context,
-                                        int* num_iterations) {
+}  // namespace
+
+Status BataOptions::Validate() const {
+  if (rounds > 0 && steps_per_round > 0) return {};
+  return MakeError(ErrorCode::kInvalidArgument,
+                   "the numbers of rounds and of steps must be positive");
+}
+
+Result<std::vector<Vec3>> SolveBata(const DirectionPart& part,
+                                    const BataOptions& options,
+                                    const RunContext& context,
+                                    int* num_iterations) {
   // Of the mean weight: holds edges of inverse length 0 where they are, so that
   // no view comes loose.
   constexpr double kHold = 1e-9;
-  auto start = SolveRevisedLud(part, RevisedLudOptions().max_iterations,
-                               context, num_iterations);
+  auto start = SolveRevisedLud(part, {}, context, num_iterations);
   if (!start) return start;
   std::vector<Vec3> centers = std::move(*start);
 
@@ -82,25 +88,19 @@ Result<std::vector<Vec3>> DescendBlocks(const DirectionPart& part,
   return centers;
 }
 
-}  // namespace
-
-Status BataOptions::Validate() const {
-  if (rounds > 0 && steps_per_round > 0) return {};
-  return MakeError(ErrorCode::kInvalidArgument,
-                   "the numbers of rounds and of steps must be positive");
-}
-
-Result<TranslationSolution> BataAverager::Solve(
-    const TranslationProblem& problem, const RunContext& context) const {
-  if (const Status valid = options_.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
+double AngleObjective(const DirectionPart& part,
+                      const std::vector<Vec3>& centers) {
+  double cost = 0;
+  for (const DirectionEdge& edge : part.edges) {
+    const Vec3 offset = centers[edge.second] - centers[edge.first];
+    const bool is_forward = edge.direction_in_world.dot(offset) > 0;
+    const double sine =
+        is_forward
+            ? edge.direction_in_world.cross(offset).norm() / offset.norm()
+            : 1.0;
+    cost += HuberLoss(sine, kAngleHuber);
   }
-  return SolveDirectionParts(
-      problem, context,
-      [&](const DirectionPart& part, const RunContext& of_part,
-          int* num_iterations) {
-        return DescendBlocks(part, options_, of_part, num_iterations);
-      });
+  return cost;
 }
 
 }  // namespace lowlap

@@ -1,10 +1,122 @@
 #include "lowlap/averaging/strategies/internal/bounded_lengths.h"
 
+#include <algorithm>
 #include <cmath>
 
-#include "lowlap/averaging/strategies/internal/bounded_directions.h"
+#include "lowlap/averaging/internal/cancellation.h"
+#include "lowlap/averaging/strategies/internal/direction_system.h"
 
 namespace lowlap {
+namespace {
+
+constexpr double kLeastLength = 1.0;
+constexpr double kDecrease = 1e-13;
+// Of the mean diagonal: fixes the scale where no length is at its bound.
+constexpr double kDamping = 1e-11;
+
+Vec3 Offset(const DirectionEdge& edge, const std::vector<Vec3>& centers) {
+  return centers[edge.second] - centers[edge.first];
+}
+
+// phi and phi' / r at the squared residual.
+double DirectionLoss(double squared, double width) {
+  if (std::isinf(width)) return 0.5 * squared;
+  // width^2 (sqrt(1 + x) - 1) without cancellation.
+  return squared / (1 + std::sqrt(1 + squared / (width * width)));
+}
+
+double DirectionWeight(double squared, double width) {
+  if (std::isinf(width)) return 1;
+  return 1 / std::sqrt(1 + squared / (width * width));
+}
+
+// C_second - C_first - s d at the best s.
+Vec3 DirectionResidual(const DirectionEdge& edge, const Vec3& offset) {
+  const double length =
+      std::max(kLeastLength, edge.direction_in_world.dot(offset));
+  return offset - length * edge.direction_in_world;
+}
+
+// Every length at its bound.
+Result<std::vector<Vec3>> UnitLengths(const DirectionPart& part,
+                                      DirectionSystem* system) {
+  std::vector<Vec3> forces(part.views.size(), Vec3::Zero());
+  for (const DirectionEdge& edge : part.edges) {
+    forces[edge.second] += edge.direction_in_world;
+    forces[edge.first] -= edge.direction_in_world;
+  }
+  const std::vector<Mat3> weights(part.edges.size(), Mat3::Identity());
+  if (const Status status = system->Factor(weights, 0); !status) {
+    return tl::unexpected<Error>(status.error());
+  }
+  return system->Solve(forces);
+}
+
+// From `centers`, or from lengths of one if there are none. Returns the
+// iterations.
+Result<int> MinimiseBounded(const DirectionPart& part, double width,
+                            int max_iterations, const RunContext& context,
+                            std::vector<Vec3>* centers) {
+  DirectionSystem system(part);
+  if (centers->empty()) {
+    auto start = UnitLengths(part, &system);
+    if (!start) return tl::unexpected<Error>(start.error());
+    *centers = std::move(*start);
+  }
+  double cost = BoundedObjective(part, width, *centers);
+  std::vector<Mat3> weights(part.edges.size());
+  for (int iteration = 1; iteration <= max_iterations; ++iteration) {
+    if (const Status go_on =
+            AskToGoOn(context, static_cast<std::size_t>(iteration - 1),
+                      static_cast<std::size_t>(max_iterations));
+        !go_on) {
+      return tl::unexpected<Error>(go_on.error());
+    }
+    std::vector<Vec3> forces(part.views.size(), Vec3::Zero());
+    for (std::size_t e = 0; e < part.edges.size(); ++e) {
+      const DirectionEdge& edge = part.edges[e];
+      const Vec3& d = edge.direction_in_world;
+      const Vec3 offset = Offset(edge, *centers);
+      const Vec3 residual = DirectionResidual(edge, offset);
+      const double weight = DirectionWeight(residual.squaredNorm(), width);
+      weights[e] = weight * Mat3::Identity();
+      if (d.dot(offset) > kLeastLength) {
+        weights[e] -= weight * d * d.transpose();
+      }
+      forces[edge.second] -= weight * residual;
+      forces[edge.first] += weight * residual;
+    }
+    if (const Status status = system.Factor(weights, kDamping); !status) {
+      return tl::unexpected<Error>(status.error());
+    }
+    const auto step = system.Solve(forces);
+    if (!step) return tl::unexpected<Error>(step.error());
+    // Armijo: the step descends, since the system is positive definite.
+    double slope = 0;
+    for (std::size_t v = 1; v < forces.size(); ++v) {
+      slope -= forces[v].dot((*step)[v]);
+    }
+    std::vector<Vec3> moved(centers->size());
+    double moved_cost = cost;
+    bool is_lower = false;
+    for (double part_of_step = 1; part_of_step > 1e-7; part_of_step /= 2) {
+      for (std::size_t v = 0; v < moved.size(); ++v) {
+        moved[v] = (*centers)[v] + part_of_step * (*step)[v];
+      }
+      moved_cost = BoundedObjective(part, width, moved);
+      is_lower = moved_cost <= cost + 1e-4 * part_of_step * slope;
+      if (is_lower) break;
+    }
+    if (!is_lower) return iteration;
+    const double decrease = cost - moved_cost;
+    *centers = std::move(moved);
+    cost = moved_cost;
+    if (decrease <= kDecrease * cost) return iteration;
+  }
+  return max_iterations;
+}
+
+}  // namespace
 
 BoundedLengthsOptions BoundedLengthsOptions::L2Chordal() {
   return {HUGE_VAL, 100};
@@ -20,19 +132,34 @@ Status BoundedLengthsOptions::Validate() const {
                    "positive");
 }
 
-Result<TranslationSolution> BoundedLengthsAverager::Solve(
-    const TranslationProblem& problem, const RunContext& context) const {
-  if (const Status valid = options_.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
+double BoundedObjective(const DirectionPart& part, double width,
+                        const std::vector<Vec3>& centers) {
+  double cost = 0;
+  for (const DirectionEdge& edge : part.edges) {
+    cost += DirectionLoss(
+        DirectionResidual(edge, Offset(edge, centers)).squaredNorm(), width);
   }
-  return SolveDirectionParts(
-      problem, context,
-      [&](const DirectionPart& part, const RunContext& of_part,
-          int* num_iterations) {
-        return MinimiseNarrowing(part, options_.loss_width,
-                                 options_.max_iterations, of_part,
-                                 num_iterations);
-      });
+  return cost;
+}
+
+Result<std::vector<Vec3>> SolveBoundedLengths(
+    const DirectionPart& part, const BoundedLengthsOptions& options,
+    const RunContext& context, int* num_iterations) {
+  constexpr int kMaxEarly = 30;
+  std::vector<Vec3> centers;
+  double current = HUGE_VAL;
+  while (true) {
+    const bool is_last = current == options.loss_width;
+    const auto iterations = MinimiseBounded(
+        part, current, is_last ? options.max_iterations : kMaxEarly, context,
+        &centers);
+    if (!iterations) return tl::unexpected<Error>(iterations.error());
+    *num_iterations += *iterations;
+    if (is_last) return centers;
+    current = std::isinf(current) ? 1.0 : current / 10;
+    // Never by rounding twice almost the same.
+    if (current < 2 * options.loss_width) current = options.loss_width;
+  }
 }
 
 }  // namespace lowlap

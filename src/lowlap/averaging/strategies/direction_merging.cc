@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "lowlap/averaging/internal/cancellation.h"
-#include "lowlap/averaging/strategies/internal/bounded_directions.h"
+#include "lowlap/averaging/strategies/internal/bounded_lengths.h"
 #include "lowlap/averaging/strategies/internal/component_closure.h"
 #include "lowlap/core/internal/union_find.h"
 
@@ -190,12 +190,14 @@ class Merger {
       }
       component.views = part.views;
       constexpr int kShapeIterations = 50;
-      const auto done = MinimiseBounded(part, HUGE_VAL, kShapeIterations,
-                                        context_, &component.centers);
-      if (!done && done.error().code == ErrorCode::kCancelled) {
-        return tl::unexpected<Error>(done.error());
+      int num_iterations = 0;
+      auto centers = SolveBoundedLengths(part, {HUGE_VAL, kShapeIterations},
+                                         context_, &num_iterations);
+      if (!centers && centers.error().code == ErrorCode::kCancelled) {
+        return tl::unexpected<Error>(centers.error());
       }
-      if (!done) return false;
+      if (!centers) return false;
+      component.centers = std::move(*centers);
       components.push_back(std::move(component));
     }
     // Each in turn is the frame, until something moves with one.

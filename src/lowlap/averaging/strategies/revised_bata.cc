@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "lowlap/averaging/internal/cancellation.h"
-#include "lowlap/averaging/strategies/internal/angle_objective.h"
+#include "lowlap/averaging/strategies/internal/bata.h"
 #include "lowlap/averaging/strategies/internal/direction_system.h"
 #include "lowlap/averaging/strategies/internal/revised_lud.h"
 #include "lowlap/robust/internal/robust_loss.h"
@@ -47,15 +47,16 @@ void FixScale(const DirectionPart& part, std::vector<Vec3>* centers) {
   for (Vec3& center : *centers) center *= scale;
 }
 
-Result<std::vector<Vec3>> MinimiseJointly(const DirectionPart& part,
-                                          int max_iterations,
-                                          const RunContext& context,
-                                          int* num_iterations) {
+}  // namespace
+
+Result<std::vector<Vec3>> SolveRevisedBata(const DirectionPart& part,
+                                           const RevisedBataOptions& options,
+                                           const RunContext& context,
+                                           int* num_iterations) {
   constexpr double kDecrease = 1e-10;
   constexpr double kLeastDamping = 1e-9;
   constexpr double kMostDamping = 1e6;
-  auto start = SolveRevisedLud(part, RevisedLudOptions().max_iterations,
-                               context, num_iterations);
+  auto start = SolveRevisedLud(part, {}, context, num_iterations);
   if (!start) return start;
   std::vector<Vec3> centers = std::move(*start);
   FixScale(part, &centers);
@@ -63,7 +64,7 @@ Result<std::vector<Vec3>> MinimiseJointly(const DirectionPart& part,
   double cost = AngleObjective(part, centers);
   double damping = 1e-4;
   std::vector<Mat3> hessians(part.edges.size());
-  for (int iteration = 0; iteration < max_iterations; ++iteration) {
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
     ++*num_iterations;
     std::vector<Vec3> forces(part.views.size(), Vec3::Zero());
     for (std::size_t e = 0; e < part.edges.size(); ++e) {
@@ -79,7 +80,7 @@ Result<std::vector<Vec3>> MinimiseJointly(const DirectionPart& part,
     while (!is_lower && damping <= kMostDamping) {
       if (const Status go_on =
               AskToGoOn(context, static_cast<std::size_t>(iteration),
-                        static_cast<std::size_t>(max_iterations));
+                        static_cast<std::size_t>(options.max_iterations));
           !go_on) {
         return tl::unexpected<Error>(go_on.error());
       }
@@ -108,28 +109,6 @@ Result<std::vector<Vec3>> MinimiseJointly(const DirectionPart& part,
     if (decrease <= kDecrease * cost) break;
   }
   return centers;
-}
-
-}  // namespace
-
-Status RevisedBataOptions::Validate() const {
-  if (max_iterations > 0) return {};
-  return MakeError(ErrorCode::kInvalidArgument,
-                   "the number of iterations must be positive");
-}
-
-Result<TranslationSolution> RevisedBataAverager::Solve(
-    const TranslationProblem& problem, const RunContext& context) const {
-  if (const Status valid = options_.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
-  return SolveDirectionParts(
-      problem, context,
-      [&](const DirectionPart& part, const RunContext& of_part,
-          int* num_iterations) {
-        return MinimiseJointly(part, options_.max_iterations, of_part,
-                               num_iterations);
-      });
 }
 
 }  // namespace lowlap

@@ -1,6 +1,10 @@
 #include "lowlap/averaging/strategies/internal/revised_lud.h"
 
-#include "lowlap/averaging/strategies/internal/angle_objective.h"
+#include <algorithm>
+#include <cmath>
+
+#include "lowlap/averaging/internal/cancellation.h"
+#include "lowlap/averaging/strategies/internal/direction_system.h"
 
 namespace lowlap {
 
@@ -10,18 +14,74 @@ Status RevisedLudOptions::Validate() const {
                    "the number of iterations must be positive");
 }
 
-Result<TranslationSolution> RevisedLudAverager::Solve(
-    const TranslationProblem& problem, const RunContext& context) const {
-  if (const Status valid = options_.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
+Result<std::vector<Vec3>> SolveRevisedLud(const DirectionPart& part,
+                                          const RevisedLudOptions& options,
+                                          const RunContext& context,
+                                          int* num_iterations) {
+  constexpr double kLeastDelta = 1e-6;  // of the mean length
+  constexpr double kDamping = 1e-12;
+  constexpr double kDecrease = 1e-12;
+  const double num_edges = static_cast<double>(part.edges.size());
+  std::vector<Vec3> pulls(part.views.size(), Vec3::Zero());
+  for (const DirectionEdge& edge : part.edges) {
+    pulls[edge.second] += edge.direction_in_world;
+    pulls[edge.first] -= edge.direction_in_world;
   }
-  return SolveDirectionParts(
-      problem, context,
-      [&](const DirectionPart& part, const RunContext& of_part,
-          int* num_iterations) {
-        return SolveRevisedLud(part, options_.max_iterations, of_part,
-                               num_iterations);
-      });
+  DirectionSystem system(part);
+  std::vector<Vec3> centers;
+  std::vector<Mat3> weights(part.edges.size());
+  double delta = HUGE_VAL;  // the first round is least squares
+  double last_cost = HUGE_VAL;
+  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
+    if (const Status go_on =
+            AskToGoOn(context, static_cast<std::size_t>(iteration),
+                      static_cast<std::size_t>(options.max_iterations));
+        !go_on) {
+      return tl::unexpected<Error>(go_on.error());
+    }
+    for (std::size_t e = 0; e < part.edges.size(); ++e) {
+      const DirectionEdge& edge = part.edges[e];
+      const Vec3& d = edge.direction_in_world;
+      const Mat3 across = Mat3::Identity() - d * d.transpose();
+      double weight = 1;
+      if (!centers.empty()) {
+        const Vec3 residual =
+            across * (centers[edge.second] - centers[edge.first]);
+        weight = 1 / std::sqrt(residual.squaredNorm() + delta * delta);
+      }
+      weights[e] = weight * across;
+    }
+    // H C = lambda a, a^T C = number of edges.
+    if (const Status status = system.Factor(weights, kDamping); !status) {
+      return tl::unexpected<Error>(status.error());
+    }
+    auto solved = system.Solve(pulls);
+    if (!solved) return tl::unexpected<Error>(solved.error());
+    double reach = 0;
+    for (std::size_t v = 0; v < pulls.size(); ++v) {
+      reach += pulls[v].dot((*solved)[v]);
+    }
+    if (!(reach > 0)) {
+      return MakeError(ErrorCode::kNumerical,
+                       "the directions of a part cancel out");
+    }
+    for (Vec3& center : *solved) center *= num_edges / reach;
+    centers = std::move(*solved);
+    ++*num_iterations;
+
+    delta = std::isinf(delta) ? 1.0 : std::max(delta / 2, kLeastDelta);
+    double cost = 0;
+    for (const DirectionEdge& edge : part.edges) {
+      const Vec3 offset = centers[edge.second] - centers[edge.first];
+      cost += edge.direction_in_world.cross(offset).norm();
+    }
+    if (delta == kLeastDelta &&
+        std::abs(last_cost - cost) <= kDecrease * (cost + num_edges)) {
+      break;
+    }
+    last_cost = cost;
+  }
+  return centers;
 }
 
 }  // namespace lowlap

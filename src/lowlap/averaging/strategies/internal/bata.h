@@ -1,6 +1,9 @@
 #pragma once
 
-#include "lowlap/averaging/translation_problem.h"
+#include <vector>
+
+#include "lowlap/averaging/strategies/internal/direction_parts.h"
+#include "lowlap/core/result.h"
 
 namespace lowlap {
 
@@ -30,18 +33,20 @@ struct BataOptions {
 /// The paper's further weights from rotations are left out: rotations are
 /// averaged, and their outliers removed, before.
 ///
-/// Not convex: a start that is wrong may stay wrong. Ratios and deviations are
-/// ignored; only parallel-rigid parts of three or more views are placed
-/// (SolveDirectionParts), each in a component of its own.
-class BataAverager : public TranslationAverager {
- public:
-  explicit BataAverager(BataOptions options = {}) : options_(options) {}
-  std::string Name() const override { return "bata"; }
-  Result<TranslationSolution> Solve(const TranslationProblem& problem,
-                                    const RunContext& context) const override;
+/// Not convex: a start that is wrong may stay wrong. Adds to `num_iterations`;
+/// kNumerical if an equation cannot be solved; kCancelled.
+Result<std::vector<Vec3>> SolveBata(const DirectionPart& part,
+                                    const BataOptions& options,
+                                    const RunContext& context,
+                                    int* num_iterations);
 
- private:
-  BataOptions options_;
-};
+/// sum rho(e) over the edges, e the sine of the angle between C_j - C_i and d_e
+/// up to a right angle, 1 beyond it and for coincident centres; rho Huber's
+/// loss, e^2 / 2 up to kAngleHuber.
+double AngleObjective(const DirectionPart& part,
+                      const std::vector<Vec3>& centers);
+
+/// The turn of Huber's loss, a sine: that of the published program.
+inline constexpr double kAngleHuber = 0.1;
 
 }  // namespace lowlap

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <string>
-#include <utility>
+#include <vector>
 
-#include "lowlap/averaging/translation_problem.h"
+#include "lowlap/averaging/strategies/internal/direction_parts.h"
+#include "lowlap/core/result.h"
 
 namespace lowlap {
 
@@ -28,13 +28,13 @@ struct BoundedLengthsOptions {
 
 /// Centres from directions with lengths of at least one:
 ///
-///   min over C, s  sum b^2 (sqrt(1 + r_ij^2 / b^2) - 1),
-///   r_ij = |C_j - C_i - s_ij d_ij|,   s_ij >= 1.
+///   min over C, s  sum_e phi(|C_j - C_i - s_e d_e|),   s_e >= 1,
+///   phi(r) = b^2 (sqrt(1 + (r / b)^2) - 1).
 ///
-/// Least squares for residuals below the width b, absolute values above. The
-/// bound keeps the centres from collapsing; lengths are in units of the
-/// shortest edge. Convex, so the start does not matter; iteratively reweighted
-/// least squares (MinimiseNarrowing). Three published methods differ in b:
+/// Least squares for residuals below the width b, absolute values above; an
+/// infinite width is least squares, phi = r^2 / 2. The bound keeps the centres
+/// from collapsing; lengths are in units of the shortest edge. Convex, so the
+/// start does not matter. Three published methods differ in b:
 ///
 /// - l2_chordal, b infinite (Tron & Vidal, "Distributed image-based 3-D
 ///   localization of camera sensor networks", CDC 2009): not robust, one wrong
@@ -46,20 +46,21 @@ struct BoundedLengthsOptions {
 ///   convex programming", CVPR 2015): exact in spite of some wrong directions
 ///   if the others are exact.
 ///
-/// Unweighted, as published: ratios and deviations are ignored. Only
-/// parallel-rigid parts of three or more views are placed
-/// (SolveDirectionParts), each in a component of its own.
-class BoundedLengthsAverager : public TranslationAverager {
- public:
-  BoundedLengthsAverager(std::string name, BoundedLengthsOptions options)
-      : name_(std::move(name)), options_(options) {}
-  std::string Name() const override { return name_; }
-  Result<TranslationSolution> Solve(const TranslationProblem& problem,
-                                    const RunContext& context) const override;
+/// Unweighted, as published. s_e = max(1, d_e . (C_j - C_i)) is eliminated,
+/// which leaves a convex function of C with a continuous gradient. It is
+/// minimised by Newton's method on the current set of bounded lengths with the
+/// weights phi'(r) / r (reweighted least squares), and a line search; sparse
+/// LDL^T; until the objective decreases by less than 1e-13 of itself. Narrow
+/// losses converge slowly from far away: it begins with least squares from
+/// lengths of one, then takes tenfold narrower losses down to the width.
+/// `max_iterations` are those of the last one. The first view is at the origin.
+/// Adds to `num_iterations`; kNumerical if a factorisation fails; kCancelled.
+Result<std::vector<Vec3>> SolveBoundedLengths(
+    const DirectionPart& part, const BoundedLengthsOptions& options,
+    const RunContext& context, int* num_iterations);
 
- private:
-  std::string name_;
-  BoundedLengthsOptions options_;
-};
+/// The objective with the width b.
+double BoundedObjective(const DirectionPart& part, double width,
+                        const std::vector<Vec3>& centers);
 
 }  // namespace lowlap

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <functional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "lowlap/averaging/translation_problem.h"
@@ -46,5 +48,23 @@ using PartSolver = std::function<Result<std::vector<Vec3>>(
 Result<TranslationSolution> SolveDirectionParts(
     const TranslationProblem& problem, const RunContext& context,
     const PartSolver& solve);
+
+/// The strategy of a name that solves every part by itself (ratios and
+/// deviations are ignored; only parallel-rigid parts of three or more views are
+/// placed, each in a component of its own).
+class DirectionAverager : public TranslationAverager {
+ public:
+  DirectionAverager(std::string name, PartSolver solve)
+      : name_(std::move(name)), solve_(std::move(solve)) {}
+  std::string Name() const override { return name_; }
+  Result<TranslationSolution> Solve(const TranslationProblem& problem,
+                                    const RunContext& context) const override {
+    return SolveDirectionParts(problem, context, solve_);
+  }
+
+ private:
+  std::string name_;
+  PartSolver solve_;
+};
 
 }  // namespace lowlap

@@ -1,20 +1,17 @@
 #pragma once
 
-#include "lowlap/averaging/translation_problem.h"
+#include <vector>
+
+#include "lowlap/averaging/strategies/internal/direction_parts.h"
+#include "lowlap/averaging/strategies/internal/revised_lud.h"
+#include "lowlap/core/result.h"
 
 namespace lowlap {
 
-struct RevisedBataOptions {
-  int max_iterations = 200;
+/// A number of iterations, as for revised LUD.
+using RevisedBataOptions = RevisedLudOptions;
 
-  Status Validate() const;
-  template <class Visit>
-  void VisitOptions(const Visit& visit) {
-    visit("max_iterations", &max_iterations, "at most so many iterations");
-  }
-};
-
-/// The objective of BATA (BataAverager: Zhuang, Cheong, Lee 2018; Huber's loss
+/// The objective of BATA (SolveBata: Zhuang, Cheong, Lee 2018; Huber's loss
 /// of the sine of the angle between C_j - C_i and d_ij) at its minimum: the
 /// inverse lengths are eliminated, and Levenberg-Marquardt runs over the
 /// centres until the objective stands still, instead of a hundred steps of
@@ -29,21 +26,13 @@ struct RevisedBataOptions {
 /// 6 degrees the loss is quadratic in the angle, so that the minimum follows
 /// short baselines, whose directions are the least certain, as much as long
 /// ones, while descent that stops early stays closer to revised LUD, which does
-/// not. Where such edges matter, BataAverager comes out better.
+/// not. Where such edges matter, SolveBata comes out better.
 ///
-/// Not convex: a start that is wrong may stay wrong. Ratios and deviations are
-/// ignored; only parallel-rigid parts of three or more views are placed
-/// (SolveDirectionParts), each in a component of its own.
-class RevisedBataAverager : public TranslationAverager {
- public:
-  explicit RevisedBataAverager(RevisedBataOptions options = {})
-      : options_(options) {}
-  std::string Name() const override { return "revised_bata"; }
-  Result<TranslationSolution> Solve(const TranslationProblem& problem,
-                                    const RunContext& context) const override;
-
- private:
-  RevisedBataOptions options_;
-};
+/// Not convex: a start that is wrong may stay wrong. Adds to `num_iterations`;
+/// kNumerical if a factorisation fails; kCancelled.
+Result<std::vector<Vec3>> SolveRevisedBata(const DirectionPart& part,
+                                           const RevisedBataOptions& options,
+                                           const RunContext& context,
+                                           int* num_iterations);
 
 }  // namespace lowlap

@@ -1,6 +1,9 @@
 #pragma once
 
-#include "lowlap/averaging/translation_problem.h"
+#include <vector>
+
+#include "lowlap/averaging/strategies/internal/direction_parts.h"
+#include "lowlap/core/result.h"
 
 namespace lowlap {
 
@@ -22,19 +25,12 @@ struct RevisedLudOptions {
 ///   sum (C_j - C_i) . d_ij = number of edges.
 ///
 /// s_ij = (C_j - C_i) . d_ij of either sign is eliminated. Convex; iteratively
-/// reweighted least squares. It is also where BATA starts. Ratios and
-/// deviations are ignored; only parallel-rigid parts of three or more views are
-/// placed (SolveDirectionParts), each in a component of its own.
-class RevisedLudAverager : public TranslationAverager {
- public:
-  explicit RevisedLudAverager(RevisedLudOptions options = {})
-      : options_(options) {}
-  std::string Name() const override { return "revised_lud"; }
-  Result<TranslationSolution> Solve(const TranslationProblem& problem,
-                                    const RunContext& context) const override;
-
- private:
-  RevisedLudOptions options_;
-};
+/// reweighted least squares. View 0 is at the origin. It is also where BATA
+/// starts. Adds to `num_iterations`; kNumerical if a factorisation fails;
+/// kCancelled.
+Result<std::vector<Vec3>> SolveRevisedLud(const DirectionPart& part,
+                                          const RevisedLudOptions& options,
+                                          const RunContext& context,
+                                          int* num_iterations);
 
 }  // namespace lowlap
