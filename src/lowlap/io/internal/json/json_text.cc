@@ -5,7 +5,7 @@
 
 namespace lowlap {
 
-void AppendReal(double value, std::string& text) {
+void AppendValue(double value, std::string& text) {
   std::array<char, 32> digits;
   const auto result =
       std::to_chars(digits.data(), digits.data() + digits.size(), value);
@@ -15,14 +15,18 @@ void AppendReal(double value, std::string& text) {
   if (written.find_first_of(".en") == std::string_view::npos) text += ".0";
 }
 
-void AppendInteger(std::uint32_t value, std::string& text) {
+void AppendValue(std::uint32_t value, std::string& text) {
   std::array<char, 16> digits;
   const auto result =
       std::to_chars(digits.data(), digits.data() + digits.size(), value);
   text.append(digits.data(), result.ptr);
 }
 
-void AppendString(std::string_view utf8, std::string& text) {
+void AppendValue(int value, std::string& text) {
+  AppendValue(static_cast<std::uint32_t>(value), text);
+}
+
+void AppendValue(std::string_view utf8, std::string& text) {
   constexpr std::string_view kHex = "0123456789abcdef";
   text += '"';
   for (const char c : utf8) {
@@ -47,7 +51,7 @@ void AppendComma(std::string& text) {
 
 void AppendKey(std::string_view name, std::string& text) {
   AppendComma(text);
-  AppendString(name, text);
+  AppendValue(name, text);
   text += ": ";
 }
 

@@ -7,15 +7,6 @@
 namespace lowlap {
 namespace {
 
-// Adds an entry to a map of the scene; `key` is where its id stands.
-template <class Map, class Value>
-void Insert(Map& map, const JsonValue& key, Value value) {
-  if (!map.emplace(key.Id(), std::move(value)).second) {
-    key.Fail("id " + std::to_string(key.Id()) + " is repeated",
-             ErrorCode::kInvalidScene);
-  }
-}
-
 View ReadView(const JsonValue& key, const CerealPointers::Object& object,
               const JsonValue& pointer) {
   const bool has_priors = object.type_name == "view_priors";

@@ -1,5 +1,3 @@
-#include <map>
-
 #include "lowlap/io/internal/json/scene_json_sections.h"
 #include "lowlap/io/internal/old_scale_ratios.h"
 
@@ -41,22 +39,15 @@ void ReadReals(const JsonValue& flat, const Add& add) {
   }
 }
 
-std::vector<FeatureMatch> ReadMatches(const JsonValue& flat) {
-  std::vector<FeatureMatch> matches;
-  matches.reserve(flat.FlatSize(2) / 2);
+// Structs of two ids each.
+template <class Pairs>
+Pairs ReadPairs(const JsonValue& flat) {
+  Pairs pairs;
+  pairs.reserve(flat.FlatSize(2) / 2);
   ReadIdPairs(flat, [&](std::uint32_t first, std::uint32_t second) {
-    matches.push_back({first, second});
+    pairs.push_back({first, second});
   });
-  return matches;
-}
-
-Track ReadTrack(const JsonValue& flat) {
-  Track track;
-  track.reserve(flat.FlatSize(2) / 2);
-  ReadIdPairs(flat, [&](std::uint32_t view, std::uint32_t feature) {
-    track.push_back({view, feature});
-  });
-  return track;
+  return pairs;
 }
 
 ViewFeatures ReadFeatures(const JsonValue& record) {
@@ -110,8 +101,10 @@ RelativePose ReadRelativePose(const JsonValue& record) {
   ReadMotion(record, &edge.rotation, &edge.direction, &edge.log10_nfa,
              &edge.covariance);
   edge.point_threshold_px = record.At("point_threshold_px").Real();
-  edge.point_inliers = ReadMatches(record.At("point_inliers"));
-  edge.line_inliers = ReadMatches(record.At("line_inliers"));
+  edge.point_inliers =
+      ReadPairs<std::vector<FeatureMatch>>(record.At("point_inliers"));
+  edge.line_inliers =
+      ReadPairs<std::vector<FeatureMatch>>(record.At("line_inliers"));
   if (const auto list = record.Find("alternatives")) {
     for (const JsonValue alternative : list->Elements()) {
       alternative.AllowOnly(
@@ -193,10 +186,8 @@ ScaleRatio ReadScaleRatio(const JsonValue& record, std::uint32_t version) {
   version < kFirstWithKinds ? ReadOldKinds(record, &ratio)
                             : ReadKinds(record, &ratio);
   ratio.num_rejected_negative = record.At("num_rejected_negative").Count();
-  ReadIdPairs(record.At("coplanar_inliers"),
-              [&](FeatureIndex in_first, FeatureIndex in_last) {
-                ratio.coplanar_inliers.push_back({in_first, in_last});
-              });
+  ratio.coplanar_inliers =
+      ReadPairs<std::vector<CoplanarInlier>>(record.At("coplanar_inliers"));
   return ratio;
 }
 
@@ -231,20 +222,18 @@ LineLandmark ReadLine(const JsonValue& record) {
   landmark.line.moment = record.At("moment").Vector<3>();
   landmark.start = record.At("start").Vector<3>();
   landmark.end = record.At("end").Vector<3>();
-  landmark.observations = ReadTrack(record.At("observations"));
+  landmark.observations = ReadPairs<Track>(record.At("observations"));
   return landmark;
 }
 
-template <class TrackId>
-void ReadTracks(const JsonValue& list, std::map<TrackId, Track>& tracks) {
-  for (const JsonValue record : list.Elements()) {
-    record.AllowOnly({"id", "observations"});
-    const JsonValue id = record.At("id");
-    if (!tracks.emplace(id.Id(), ReadTrack(record.At("observations"))).second) {
-      id.Fail("id " + std::to_string(id.Id()) + " is repeated",
-              ErrorCode::kInvalidScene);
-    }
-  }
+// Calls `read(record)` for the records of a section; one that is missing is
+// empty.
+template <class Read>
+void ReadSection(const JsonValue& own, std::string_view name,
+                 const Read& read) {
+  const auto list = own.Find(name);
+  if (!list) return;
+  for (const JsonValue record : list->Elements()) read(record);
 }
 
 }  // namespace
@@ -260,59 +249,38 @@ void ReadOwnSections(const JsonValue& own, Scene& scene) {
   own.AllowOnly({"version", "given_intrinsics", "features", "relative_poses",
                  "point_tracks", "line_tracks", "scale_ratios",
                  "line_structure", "coplanar_pairs"});
-  // A section that is missing is empty.
-  if (const auto list = own.Find("given_intrinsics")) {
-    for (const JsonValue record : list->Elements()) {
-      const JsonValue id = record.At("id");
-      if (!scene.given_intrinsics.emplace(id.Id(), ReadGivenIntrinsic(record))
-               .second) {
-        id.Fail("id " + std::to_string(id.Id()) + " is repeated",
-                ErrorCode::kInvalidScene);
-      }
+  ReadSection(own, "given_intrinsics", [&](const JsonValue& record) {
+    Insert(scene.given_intrinsics, record.At("id"), ReadGivenIntrinsic(record));
+  });
+  ReadSection(own, "features", [&](const JsonValue& record) {
+    Insert(scene.features, record.At("view"), ReadFeatures(record), "view");
+  });
+  ReadSection(own, "relative_poses", [&](const JsonValue& record) {
+    RelativePose edge = ReadRelativePose(record);
+    const ViewPair views = edge.views;
+    if (!scene.relative_poses.emplace(views, std::move(edge)).second) {
+      record.Fail("the pair of views is repeated", ErrorCode::kInvalidScene);
     }
-  }
-  if (const auto list = own.Find("features")) {
-    for (const JsonValue record : list->Elements()) {
-      const JsonValue view = record.At("view");
-      if (!scene.features.emplace(view.Id(), ReadFeatures(record)).second) {
-        view.Fail("view " + std::to_string(view.Id()) + " is repeated",
-                  ErrorCode::kInvalidScene);
-      }
-    }
-  }
-  if (const auto list = own.Find("relative_poses")) {
-    for (const JsonValue record : list->Elements()) {
-      RelativePose edge = ReadRelativePose(record);
-      const ViewPair views = edge.views;
-      if (!scene.relative_poses.emplace(views, std::move(edge)).second) {
-        record.Fail("the pair of views is repeated", ErrorCode::kInvalidScene);
-      }
-    }
-  }
-  if (const auto list = own.Find("point_tracks")) {
-    ReadTracks(*list, scene.point_tracks);
-  }
-  if (const auto list = own.Find("line_tracks")) {
-    ReadTracks(*list, scene.line_tracks);
-  }
-  if (const auto list = own.Find("scale_ratios")) {
-    for (const JsonValue record : list->Elements()) {
-      scene.scale_ratios.push_back(ReadScaleRatio(record, version.Id()));
-    }
-  }
-  if (const auto list = own.Find("line_structure")) {
-    for (const JsonValue record : list->Elements()) {
-      const JsonValue id = record.At("id");
-      if (!scene.line_structure.emplace(id.Id(), ReadLine(record)).second) {
-        id.Fail("id " + std::to_string(id.Id()) + " is repeated",
-                ErrorCode::kInvalidScene);
-      }
-    }
-  }
+  });
+  const auto read_track = [](const JsonValue& record, auto& tracks) {
+    record.AllowOnly({"id", "observations"});
+    Insert(tracks, record.At("id"),
+           ReadPairs<Track>(record.At("observations")));
+  };
+  ReadSection(own, "point_tracks", [&](const JsonValue& record) {
+    read_track(record, scene.point_tracks);
+  });
+  ReadSection(own, "line_tracks", [&](const JsonValue& record) {
+    read_track(record, scene.line_tracks);
+  });
+  ReadSection(own, "scale_ratios", [&](const JsonValue& record) {
+    scene.scale_ratios.push_back(ReadScaleRatio(record, version.Id()));
+  });
+  ReadSection(own, "line_structure", [&](const JsonValue& record) {
+    Insert(scene.line_structure, record.At("id"), ReadLine(record));
+  });
   if (const auto pairs = own.Find("coplanar_pairs")) {
-    ReadIdPairs(*pairs, [&](LineTrackId first, LineTrackId second) {
-      scene.coplanar_pairs.push_back({first, second});
-    });
+    scene.coplanar_pairs = ReadPairs<std::vector<CoplanarPair>>(*pairs);
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
 #include "lowlap/io/internal/json/json_value.h"
 #include "lowlap/scene/scene.h"
@@ -12,7 +13,18 @@ namespace lowlap {
 Scene ReadOpenMvgSections(const JsonValue& root);
 void ReadOwnSections(const JsonValue& own, Scene& scene);
 
-/// The same as text, each section as `"name": value`, separated by ",\n".
+/// Adds an entry to a map of the scene; `key` is where its id, the number of
+/// `what`, stands.
+template <class Map, class Value>
+void Insert(Map& map, const JsonValue& key, Value value,
+            const std::string& what = "id") {
+  if (!map.emplace(key.Id(), std::move(value)).second) {
+    key.Fail(what + " " + std::to_string(key.Id()) + " is repeated",
+             ErrorCode::kInvalidScene);
+  }
+}
+
+/// The sections as text, each section as `"name": value`, separated by ",\n".
 void AppendOpenMvgSections(const Scene& scene, std::string& text);
 void AppendOwnSections(const Scene& scene, std::string& text);
 

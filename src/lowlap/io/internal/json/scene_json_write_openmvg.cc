@@ -7,22 +7,12 @@
 namespace lowlap {
 namespace {
 
-void AppendMember(std::string_view name, std::uint32_t value,
-                  std::string& text) {
-  AppendKey(name, text);
-  AppendInteger(value, text);
-}
-
-void AppendMember(std::string_view name, int value, std::string& text) {
-  AppendMember(name, static_cast<std::uint32_t>(value), text);
-}
-
 // Opens {"key": id, "value": {polymorphic pointer {"data": {  and numbers the
 // types and objects as cereal does: from 1, over the whole archive.
 class PointerWriter {
  public:
-  void Open(std::uint32_t key, const std::string& type_name,
-            std::string& text) {
+  template <class Key>
+  void Open(Key key, const std::string& type_name, std::string& text) {
     text += "{";
     AppendMember("key", key, text);
     AppendKey("value", text);
@@ -35,10 +25,7 @@ class PointerWriter {
       AppendMember("polymorphic_id",
                    entry->second | (is_new ? CerealPointers::kDefines : 0),
                    text);
-      if (is_new) {
-        AppendKey("polymorphic_name", text);
-        AppendString(type_name, text);
-      }
+      if (is_new) AppendMember("polymorphic_name", type_name, text);
     }
     AppendKey("ptr_wrapper", text);
     text += "{";
@@ -56,23 +43,19 @@ class PointerWriter {
 
 void AppendView(ViewId id, const View& view, PointerWriter& pointers,
                 std::string& text) {
-  pointers.Open(id.value(), view.center_prior ? "view_priors" : "", text);
-  AppendKey("local_path", text);
-  AppendString(view.local_path, text);
-  AppendKey("filename", text);
-  AppendString(view.filename, text);
+  pointers.Open(id, view.center_prior ? "view_priors" : "", text);
+  AppendMember("local_path", view.local_path, text);
+  AppendMember("filename", view.filename, text);
   AppendMember("width", view.width_px, text);
   AppendMember("height", view.height_px, text);
-  AppendMember("id_view", id.value(), text);
-  AppendMember("id_intrinsic", view.intrinsic_id.value(), text);
-  AppendMember("id_pose", view.pose_id.value(), text);
+  AppendMember("id_view", id, text);
+  AppendMember("id_intrinsic", view.intrinsic_id, text);
+  AppendMember("id_pose", view.pose_id, text);
   if (view.center_prior) {
     AppendKey("use_pose_center_prior", text);
     text += "true";
-    AppendKey("center_weight", text);
-    AppendVector(view.center_prior->weight, text);
-    AppendKey("center", text);
-    AppendVector(view.center_prior->center_in_world, text);
+    AppendMember("center_weight", view.center_prior->weight, text);
+    AppendMember("center", view.center_prior->center_in_world, text);
   }
   PointerWriter::Close(text);
 }
@@ -80,7 +63,7 @@ void AppendView(ViewId id, const View& view, PointerWriter& pointers,
 void AppendIntrinsic(IntrinsicId id, const Intrinsic& intrinsic,
                      PointerWriter& pointers, std::string& text) {
   const bool is_spherical = intrinsic.model == CameraModel::kSpherical;
-  pointers.Open(id.value(), CameraModelName(intrinsic.model), text);
+  pointers.Open(id, CameraModelName(intrinsic.model), text);
   if (is_spherical) text += "\"value0\": {";
   AppendMember("width", intrinsic.width_px, text);
   AppendMember("height", intrinsic.height_px, text);
@@ -88,22 +71,15 @@ void AppendIntrinsic(IntrinsicId id, const Intrinsic& intrinsic,
     text += "}";
   } else {
     const bool is_square = intrinsic.fx_px == intrinsic.fy_px;
-    AppendKey("focal_length", text);
-    AppendReal(is_square ? intrinsic.fx_px : intrinsic.MeanFocalPx(), text);
+    AppendMember("focal_length",
+                 is_square ? intrinsic.fx_px : intrinsic.MeanFocalPx(), text);
     if (!is_square) {
-      AppendKey("fx", text);
-      AppendReal(intrinsic.fx_px, text);
-      AppendKey("fy", text);
-      AppendReal(intrinsic.fy_px, text);
+      AppendMember("fx", intrinsic.fx_px, text);
+      AppendMember("fy", intrinsic.fy_px, text);
     }
-    AppendKey("principal_point", text);
-    AppendVector(intrinsic.principal_point_px, text);
+    AppendMember("principal_point", intrinsic.principal_point_px, text);
     if (const std::string key = DistortionKey(intrinsic.model); !key.empty()) {
-      AppendKey(key, text);
-      AppendVector(Eigen::Map<const Eigen::VectorXd>(
-                       intrinsic.distortion.data(),
-                       static_cast<Eigen::Index>(intrinsic.distortion.size())),
-                   text);
+      AppendMember(key, intrinsic.distortion, text);
     }
   }
   PointerWriter::Close(text);
@@ -111,35 +87,32 @@ void AppendIntrinsic(IntrinsicId id, const Intrinsic& intrinsic,
 
 void AppendPose(PoseId id, const Pose& pose, std::string& text) {
   text += "{";
-  AppendMember("key", id.value(), text);
+  AppendMember("key", id, text);
   AppendKey("value", text);
   text += "{";
-  AppendKey("rotation", text);
-  AppendMatrix(pose.rotation, text);
-  AppendKey("center", text);
-  AppendVector(pose.center, text);
+  AppendMember("rotation", pose.rotation, text);
+  AppendMember("center", pose.center, text);
   text += "}}";
 }
 
-void AppendLandmark(std::uint32_t id, const Landmark& landmark,
+template <class LandmarkId>
+void AppendLandmark(LandmarkId id, const Landmark& landmark,
                     std::string& text) {
   text += "{";
   AppendMember("key", id, text);
   AppendKey("value", text);
   text += "{";
-  AppendKey("X", text);
-  AppendVector(landmark.position, text);
+  AppendMember("X", landmark.position, text);
   AppendKey("observations", text);
   text += "[";
   for (const PointObservation& observation : landmark.observations) {
     AppendComma(text);
     text += "{";
-    AppendMember("key", observation.view.value(), text);
+    AppendMember("key", observation.view, text);
     AppendKey("value", text);
     text += "{";
     AppendMember("id_feat", observation.feature, text);
-    AppendKey("x", text);
-    AppendVector(observation.pixel_px, text);
+    AppendMember("x", observation.pixel_px, text);
     text += "}}";
   }
   text += "]}}";
@@ -149,31 +122,22 @@ void AppendLandmark(std::uint32_t id, const Landmark& landmark,
 
 void AppendOpenMvgSections(const Scene& scene, std::string& text) {
   PointerWriter pointers;
-  const auto append_view = [&](const auto& entry, std::string& out) {
-    AppendView(entry.first, entry.second, pointers, out);
+  const auto append_view = [&](ViewId id, const View& view, std::string& out) {
+    AppendView(id, view, pointers, out);
   };
-  const auto append_intrinsic = [&](const auto& entry, std::string& out) {
-    AppendIntrinsic(entry.first, entry.second, pointers, out);
+  const auto append_intrinsic = [&](IntrinsicId id, const Intrinsic& intrinsic,
+                                    std::string& out) {
+    AppendIntrinsic(id, intrinsic, pointers, out);
   };
-  const auto append_pose = [](const auto& entry, std::string& out) {
-    AppendPose(entry.first, entry.second, out);
-  };
-  const auto append_landmark = [](const auto& entry, std::string& out) {
-    AppendLandmark(static_cast<std::uint32_t>(entry.first), entry.second, out);
-  };
-
   text += "\"sfm_data_version\": \"0.3\",\n\"root_path\": ";
-  AppendString(scene.root_path, text);
-  text += ",\n";
+  AppendValue(scene.root_path, text);
   AppendSection("views", scene.views, append_view, text);
-  text += ",\n";
   AppendSection("intrinsics", scene.intrinsics, append_intrinsic, text);
-  text += ",\n";
-  AppendSection("extrinsics", scene.poses, append_pose, text);
-  text += ",\n";
-  AppendSection("structure", scene.structure, append_landmark, text);
-  text += ",\n";
-  AppendSection("control_points", scene.control_points, append_landmark, text);
+  AppendSection("extrinsics", scene.poses, AppendPose, text);
+  AppendSection("structure", scene.structure, AppendLandmark<PointTrackId>,
+                text);
+  AppendSection("control_points", scene.control_points,
+                AppendLandmark<std::uint32_t>, text);
 }
 
 }  // namespace lowlap
