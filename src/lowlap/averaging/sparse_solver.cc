@@ -108,10 +108,8 @@ Result<double> RunGradients(const Matrix& lower, const Eigen::VectorXd& rhs,
                              residual.norm() > kGradientTolerance * rhs_norm;
        ++step) {
     if (step % kStepsBetweenQuestions == 0) {
-      if (const Status go_on = AskToGoOn(context, step, kMaxGradientSteps);
-          !go_on) {
-        return tl::unexpected<Error>(go_on.error());
-      }
+      const Status go_on = AskToGoOn(context, step, kMaxGradientSteps);
+      if (!go_on) return tl::unexpected<Error>(go_on.error());
     }
     const Eigen::VectorXd image = a * direction;
     const double length = product / direction.dot(image);

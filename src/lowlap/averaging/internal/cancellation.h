@@ -9,9 +9,12 @@ namespace lowlap {
 
 /// Tells the host how far an iteration has come; kCancelled if it asks to stop.
 /// Every loop asks before each factorisation, or oftener.
-inline Status AskToGoOn(const RunContext& context, std::size_t done,
-                        std::size_t total) {
-  if (context.Progress("averaging", done, total)) return {};
+template <class Count, class Total>
+Status AskToGoOn(const RunContext& context, Count done, Total total) {
+  if (context.Progress("averaging", static_cast<std::size_t>(done),
+                       static_cast<std::size_t>(total))) {
+    return {};
+  }
   return MakeError(ErrorCode::kCancelled, "stopped on request", {},
                    "averaging");
 }

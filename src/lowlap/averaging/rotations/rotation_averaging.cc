@@ -139,12 +139,8 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
   Phase phase = with_l1 ? Phase::kL1 : Phase::kTighten;
   double scale = HUGE_VAL;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    if (const Status go_on =
-            AskToGoOn(context, static_cast<std::size_t>(iteration),
-                      static_cast<std::size_t>(options.max_iterations));
-        !go_on) {
-      return tl::unexpected<Error>(go_on.error());
-    }
+    const Status go_on = AskToGoOn(context, iteration, options.max_iterations);
+    if (!go_on) return tl::unexpected<Error>(go_on.error());
     std::vector<double> normalised(measurements.size());
     for (Eigen::Index e = 0; e < count; ++e) {
       steps.row(e) = Residual(measurements[e], rotations);

@@ -63,12 +63,8 @@ Result<std::vector<Vec3>> SolveCenters(std::size_t num_views,
   SparseSolver solver(context);
   std::vector<double> robust(edges.size(), 1.0);
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    if (const Status go_on =
-            AskToGoOn(context, static_cast<std::size_t>(iteration),
-                      static_cast<std::size_t>(max_iterations));
-        !go_on) {
-      return tl::unexpected<Error>(go_on.error());
-    }
+    const Status go_on = AskToGoOn(context, iteration, max_iterations);
+    if (!go_on) return tl::unexpected<Error>(go_on.error());
     Triplets entries;
     entries.reserve(24 * edges.size());
     Eigen::VectorXd rhs = Eigen::VectorXd::Zero(num_rows);

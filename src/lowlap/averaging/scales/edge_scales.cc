@@ -69,12 +69,8 @@ class Averaging {
     // The absolute residuals only serve as a start.
     const double tolerance = loss == ScaleLoss::kAbsolute ? 1e-3 : 1e-11;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
-      if (const Status go_on =
-              AskToGoOn(context_, static_cast<std::size_t>(iteration),
-                        static_cast<std::size_t>(max_iterations));
-          !go_on) {
-        return go_on;
-      }
+      const Status go_on = AskToGoOn(context_, iteration, max_iterations);
+      if (!go_on) return go_on;
       SetWeights(loss, scales->normalised_residuals);
       const auto solution = SolveDifferences(problem_.edges.size(), graph_,
                                              weights_, measurements_, &solver_);

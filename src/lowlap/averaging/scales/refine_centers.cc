@@ -201,12 +201,8 @@ Status RefineCenters(const TranslationProblem& problem,
       for (int r = 0; r < refiner.num_rows(); ++r) {
         damped.coeffRef(r, r) += damping * hessian.coeff(r, r);
       }
-      if (const Status go_on =
-              AskToGoOn(context, static_cast<std::size_t>(iteration),
-                        static_cast<std::size_t>(max_iterations));
-          !go_on) {
-        return go_on;
-      }
+      const Status go_on = AskToGoOn(context, iteration, max_iterations);
+      if (!go_on) return go_on;
       const auto step = solver.Solve(damped, -gradient);
       if (!step && step.error().code == ErrorCode::kCancelled) {
         return tl::unexpected<Error>(step.error());

@@ -53,12 +53,8 @@ Result<std::vector<Vec3>> SolveBata(const DirectionPart& part,
           (inverse * offset - edge.direction_in_world).norm(), kAngleHuber);
     }
     for (int step = 0; step < options.steps_per_round; ++step) {
-      if (const Status go_on =
-              AskToGoOn(context, static_cast<std::size_t>(round),
-                        static_cast<std::size_t>(options.rounds));
-          !go_on) {
-        return tl::unexpected<Error>(go_on.error());
-      }
+      const Status go_on = AskToGoOn(context, round, options.rounds);
+      if (!go_on) return tl::unexpected<Error>(go_on.error());
       for (Eigen::Index e = 0; e < num_edges; ++e) {
         const DirectionEdge& edge = part.edges[static_cast<std::size_t>(e)];
         const Vec3 offset = centers[edge.second] - centers[edge.first];

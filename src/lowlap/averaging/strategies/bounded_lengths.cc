@@ -66,12 +66,8 @@ Result<int> MinimiseBounded(const DirectionPart& part, double width,
   double cost = BoundedObjective(part, width, *centers);
   std::vector<Mat3> weights(part.edges.size());
   for (int iteration = 1; iteration <= max_iterations; ++iteration) {
-    if (const Status go_on =
-            AskToGoOn(context, static_cast<std::size_t>(iteration - 1),
-                      static_cast<std::size_t>(max_iterations));
-        !go_on) {
-      return tl::unexpected<Error>(go_on.error());
-    }
+    const Status go_on = AskToGoOn(context, iteration - 1, max_iterations);
+    if (!go_on) return tl::unexpected<Error>(go_on.error());
     std::vector<Vec3> forces(part.views.size(), Vec3::Zero());
     for (std::size_t e = 0; e < part.edges.size(); ++e) {
       const DirectionEdge& edge = part.edges[e];

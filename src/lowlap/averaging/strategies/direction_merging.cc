@@ -35,10 +35,8 @@ class Merger {
 
   Result<std::vector<std::size_t>> Run() {
     for (std::size_t round = 0;; ++round) {
-      if (const Status go_on = AskToGoOn(context_, round, edges_.size());
-          !go_on) {
-        return tl::unexpected<Error>(go_on.error());
-      }
+      const Status go_on = AskToGoOn(context_, round, edges_.size());
+      if (!go_on) return tl::unexpected<Error>(go_on.error());
       if (MergeIntersections() || MergeSharedPairs()) continue;
       const auto merged = MergeRings();
       if (!merged) return tl::unexpected<Error>(merged.error());
@@ -202,10 +200,8 @@ class Merger {
     }
     // Each in turn is the frame, until something moves with one.
     for (std::size_t frame = 0; frame + 2 < components.size(); ++frame) {
-      if (const Status go_on = AskToGoOn(context_, frame, components.size());
-          !go_on) {
-        return tl::unexpected<Error>(go_on.error());
-      }
+      const Status go_on = AskToGoOn(context_, frame, components.size());
+      if (!go_on) return tl::unexpected<Error>(go_on.error());
       const std::vector<RigidComponent> rest(components.begin() + frame,
                                              components.end());
       const auto placements = CloseComponents(rest);

@@ -182,10 +182,8 @@ class Growth {
     Vec3 best_center = Vec3::Zero();
     for (std::size_t view = 0; view < placed_.size(); ++view) {
       if (placed_[view]) continue;
-      if (const Status go_on = AskToGoOn(context_, view, placed_.size());
-          !go_on) {
-        return tl::unexpected<Error>(go_on.error());
-      }
+      const Status go_on = AskToGoOn(context_, view, placed_.size());
+      if (!go_on) return tl::unexpected<Error>(go_on.error());
       Mat3 normal = Mat3::Zero();
       Vec3 rhs = Vec3::Zero();
       double stddev = 0;

@@ -20,9 +20,7 @@ class StepAsker : public ClpEventHandler {
       return -1;
     }
     if (*answer_) {
-      *answer_ = AskToGoOn(context_,
-                           static_cast<std::size_t>(model_->numberIterations()),
-                           static_cast<std::size_t>(max_steps_));
+      *answer_ = AskToGoOn(context_, model_->numberIterations(), max_steps_);
     }
     return *answer_ ? -1 : kStop;
   }

@@ -200,12 +200,8 @@ Result<int> SolvePositions(const std::vector<TrackRays>& tracks,
   int iteration = 0, small_steps = 0;
   while (iteration < options.max_iterations && small_steps < 3 &&
          cost > kNoCost * static_cast<double>(num_observations)) {
-    if (const Status go_on =
-            AskToGoOn(context, static_cast<std::size_t>(iteration),
-                      static_cast<std::size_t>(options.max_iterations));
-        !go_on) {
-      return tl::unexpected<Error>(go_on.error());
-    }
+    const Status go_on = AskToGoOn(context, iteration, options.max_iterations);
+    if (!go_on) return tl::unexpected<Error>(go_on.error());
     ++iteration;
     double next_cost = std::nan("");
     if (equations.Solve(*state, options.huber_reach, damping, &next)) {

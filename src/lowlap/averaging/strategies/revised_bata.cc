@@ -78,12 +78,9 @@ Result<std::vector<Vec3>> SolveRevisedBata(const DirectionPart& part,
     bool is_lower = false;
     double decrease = 0;
     while (!is_lower && damping <= kMostDamping) {
-      if (const Status go_on =
-              AskToGoOn(context, static_cast<std::size_t>(iteration),
-                        static_cast<std::size_t>(options.max_iterations));
-          !go_on) {
-        return tl::unexpected<Error>(go_on.error());
-      }
+      const Status go_on =
+          AskToGoOn(context, iteration, options.max_iterations);
+      if (!go_on) return tl::unexpected<Error>(go_on.error());
       if (const Status status = system.Factor(hessians, damping); !status) {
         return tl::unexpected<Error>(status.error());
       }

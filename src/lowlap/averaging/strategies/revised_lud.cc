@@ -33,12 +33,8 @@ Result<std::vector<Vec3>> SolveRevisedLud(const DirectionPart& part,
   double delta = HUGE_VAL;  // the first round is least squares
   double last_cost = HUGE_VAL;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    if (const Status go_on =
-            AskToGoOn(context, static_cast<std::size_t>(iteration),
-                      static_cast<std::size_t>(options.max_iterations));
-        !go_on) {
-      return tl::unexpected<Error>(go_on.error());
-    }
+    const Status go_on = AskToGoOn(context, iteration, options.max_iterations);
+    if (!go_on) return tl::unexpected<Error>(go_on.error());
     for (std::size_t e = 0; e < part.edges.size(); ++e) {
       const DirectionEdge& edge = part.edges[e];
       const Vec3& d = edge.direction_in_world;

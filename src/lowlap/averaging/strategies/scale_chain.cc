@@ -21,9 +21,8 @@ Result<TranslationSolution> ScaleChainAverager::Solve(
   const EdgeScales scales = ChainEdgeScales(problem);
   const std::vector<EdgeGroup> groups = RankedEdgeGroups(problem, scales);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    if (const Status go_on = AskToGoOn(context, g, groups.size()); !go_on) {
-      return tl::unexpected<Error>(go_on.error());
-    }
+    const Status go_on = AskToGoOn(context, g, groups.size());
+    if (!go_on) return tl::unexpected<Error>(go_on.error());
     const EdgeGroup& group = groups[g];
     std::vector<DifferenceEdge> graph;
     std::vector<double> costs;
