@@ -8,19 +8,19 @@
 #include <utility>
 
 #include "lowlap/core/result.h"
+#include "lowlap/io/internal/failure.h"
 
 namespace lowlap::openmvg {
 
-/// Reads a cereal PortableBinary archive from memory. The first failure sticks:
-/// every later read returns zeros, so that a grammar can be written down
-/// without a test after each item; ask ok() before trusting a count or a value.
+/// Reads a cereal PortableBinary archive from memory. What is wrong is thrown
+/// as a Failure.
 class ArchiveReader {
  public:
   /// Consumes the endianness byte.
   ArchiveReader(std::string_view bytes, std::string file)
       : bytes_(bytes), file_(std::move(file)) {
     const std::uint8_t flag = Scalar<std::uint8_t>();
-    if (ok() && flag > 1) {
+    if (flag > 1) {
       offset_ = 0;
       Fail("the first byte of a binary archive is 0 or 1, this one is " +
            std::to_string(flag));
@@ -28,32 +28,22 @@ class ArchiveReader {
     swap_ = flag != (HostIsLittleEndian() ? 1 : 0);
   }
 
-  bool ok() const { return !failed_; }
   std::size_t offset() const { return offset_; }
 
-  void Fail(std::string message, ErrorCode code = ErrorCode::kParse) {
+  [[noreturn]] void Fail(std::string message,
+                         ErrorCode code = ErrorCode::kParse) const {
     FailAt(offset_, std::move(message), code);
   }
-  void FailAt(std::size_t offset, std::string message,
-              ErrorCode code = ErrorCode::kParse) {
-    if (failed_) return;
-    failed_ = true;
-    error_ = Error{code, std::move(message), file_,
-                   "byte " + std::to_string(offset)};
-  }
-  /// The first failure; call only if !ok().
-  tl::unexpected<Error> Failure() const {
-    return tl::unexpected<Error>(error_);
+  [[noreturn]] void FailAt(std::size_t offset, std::string message,
+                           ErrorCode code = ErrorCode::kParse) const {
+    throw Failure{Error{code, std::move(message), file_,
+                        "byte " + std::to_string(offset)}};
   }
 
   template <class T>
   T Scalar() {
-    T value{};
-    if (failed_) return value;
-    if (bytes_.size() - offset_ < sizeof(T)) {
-      Fail("the file ends too early");
-      return value;
-    }
+    if (bytes_.size() - offset_ < sizeof(T)) Fail("the file ends too early");
+    T value;
     char buffer[sizeof(T)];
     for (std::size_t n = 0; n < sizeof(T); ++n) {
       buffer[swap_ ? sizeof(T) - 1 - n : n] = bytes_[offset_ + n];
@@ -65,16 +55,14 @@ class ArchiveReader {
 
   std::uint32_t U32() { return Scalar<std::uint32_t>(); }
 
-  /// A number of items of at least `min_item_bytes` each; 0 after a failure,
-  /// which includes a number that the rest of the file cannot hold.
+  /// A number of items of at least `min_item_bytes` each; fails on a number
+  /// that the rest of the file cannot hold.
   std::size_t Count(std::size_t min_item_bytes) {
     const std::size_t place = offset_;
     const std::uint64_t count = Scalar<std::uint64_t>();
-    if (failed_) return 0;
     if (count > (bytes_.size() - offset_) / min_item_bytes) {
       FailAt(place, "a count of " + std::to_string(count) +
                         " does not fit into the rest of the file");
-      return 0;
     }
     return static_cast<std::size_t>(count);
   }
@@ -101,8 +89,6 @@ class ArchiveReader {
   std::string file_;
   std::size_t offset_ = 0;
   bool swap_ = false;
-  bool failed_ = false;
-  Error error_;
 };
 
 }  // namespace lowlap::openmvg

@@ -63,23 +63,24 @@ Result<PairMatches> ParseMatchesText(std::string_view text,
 
 Result<PairMatches> ParseMatchesBin(std::string_view bytes,
                                     const std::string& file) {
-  PairMatches result;
-  ArchiveReader in(bytes, file);
-  const std::size_t num_pairs = in.Count(16);
-  for (std::size_t n = 0; n < num_pairs && in.ok(); ++n) {
-    const std::size_t place = in.offset();
-    const ViewId first = in.U32();
-    const ViewId second = in.U32();
-    if (in.ok() && first == second) in.FailAt(place, SelfPairMessage(first));
-    std::vector<FeatureMatch> matches(in.Count(8));
-    for (FeatureMatch& match : matches) {
-      match.first = in.U32();
-      match.second = in.U32();
+  return Caught([&] {
+    PairMatches result;
+    ArchiveReader in(bytes, file);
+    const std::size_t num_pairs = in.Count(16);
+    for (std::size_t n = 0; n < num_pairs; ++n) {
+      const std::size_t place = in.offset();
+      const ViewId first = in.U32();
+      const ViewId second = in.U32();
+      if (first == second) in.FailAt(place, SelfPairMessage(first));
+      std::vector<FeatureMatch> matches(in.Count(8));
+      for (FeatureMatch& match : matches) {
+        match.first = in.U32();
+        match.second = in.U32();
+      }
+      Insert({first, second}, std::move(matches), result);
     }
-    Insert({first, second}, std::move(matches), result);
-  }
-  if (!in.ok()) return in.Failure();
-  return result;
+    return result;
+  });
 }
 
 Result<PairMatches> ReadMatches(const std::string& path) {

@@ -19,13 +19,12 @@ namespace {
 class SfmDataReader {
  public:
   SfmDataReader(std::string_view bytes, const std::string& file)
-      : in_(bytes, file), file_(file) {}
+      : in_(bytes, file) {}
 
-  Result<Scene> Read() {
+  Scene Read() {
     const std::size_t place = in_.offset();
     version_ = in_.String();
-    if (in_.ok() && version_ != "0.1" && version_ != "0.2" &&
-        version_ != "0.3") {
+    if (version_ != "0.1" && version_ != "0.2" && version_ != "0.3") {
       in_.FailAt(place,
                  "sfm_data version \"" + version_.substr(0, 16) +
                      "\" is unknown (known: 0.1, 0.2, 0.3)",
@@ -46,7 +45,6 @@ class SfmDataReader {
       ReadMap(scene_.control_points, 44,
               [this](std::uint32_t) { return ReadLandmark(); });
     }
-    if (!in_.ok()) return in_.Failure();
     return std::move(scene_);
   }
 
@@ -55,11 +53,11 @@ class SfmDataReader {
   void ReadMap(Map& map, std::size_t min_item_bytes,
                const ReadValue& read_value) {
     const std::size_t count = in_.Count(min_item_bytes);
-    for (std::size_t n = 0; n < count && in_.ok(); ++n) {
+    for (std::size_t n = 0; n < count; ++n) {
       const std::size_t place = in_.offset();
       const std::uint32_t id = in_.U32();
       auto value = read_value(id);
-      if (in_.ok() && !map.emplace(id, std::move(value)).second) {
+      if (!map.emplace(id, std::move(value)).second) {
         in_.FailAt(place, "id " + std::to_string(id) + " is repeated",
                    ErrorCode::kInvalidScene);
       }
@@ -70,7 +68,6 @@ class SfmDataReader {
   std::string ReadTypeName(const std::string& static_type) {
     const std::size_t place = in_.offset();
     const std::uint32_t id = in_.U32();
-    if (!in_.ok()) return {};
     if (id == kStaticType) return static_type;
     if (id & kDefines) return type_names_[id & ~kDefines] = in_.String();
     const auto known = type_names_.find(id);
@@ -78,7 +75,6 @@ class SfmDataReader {
     in_.FailAt(place, id == 0 ? "a null pointer"
                               : "type " + std::to_string(id) +
                                     " is used before it is named");
-    return {};
   }
 
   /// True if the object follows, false if it is the one met before as `id`.
@@ -94,13 +90,13 @@ class SfmDataReader {
     // Before version 0.3 views were not polymorphic.
     const std::size_t type_place = in_.offset();
     const std::string type = version_ == "0.3" ? ReadTypeName("view") : "view";
-    if (in_.ok() && type != "view" && type != "view_priors") {
+    if (type != "view" && type != "view_priors") {
       in_.FailAt(type_place, "view type \"" + type + "\" is unknown",
                  ErrorCode::kUnsupported);
     }
     const std::size_t object_place = in_.offset();
     std::uint32_t object = 0;
-    if (!ReadObjectId(object) && in_.ok()) {
+    if (!ReadObjectId(object)) {
       in_.FailAt(object_place, "the view has no content of its own");
     }
     view.local_path = in_.String();
@@ -109,7 +105,7 @@ class SfmDataReader {
     view.height_px = ReadSize();
     const std::size_t id_place = in_.offset();
     const ViewId own_id = in_.U32();
-    if (in_.ok() && own_id != id) {
+    if (own_id != id) {
       in_.FailAt(id_place,
                  "id_view " + std::to_string(own_id.value()) +
                      " differs from the key " + std::to_string(id.value()),
@@ -119,7 +115,7 @@ class SfmDataReader {
     view.pose_id = in_.U32();
     if (type == "view_priors") {
       const std::size_t flag_place = in_.offset();
-      if (in_.Scalar<std::uint8_t>() != 1 && in_.ok()) {
+      if (in_.Scalar<std::uint8_t>() != 1) {
         // OpenMVG writes nothing at all for a prior that is not used, and then
         // cannot read its own file.
         in_.FailAt(flag_place, "view_priors without a centre prior");
@@ -137,21 +133,17 @@ class SfmDataReader {
     const std::string type = ReadTypeName("intrinsic");
     const std::size_t object_place = in_.offset();
     std::uint32_t object = 0;
-    const bool follows = ReadObjectId(object);
-    if (!in_.ok()) return {};
-    if (!follows) {
+    if (!ReadObjectId(object)) {
       const auto known = intrinsics_.find(object);
       if (known != intrinsics_.end()) return known->second;
       in_.FailAt(object_place, "object " + std::to_string(object) +
                                    " is used before it is defined");
-      return {};
     }
     const std::optional<CameraModel> model = CameraModelFromName(type);
     if (!model) {
       in_.FailAt(type_place,
                  "camera model \"" + type.substr(0, 40) + "\" is unknown",
                  ErrorCode::kUnsupported);
-      return {};
     }
     Intrinsic intrinsic;
     intrinsic.model = *model;
@@ -173,7 +165,7 @@ class SfmDataReader {
     Pose pose;
     const std::size_t place = in_.offset();
     const std::uint64_t rows = in_.Scalar<std::uint64_t>();
-    if (in_.ok() && rows != 3) {
+    if (rows != 3) {
       in_.FailAt(place, "a rotation has 3 rows, not " + std::to_string(rows));
     }
     for (int row = 0; row < 3; ++row) {
@@ -190,7 +182,7 @@ class SfmDataReader {
     in_.Doubles(landmark.position.data(), 3);
     const std::size_t count = in_.Count(32);
     landmark.observations.reserve(count);
-    for (std::size_t n = 0; n < count && in_.ok(); ++n) {
+    for (std::size_t n = 0; n < count; ++n) {
       PointObservation observation;
       observation.view = in_.U32();
       observation.feature = in_.U32();
@@ -206,9 +198,8 @@ class SfmDataReader {
   int ReadSize() {
     const std::size_t place = in_.offset();
     const std::uint32_t size = in_.U32();
-    if (in_.ok() && size > std::numeric_limits<std::int32_t>::max()) {
+    if (size > std::numeric_limits<std::int32_t>::max()) {
       in_.FailAt(place, "an image size of " + std::to_string(size));
-      return 0;
     }
     return static_cast<int>(size);
   }
@@ -216,14 +207,13 @@ class SfmDataReader {
   double ReadDouble() {
     const std::size_t place = in_.offset();
     const double value = in_.Scalar<double>();
-    if (in_.ok() && !std::isfinite(value)) {
+    if (!std::isfinite(value)) {
       in_.FailAt(place, "the number is not finite");
     }
     return value;
   }
 
   ArchiveReader in_;
-  std::string file_;
   std::string version_;
   std::map<std::uint32_t, std::string> type_names_;
   std::map<std::uint32_t, Intrinsic> intrinsics_;  // by object id
@@ -233,7 +223,7 @@ class SfmDataReader {
 }  // namespace
 
 Result<Scene> ParseSfmDataBin(std::string_view bytes, const std::string& file) {
-  return SfmDataReader(bytes, file).Read();
+  return Caught([&] { return SfmDataReader(bytes, file).Read(); });
 }
 
 Result<Scene> ReadSfmDataBin(const std::string& path) {

@@ -149,19 +149,7 @@ std::string Encoded(Unsigned value) {
 
 Result<Scene> ParseSceneBinary(const std::string& bytes,
                                const std::string& file) {
-  Result<Scene> scene;
-  try {
-    scene = ReadSections(bytes);
-  } catch (Failure& failure) {
-    scene = tl::unexpected<Error>(std::move(failure.error));
-  }
-  if (scene) {
-    if (Status valid = ValidateScene(*scene); !valid) {
-      scene = tl::unexpected<Error>(std::move(valid).error());
-    }
-  }
-  if (!scene) scene.error().file = file;
-  return scene;
+  return CaughtScene([&] { return ReadSections(bytes); }, file);
 }
 
 Result<Scene> ReadSceneBinary(const std::string& path) {

@@ -7,32 +7,18 @@
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
-namespace {
-
-Result<Scene> SceneFromTree(const JsonTree& tree) {
-  try {
-    const JsonValue root(tree, 0);
-    Scene scene = ReadOpenMvgSections(root);
-    if (const auto own = root.Find("lowlap")) {
-      ReadOwnSections(*own, scene);
-    }
-    return scene;
-  } catch (Failure& failure) {
-    return tl::unexpected<Error>(std::move(failure.error));
-  }
-}
-
-}  // namespace
 
 Result<Scene> ParseSceneJson(const std::string& text, const std::string& file) {
-  Result<Scene> scene = ParseJson(text).and_then(SceneFromTree);
-  if (scene) {
-    if (Status valid = ValidateScene(*scene); !valid) {
-      scene = tl::unexpected<Error>(std::move(valid).error());
-    }
-  }
-  if (!scene) scene.error().file = file;
-  return scene;
+  return CaughtScene(
+      [&] {
+        const Result<JsonTree> tree = ParseJson(text);
+        if (!tree) throw Failure{tree.error()};
+        const JsonValue root(*tree, 0);
+        Scene scene = ReadOpenMvgSections(root);
+        if (const auto own = root.Find("lowlap")) ReadOwnSections(*own, scene);
+        return scene;
+      },
+      file);
 }
 
 Result<Scene> ReadSceneJson(const std::string& path) {
