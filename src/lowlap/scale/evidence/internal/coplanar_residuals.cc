@@ -24,17 +24,6 @@ void PushTransferSide(ResidualColumn* column, const Vec3& v, const Vec3& w,
   Push(column[4], std::isfinite(least) ? least : tau);
 }
 
-template <class Tau>
-auto TransferSideAt(const ResidualColumn* c, const Tau& tau, int n) {
-  return (First(c[0], n) + tau * First(c[1], n)).abs() /
-         (First(c[2], n) + tau * First(c[3], n)).cwiseMax(kMinDepth);
-}
-
-float TransferSideOf(const ResidualColumn* c, float tau, int n) {
-  return std::abs(c[0][n] + tau * c[1][n]) /
-         std::max(kMinDepth, c[2][n] + tau * c[3][n]);
-}
-
 }  // namespace
 
 void TransferResiduals::Add(const TripletGeometry& geometry,
@@ -53,48 +42,6 @@ void TransferResiduals::Add(const TripletGeometry& geometry,
                    geometry.focal_k_px, tau);
   PushTransferSide(column_ + kSide, cami.translation, cami.rotation * on_b,
                    normal_a, geometry.focal_i_px, tau);
-}
-
-void TransferResiduals::Evaluate(double tau, int count,
-                                 float* errors_px) const {
-  const float t = static_cast<float>(tau);
-  Eigen::Map<Eigen::ArrayXf>(errors_px, count) =
-      0.5f * (TransferSideAt(column_, t, count) +
-              TransferSideAt(column_ + kSide, t, count));
-}
-
-float TransferResiduals::ErrorOf(double tau, int index) const {
-  const float t = static_cast<float>(tau);
-  return 0.5f * (TransferSideOf(column_, t, index) +
-                 TransferSideOf(column_ + kSide, t, index));
-}
-
-void TransferResiduals::Bound(double tau_low, double tau_high, float* least_px,
-                              float* most_px) const {
-  const float low = static_cast<float>(tau_low);
-  const float high = static_cast<float>(tau_high);
-  const ResidualColumn* const c = column_;
-  const ResidualColumn* const d = column_ + kSide;
-  const int count = size();
-  if (least_px != nullptr) {
-    Eigen::Map<Eigen::ArrayXf>(least_px, count) =
-        0.5f * (TransferSideAt(c, Clamped(c[4], count, low, high), count) +
-                TransferSideAt(d, Clamped(d[4], count, low, high), count));
-  }
-  if (most_px != nullptr) {
-    Eigen::Map<Eigen::ArrayXf>(most_px, count) =
-        0.5f * (TransferSideAt(c, low, count)
-                    .cwiseMax(TransferSideAt(c, high, count)) +
-                TransferSideAt(d, low, count)
-                    .cwiseMax(TransferSideAt(d, high, count)));
-  }
-  Widen(count, least_px, most_px);
-}
-
-int TransferResiduals::StationaryPoints(int index, double* taus) const {
-  taus[0] = column_[4][index];
-  taus[1] = column_[kSide + 4][index];
-  return 2;
 }
 
 void ClosestPointResiduals::Add(const TripletGeometry& geometry,

@@ -60,4 +60,57 @@ inline void Widen(int count, float* least_px, float* most_px) {
   }
 }
 
+/// The mean of the errors in two views. Of the columns of one view, Side has
+///   static constexpr int kColumns, kLeastAt;  where the error is least
+///   static auto At(columns, tau, n);          the first n; a tau, or n of them
+///   static float Of(columns, tau, n);         the n-th
+template <class Side>
+class TwoSidedResiduals {
+ public:
+  int size() const { return static_cast<int>(column_[0].size()); }
+
+  float ErrorOf(double tau, int index) const {
+    const float t = static_cast<float>(tau);
+    return 0.5f *
+           (Side::Of(column_, t, index) + Side::Of(column_ + kSide, t, index));
+  }
+
+  void Evaluate(double tau, int count, float* errors_px) const {
+    const float t = static_cast<float>(tau);
+    Eigen::Map<Eigen::ArrayXf>(errors_px, count) =
+        0.5f *
+        (Side::At(column_, t, count) + Side::At(column_ + kSide, t, count));
+  }
+
+  void Bound(double tau_low, double tau_high, float* least_px,
+             float* most_px) const {
+    const float low = static_cast<float>(tau_low);
+    const float high = static_cast<float>(tau_high);
+    const ResidualColumn* const c = column_;
+    const ResidualColumn* const d = column_ + kSide;
+    const int n = size();
+    if (least_px != nullptr) {
+      Eigen::Map<Eigen::ArrayXf>(least_px, n) =
+          0.5f * (Side::At(c, Clamped(c[Side::kLeastAt], n, low, high), n) +
+                  Side::At(d, Clamped(d[Side::kLeastAt], n, low, high), n));
+    }
+    if (most_px != nullptr) {
+      Eigen::Map<Eigen::ArrayXf>(most_px, n) =
+          0.5f * (Side::At(c, low, n).cwiseMax(Side::At(c, high, n)) +
+                  Side::At(d, low, n).cwiseMax(Side::At(d, high, n)));
+    }
+    Widen(n, least_px, most_px);
+  }
+
+  int StationaryPoints(int index, double* taus) const {
+    taus[0] = column_[Side::kLeastAt][index];
+    taus[1] = column_[kSide + Side::kLeastAt][index];
+    return 2;
+  }
+
+ protected:
+  static constexpr int kSide = Side::kColumns;
+  ResidualColumn column_[2 * kSide];
+};
+
 }  // namespace lowlap

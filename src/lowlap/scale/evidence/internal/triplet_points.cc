@@ -84,29 +84,6 @@ void PushPointSide(ResidualColumn* column, const Vec3& v, const Vec3& w,
   Push(column[6], std::isfinite(least) ? least : tau);
 }
 
-template <class Tau>
-auto PointDistanceAt(const ResidualColumn* c, const Tau& tau, int n) {
-  return ((First(c[0], n) + tau * First(c[1], n)).square() +
-          (First(c[2], n) + tau * First(c[3], n)).square())
-      .sqrt();
-}
-
-template <class Tau>
-auto PointDepthAt(const ResidualColumn* c, const Tau& tau, int n) {
-  return (First(c[4], n) + tau * First(c[5], n)).cwiseMax(kMinDepth);
-}
-
-template <class Tau>
-auto PointSideAt(const ResidualColumn* c, const Tau& tau, int n) {
-  return PointDistanceAt(c, tau, n) / PointDepthAt(c, tau, n);
-}
-
-float PointSideOf(const ResidualColumn* c, float tau, int n) {
-  const float x = c[0][n] + tau * c[1][n], y = c[2][n] + tau * c[3][n];
-  return std::sqrt(x * x + y * y) /
-         std::max(kMinDepth, c[4][n] + tau * c[5][n]);
-}
-
 }  // namespace
 
 TripletPointSolver::TripletPointSolver(const TripletGeometry& geometry)
@@ -176,41 +153,9 @@ void PointResiduals::Evaluate(double tau, int count, float* errors_px) const {
   // The mean of two quotients with one division.
   Eigen::Map<Eigen::ArrayXf>(errors_px, count) =
       0.5f *
-      (PointDistanceAt(c, t, count) * PointDepthAt(d, t, count) +
-       PointDistanceAt(d, t, count) * PointDepthAt(c, t, count)) /
-      (PointDepthAt(c, t, count) * PointDepthAt(d, t, count));
-}
-
-float PointResiduals::ErrorOf(double tau, int index) const {
-  const float t = static_cast<float>(tau);
-  return 0.5f * (PointSideOf(column_, t, index) +
-                 PointSideOf(column_ + kSide, t, index));
-}
-
-void PointResiduals::Bound(double tau_low, double tau_high, float* least_px,
-                           float* most_px) const {
-  const float low = static_cast<float>(tau_low);
-  const float high = static_cast<float>(tau_high);
-  const ResidualColumn* const c = column_;
-  const ResidualColumn* const d = column_ + kSide;
-  if (least_px != nullptr) {
-    Eigen::Map<Eigen::ArrayXf>(least_px, size()) =
-        0.5f * (PointSideAt(c, Clamped(c[6], size(), low, high), size()) +
-                PointSideAt(d, Clamped(d[6], size(), low, high), size()));
-  }
-  if (most_px != nullptr) {
-    Eigen::Map<Eigen::ArrayXf>(most_px, size()) =
-        0.5f *
-        (PointSideAt(c, low, size()).cwiseMax(PointSideAt(c, high, size())) +
-         PointSideAt(d, low, size()).cwiseMax(PointSideAt(d, high, size())));
-  }
-  Widen(size(), least_px, most_px);
-}
-
-int PointResiduals::StationaryPoints(int index, double* taus) const {
-  taus[0] = column_[6][index];
-  taus[1] = column_[kSide + 6][index];
-  return 2;
+      (PointSide::DistanceAt(c, t, count) * PointSide::DepthAt(d, t, count) +
+       PointSide::DistanceAt(d, t, count) * PointSide::DepthAt(c, t, count)) /
+      (PointSide::DepthAt(c, t, count) * PointSide::DepthAt(d, t, count));
 }
 
 }  // namespace lowlap

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "lowlap/geometry/internal/triangulation.h"
@@ -50,28 +52,41 @@ class TripletPointSolver {
   RayTriangulator with_k_;
 };
 
+/// The distance of a projection to its observation, in one view.
+struct PointSide {
+  static constexpr int kColumns = 7, kLeastAt = 6;
+  template <class Tau>
+  static auto DistanceAt(const ResidualColumn* c, const Tau& tau, int n) {
+    return ((First(c[0], n) + tau * First(c[1], n)).square() +
+            (First(c[2], n) + tau * First(c[3], n)).square())
+        .sqrt();
+  }
+  template <class Tau>
+  static auto DepthAt(const ResidualColumn* c, const Tau& tau, int n) {
+    return (First(c[4], n) + tau * First(c[5], n)).cwiseMax(kMinDepth);
+  }
+  template <class Tau>
+  static auto At(const ResidualColumn* c, const Tau& tau, int n) {
+    return DistanceAt(c, tau, n) / DepthAt(c, tau, n);
+  }
+  static float Of(const ResidualColumn* c, float tau, int n) {
+    const float x = c[0][n] + tau * c[1][n], y = c[2][n] + tau * c[3][n];
+    return std::sqrt(x * x + y * y) /
+           std::max(kMinDepth, c[4][n] + tau * c[5][n]);
+  }
+};
+
 /// The errors of points of three views: the distance from the projection into k
 /// of the point triangulated in (i, j) to its observation, and likewise from
 /// (k, j) into i; the mean of the two (Salaün et al. 2017, section 5).
-class PointResiduals {
+class PointResiduals : public TwoSidedResiduals<PointSide> {
  public:
   void Reserve(int count);
   /// The point's ratio must be kValid.
   void Add(const TripletGeometry& geometry, const TripletPoint& point,
            const TripletMidpoints& midpoints, double log_ratio);
-  int size() const { return static_cast<int>(column_[0].size()); }
   /// Writes the errors of the first `count`.
   void Evaluate(double tau, int count, float* errors_px) const;
-  /// The same for one feature.
-  float ErrorOf(double tau, int index) const;
-  /// Either output may be null.
-  void Bound(double tau_low, double tau_high, float* least_px,
-             float* most_px) const;
-  int StationaryPoints(int index, double* taus) const;
-
- private:
-  static constexpr int kSide = 7;
-  ResidualColumn column_[2 * kSide];
 };
 
 }  // namespace lowlap
