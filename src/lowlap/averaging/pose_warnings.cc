@@ -1,15 +1,9 @@
 #include "lowlap/averaging/internal/pose_warnings.h"
 
-#include <cstdio>
+#include "lowlap/core/internal/format.h"
 
 namespace lowlap {
 namespace {
-
-std::string Degrees(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.2f", value);
-  return text;
-}
 
 class Writer {
  public:
@@ -92,8 +86,9 @@ std::vector<std::string> PoseWarnings(const PoseSummary& summary,
   for (const LoopClosing& loop : summary.loops) {
     warnings.push_back(
         "Doubtful: a loop of " + std::to_string(loop.edges.size()) +
-        " relative poses does not close by " + Degrees(loop.closing_deg) +
-        " degrees (" + Degrees(loop.expected_deg) +
+        " relative poses does not close by " +
+        Format("%.2f", loop.closing_deg) + " degrees (" +
+        Format("%.2f", loop.expected_deg) +
         " expected). Nothing tells which is wrong; " +
         (loop.left_out ? "the one of least evidence, " +
                              writer.Pairs({*loop.left_out}) + ", was left out: "

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 #include <vector>
 
+#include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/median.h"
 
 namespace lowlap {
@@ -62,10 +62,7 @@ Frame ChooseFrame(const Scene& scene) {
 }
 
 void Append(const Vec3& point, std::string* list) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.4g,%.4g,%.4g,", point.x(), point.y(),
-                point.z());
-  *list += text;
+  *list += Format("%.4g,%.4g,%.4g,", point.x(), point.y(), point.z());
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <utility>
 
+#include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/synthetic/internal/coplanar_truth.h"
@@ -24,10 +24,8 @@ void AddViews(const SyntheticOptions& options, const World& world,
   Scene& scene = synthetic->scene;
   scene.intrinsics[0] = intrinsic;
   for (ViewId id = 0; id < world.poses.size(); ++id) {
-    char name[32];
-    std::snprintf(name, sizeof(name), "%06u.png", id.value());
     View view;
-    view.filename = name;
+    view.filename = Format("%06u.png", id.value());
     view.width_px = options.width_px;
     view.height_px = options.height_px;
     view.intrinsic_id = 0;

@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
+
+#include "lowlap/core/internal/format.h"
 
 namespace lowlap::openmvg {
 namespace {
@@ -64,12 +65,10 @@ PreparedScene PrepareForOpenMvg(const Scene& scene) {
     ++num_averaged;
   }
   if (num_averaged > 0) {
-    char change[32];
-    std::snprintf(change, sizeof(change), "%.3g", 100.0 * largest_change);
     notes.push_back(std::to_string(num_averaged) +
                     " intrinsics have fx and fy of their own; OpenMVG holds "
                     "only their mean, which differs by up to " +
-                    change + " %");
+                    Format("%.3g %%", 100.0 * largest_change));
   }
 
   std::size_t num_observations = 0, num_landmarks = 0;

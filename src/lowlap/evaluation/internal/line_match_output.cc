@@ -1,4 +1,3 @@
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "lowlap/core/internal/format.h"
@@ -11,14 +10,11 @@ using Json = nlohmann::ordered_json;
 
 std::string Row(const std::string& name, const LineMatchCounts& counts,
                 const char* note) {
-  char buffer[256];
-  std::snprintf(buffer, sizeof(buffer),
-                "%-12s %8d %6d %6d %8d %9d %7d %8d %10.1f %8.1f%s\n",
+  return Format("%-12s %8d %6d %6d %8d %9d %7d %8d %10.1f %8.1f%s\n",
                 name.c_str(), counts.num_matches, counts.num_right,
                 counts.num_wrong, counts.num_unknown, counts.num_excluded,
                 counts.num_common_edges, counts.num_matched_edges,
                 100 * counts.Precision(), 100 * counts.Recall(), note);
-  return buffer;
 }
 
 Json ToJsonValue(const LineMatchCounts& counts) {
@@ -36,12 +32,10 @@ Json ToJsonValue(const LineMatchCounts& counts) {
 }  // namespace
 
 std::string ToText(const LineMatchEvaluation& evaluation) {
-  char header[256];
-  std::snprintf(header, sizeof(header),
-                "%-12s %8s %6s %6s %8s %9s %7s %8s %10s %8s\n", "pair",
-                "matches", "right", "wrong", "unknown", "excluded", "common",
-                "matched", "precision", "recall");
-  std::string text = header;
+  std::string text =
+      Format("%-12s %8s %6s %6s %8s %9s %7s %8s %10s %8s\n", "pair", "matches",
+             "right", "wrong", "unknown", "excluded", "common", "matched",
+             "precision", "recall");
   for (const PairLineMatches& pair : evaluation.pairs) {
     text += Row(PairName(pair.views), pair.counts,
                 pair.has_relative_pose ? "" : "  no relative pose");

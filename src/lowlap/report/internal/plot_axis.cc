@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "lowlap/core/internal/format.h"
 
 namespace lowlap {
 namespace {
@@ -103,10 +104,6 @@ std::vector<double> AxisRange::Ticks() const {
   return ticks;
 }
 
-std::string TickLabel(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", value);
-  return text;
-}
+std::string TickLabel(double value) { return Format("%.6g", value); }
 
 }  // namespace lowlap

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 
+#include "lowlap/core/internal/format.h"
 #include "lowlap/report/internal/markup.h"
 #include "lowlap/report/internal/plot_axis.h"
 
@@ -26,11 +26,7 @@ constexpr const char* kDashes[] = {"", "7 4", "2 3", "9 3 2 3"};
 
 const char* ColorOf(std::size_t n) { return kColors[n % kNumColors]; }
 
-std::string Coordinate(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  return text;
-}
+std::string Coordinate(double value) { return Format("%.2f", value); }
 
 double TextWidth(const std::string& text) {
   return kCharacterWidth * static_cast<double>(text.size());
@@ -205,10 +201,8 @@ Result<std::string> DrawBarPlot(const BarPlot& plot) {
       const double end = x_of(*value);
       svg.Rectangle(std::min(zero, end), bar_top + 1, std::abs(end - zero),
                     kBar - 2, std::string("fill=\"") + ColorOf(s) + "\"");
-      char label[32];
-      std::snprintf(label, sizeof label, "%.3g", *value);
-      svg.Text(std::max(zero, end) + 5, bar_top + kBar - 3.5, label,
-               "font-size=\"11\"");
+      svg.Text(std::max(zero, end) + 5, bar_top + kBar - 3.5,
+               Format("%.3g", *value), "font-size=\"11\"");
     }
   }
   svg.Line(zero, top, zero, bottom, kFrame);

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdio>
+
+#include "lowlap/core/internal/format.h"
 
 namespace lowlap {
 namespace {
@@ -68,9 +69,7 @@ std::string ToCsv(const TextTable& table) {
 }
 
 std::string NumberText(double value, int digits) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.*g", digits, value);
-  return text;
+  return Format("%.*g", digits, value);
 }
 
 }  // namespace lowlap

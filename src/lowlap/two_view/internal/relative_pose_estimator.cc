@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/a_contrario.h"
@@ -130,12 +131,6 @@ ShuffledMatches Shuffle(const TwoViewInput& input, Random& random) {
   return shuffled;
 }
 
-std::string Decimal(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.1f", value);
-  return text;
-}
-
 RelativePose ToRelativePose(const TwoViewInput& input,
                             const ShuffledMatches& matches,
                             const PoseSearch& search,
@@ -197,7 +192,7 @@ Status TwoViewOptions::Validate() const {
   if (!(max_threshold_px > PoseSearch::kMinThresholdPx)) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "relative pose: max_threshold_px must exceed " +
-                         Decimal(PoseSearch::kMinThresholdPx));
+                         Format("%.1f", PoseSearch::kMinThresholdPx));
   }
   if (max_samples < 1) {
     return MakeError(ErrorCode::kInvalidArgument,
@@ -255,7 +250,8 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
         "relative pose: no motion explains the " +
             std::to_string(pairs.size()) +
             " points and crossings of lines better than chance" +
-            (best ? " (log10 NFA " + Decimal(best->support.log10_nfa) + ")"
+            (best ? " (log10 NFA " + Format("%.1f", best->support.log10_nfa) +
+                        ")"
                   : ""));
   }
   std::optional<ScenePlane> plane = DominantPlaneOf(*best, pairs, random);
