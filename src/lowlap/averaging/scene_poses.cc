@@ -13,9 +13,6 @@
 namespace lowlap {
 namespace {
 
-// Of all directions together; no measurement tells less than this.
-constexpr double kLeastDirectionSigmaRad = 1e-3;
-
 // Edges whose direction is beyond `reach` deviations from the centres of
 // component 0. `sigma_rad` is found first if it is 0, and then stays: what is
 // right must not be eroded round by round.
@@ -43,7 +40,7 @@ std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
   }
   if (*sigma_rad == 0) {
     *sigma_rad =
-        std::max(Median(angles) / kMedianOfNorm<2>, kLeastDirectionSigmaRad);
+        std::max(Median(angles) / kMedianOfNorm<2>, kPoseErrorFloorRad);
   }
   std::vector<OutlierEdge> outliers;
   for (const Residual& residual : residuals) {

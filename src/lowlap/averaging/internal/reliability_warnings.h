@@ -14,7 +14,7 @@ struct ReliabilityOptions {
   /// In robust standard deviations of all residuals of its kind.
   double reach = 5.0;
   /// Deviation of a direction, in radians; no stated deviation counts as less.
-  double direction_stddev_rad = 1e-3;
+  double direction_stddev_rad = kPoseErrorFloorRad;
 };
 
 /// Which views of component 0 are doubtful by what is measured, without any

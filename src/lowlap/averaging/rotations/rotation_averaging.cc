@@ -56,11 +56,9 @@ std::vector<double> NormalisedResiduals(
   return normalised;
 }
 
-// From the given share of the residuals within `reach`: the lower quartile is
-// moved by nothing that less than three in four of them do, the median is
-// better where few are false. The factor is that of scalars, so that for norms
-// of 3-vectors this is kMedianOfNorm<3> / kMedianOfNorm<1> = 2.28 times their
-// deviation per axis, and the reach of the weights is that much wider.
+// Deviation per axis, from the given share of the residuals within `reach`: the
+// lower quartile is moved by nothing that less than three in four of them do,
+// the median is better where few are false.
 enum class ScaleFrom { kQuartile, kMedian };
 double ScaleWithin(const std::vector<double>& normalised, double reach,
                    ScaleFrom from) {
@@ -73,9 +71,8 @@ double ScaleWithin(const std::vector<double>& normalised, double reach,
   const auto middle = near.begin() + static_cast<std::ptrdiff_t>(
                                          near.size() / (quartile ? 4 : 2));
   std::nth_element(near.begin(), middle, near.end());
-  const double median_from_quartile =
-      quartile ? kMedianOfNorm<3> / kLowerQuartileOfNorm<3> : 1.0;
-  return std::max(1.0, median_from_quartile * *middle / kMedianOfNorm<1>);
+  return std::max(
+      1.0, *middle / (quartile ? kLowerQuartileOfNorm<3> : kMedianOfNorm<3>));
 }
 
 double EvidenceWeight(const RotationMeasurement& m) {
