@@ -34,7 +34,7 @@ struct CoplanarPair {
 /// member. Maps are ordered by id, so that every pass over a scene, and every
 /// file written from it, has one order.
 struct Scene {
-  // Compiled once: a copy of seven maps is long code.
+  // Compiled once, since copies of maps are long code.
   Scene();
   ~Scene();
   Scene(const Scene& other);

@@ -9,8 +9,6 @@
 namespace lowlap {
 namespace {
 
-// Ten standard deviations: the scale is then good to a tenth.
-constexpr double kSeparation = 10;
 // The ratio of two scales is the same in all solutions up to this.
 constexpr double kSameRatio = 0.1;
 

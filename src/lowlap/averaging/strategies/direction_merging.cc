@@ -14,8 +14,6 @@
 namespace lowlap {
 namespace {
 
-// Ten standard deviations: a length is then good to a tenth.
-constexpr double kMergeSeparation = 10;
 // A ring is closed by dense algebra.
 constexpr std::size_t kMaxRing = 100;
 
@@ -53,8 +51,8 @@ class Merger {
   bool AreSeparate(std::size_t a, std::size_t b) const {
     const double sine =
         edges_[a].direction_in_world.cross(edges_[b].direction_in_world).norm();
-    return sine >= kMergeSeparation *
-                       std::max(edges_[a].stddev_rad, edges_[b].stddev_rad);
+    return sine >=
+           kSeparation * std::max(edges_[a].stddev_rad, edges_[b].stddev_rad);
   }
 
   std::vector<std::size_t> ComponentsAt(std::size_t view) {

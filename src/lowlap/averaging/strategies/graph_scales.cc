@@ -202,11 +202,9 @@ class Growth {
       if (count < 2) continue;
       const double weakest =
           Eigen::SelfAdjointEigenSolver<Mat3>(normal).eigenvalues()(0);
-      // Two directions at angle a have the least eigenvalue a^2 / 2; ten
-      // standard deviations apart, the intersection is good to a tenth.
-      constexpr double kEnoughDeviations = 10.0;
-      const double strength = weakest / (0.5 * kEnoughDeviations *
-                                         kEnoughDeviations * stddev * stddev);
+      // Two directions at angle a have the least eigenvalue a^2 / 2.
+      const double strength =
+          weakest / (0.5 * kSeparation * kSeparation * stddev * stddev);
       if (strength <= std::max(1.0, best_strength)) continue;
       const Vec3 center = normal.inverse() * rhs;
       if (!AllForward(view, center)) continue;

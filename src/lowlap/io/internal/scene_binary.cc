@@ -11,6 +11,7 @@
 #include "lowlap/io/internal/old_scale_ratios.h"
 #include "lowlap/io/internal/scale_ratio_records.h"
 #include "lowlap/io/internal/scene_records.h"
+#include "lowlap/io/internal/scene_version.h"
 #include "lowlap/io/internal/transfer.h"
 #include "lowlap/scene/validation.h"
 
@@ -20,10 +21,6 @@ namespace {
 // Like PNG's, the first byte is not text and the last ones show a file that was
 // sent as text.
 constexpr std::string_view kMagic("\x89LOWLAP\n", 8);
-constexpr std::uint32_t kBinaryVersion = 4;
-constexpr std::uint32_t kOldestVersion = 2;
-// Scale ratios had kinds of evidence of their own before this version.
-constexpr std::uint32_t kFirstBinaryWithKinds = 4;
 
 // In the order of the file; all are always there, and then a last one.
 constexpr std::array<std::string_view, 13> kSections = {
@@ -81,7 +78,7 @@ void ReadPayload(std::string_view tag, std::uint32_t version,
                  ByteReader& section, Scene& scene) {
   if (tag == "RATD") {
     ReadOldRatioDetails(section, scene.scale_ratios);
-  } else if (tag == "RATI" && version < kFirstBinaryWithKinds) {
+  } else if (tag == "RATI" && version < kFirstVersionWithKinds) {
     ReadOldScaleRatios(section, scene.scale_ratios);
   } else {
     TransferSection(tag, section, scene);
@@ -117,11 +114,11 @@ Scene ReadSections(const std::string& bytes) {
   }
   std::uint32_t version = 0, section_count = 0;
   file.Integer(version);
-  if (version < kOldestVersion || version > kBinaryVersion) {
+  if (version < kOldestSceneVersion || version > kSceneVersion) {
     throw Failure{Error{ErrorCode::kUnsupported,
                         "version " + std::to_string(version) + " is not " +
-                            std::to_string(kOldestVersion) + " to " +
-                            std::to_string(kBinaryVersion),
+                            std::to_string(kOldestSceneVersion) + " to " +
+                            std::to_string(kSceneVersion),
                         {},
                         "byte " + std::to_string(kMagic.size())}};
   }
@@ -163,8 +160,8 @@ Result<std::string> FormatSceneBinary(const Scene& scene) {
     return tl::unexpected<Error>(std::move(valid).error());
   }
   std::string bytes(kMagic);
-  bytes += Encoded(kBinaryVersion);
-  const std::vector<std::string_view> sections = SectionsOf(kBinaryVersion);
+  bytes += Encoded(kSceneVersion);
+  const std::vector<std::string_view> sections = SectionsOf(kSceneVersion);
   bytes += Encoded(static_cast<std::uint32_t>(sections.size()));
   std::string payload;
   for (const std::string_view tag : sections) {

@@ -8,6 +8,10 @@
 
 namespace lowlap {
 
+/// Directions that differ by so many standard deviations fix a length to a
+/// tenth.
+inline constexpr double kSeparation = 10;
+
 /// Views whose mutual positions are known up to one scale and translation.
 struct RigidComponent {
   std::vector<std::size_t> views;

@@ -1,14 +1,9 @@
 #include "lowlap/io/internal/json/scene_json_sections.h"
 #include "lowlap/io/internal/old_scale_ratios.h"
+#include "lowlap/io/internal/scene_version.h"
 
 namespace lowlap {
 namespace {
-
-// Version 3 had no given intrinsics, version 2 no second modes and shares of
-// information either.
-constexpr std::uint32_t kVersion = 4, kOldestVersion = 2;
-// Scale ratios had members for three fixed kinds before this version.
-constexpr std::uint32_t kFirstWithKinds = 4;
 
 // Calls `add(a, b)` for the pairs of a flat array of ids.
 template <class Add>
@@ -183,8 +178,8 @@ ScaleRatio ReadScaleRatio(const JsonValue& record, std::uint32_t version) {
     ratio.second_mode =
         RatioMode{mode->At("log_ratio").Real(), mode->At("log10_nfa").Real()};
   }
-  version < kFirstWithKinds ? ReadOldKinds(record, &ratio)
-                            : ReadKinds(record, &ratio);
+  version < kFirstVersionWithKinds ? ReadOldKinds(record, &ratio)
+                                   : ReadKinds(record, &ratio);
   ratio.num_rejected_negative = record.At("num_rejected_negative").Count();
   ratio.coplanar_inliers =
       ReadPairs<std::vector<CoplanarInlier>>(record.At("coplanar_inliers"));
@@ -240,10 +235,10 @@ void ReadSection(const JsonValue& own, std::string_view name,
 
 void ReadOwnSections(const JsonValue& own, Scene& scene) {
   const JsonValue version = own.At("version");
-  if (version.Id() < kOldestVersion || version.Id() > kVersion) {
+  if (version.Id() < kOldestSceneVersion || version.Id() > kSceneVersion) {
     version.Fail("version " + std::to_string(version.Id()) + " is not " +
-                     std::to_string(kOldestVersion) + " to " +
-                     std::to_string(kVersion),
+                     std::to_string(kOldestSceneVersion) + " to " +
+                     std::to_string(kSceneVersion),
                  ErrorCode::kUnsupported);
   }
   own.AllowOnly({"version", "given_intrinsics", "features", "relative_poses",

@@ -2,6 +2,7 @@
 
 #include "lowlap/io/internal/json/json_text.h"
 #include "lowlap/io/internal/json/scene_json_sections.h"
+#include "lowlap/io/internal/scene_version.h"
 
 namespace lowlap {
 namespace {
@@ -169,7 +170,7 @@ void AppendOwnSections(const Scene& scene, std::string& text) {
     AppendTrackMember(track, out);
     out += "}";
   };
-  text += "\"version\": 4";
+  text += "\"version\": " + std::to_string(kSceneVersion);
   AppendSection("given_intrinsics", scene.given_intrinsics,
                 AppendGivenIntrinsic, text);
   AppendSection("features", scene.features, AppendFeatures, text);
