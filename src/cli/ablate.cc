@@ -4,6 +4,7 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
+#include "cli/truth.h"
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/study/internal/ablation.h"

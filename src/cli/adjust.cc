@@ -4,6 +4,7 @@
 
 #include "cli/command.h"
 #include "cli/solve_flags.h"
+#include "cli/truth.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"

@@ -5,6 +5,7 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
+#include "cli/truth.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/study/compare_strategies.h"
 

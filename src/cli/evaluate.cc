@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/solve_flags.h"
+#include "cli/truth.h"
 #include "lowlap/evaluation/internal/line_match_errors.h"
 #include "lowlap/evaluation/internal/pair_errors.h"
 #include "lowlap/matching/internal/pair_selection.h"

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/solve_flags.h"
+#include "cli/truth.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/internal/measure/image_measurements.h"

@@ -9,6 +9,7 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
+#include "cli/truth.h"
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/pipeline/internal/output/ratio_table.h"

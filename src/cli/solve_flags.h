@@ -8,7 +8,6 @@
 #include "cli/command_line.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/result.h"
-#include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/pipeline/internal/output/summary_json.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
@@ -47,8 +46,6 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
 void AddAdjustFlags(CLI::App* command, SolveFlags* flags);
 /// --principal-point-stddev
 void AddPrincipalPointFlag(CLI::App* command, double* stddev);
-/// --gt
-Option AddTruthFlag(CLI::App* command, std::string* path);
 
 /// Sets the enabled kinds of `options` (points, lines, coplanar pairs);
 /// coplanar pairs need lines.
@@ -71,13 +68,6 @@ Status SetRefinement(const std::string& parts, Scene* scene,
 /// rest; nothing where all is as given and the images agree.
 void PrintCalibration(const Scene& scene, const AdjustmentOptions& options,
                       const AdjustmentSummary& summary);
-
-/// The true poses of a Strecha folder, matched by image name, of a scene file,
-/// by name or by id (GroundTruthFromScene), or of a problem folder of 1DSfM, by
-/// view id; empty if `path` is. kInsufficientData if no view of the scene is
-/// among them.
-Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
-                                                   const Scene& scene);
 
 /// --strict, of the commands that SolveAndWrite.
 void AddStrictFlag(CLI::App* command, bool* strict);

@@ -12,6 +12,7 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
+#include "cli/truth.h"
 #include "lowlap/core/internal/hash.h"
 #include "lowlap/io/internal/scene_binary.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
