@@ -54,9 +54,9 @@ cmake --build "$build" --target docs
 
 if $tidy; then
   step "clang-tidy"
-  # Clang cannot read GCC's precompiled headers.
+  # Clang cannot read GCC's precompiled headers, and is to see every source.
   cmake -S . -B build/tidy -G Ninja -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
-    -DLOWLAP_PRECOMPILED_HEADERS=OFF
+    -DLOWLAP_PRECOMPILED_HEADERS=OFF -DLOWLAP_UNITY_BUILD=OFF
   run-clang-tidy -quiet -p build/tidy -j "$jobs" -warnings-as-errors='*' \
     "^$PWD/(src|third_party_adapters)/.*\.cc$"
 fi
