@@ -12,6 +12,7 @@
 #include "lowlap/scale/internal/planes/planes_by_pair.h"
 #include "lowlap/scale/internal/search/ratio_profile.h"
 #include "lowlap/scale/triplet_view.h"
+#include "lowlap/scene/validation.h"
 #include "lowlap/scene/view_graph.h"
 #include "scale/row_of_views.h"
 
@@ -193,6 +194,20 @@ TEST(EstimateScaleRatios, CanBeCancelled) {
   const auto ratios = EstimateScaleRatios(row.scene, {}, context);
   ASSERT_FALSE(ratios.has_value());
   EXPECT_EQ(ratios.error().code, ErrorCode::kCancelled);
+}
+
+TEST(EstimateScaleRatios, TakeWhateverAValidSceneHolds) {
+  RowOfViews row;
+  for (auto& [views, pose] : row.scene.relative_poses) {
+    pose.direction *= 1 + 9e-7;
+    pose.rotation *= 1 + 3e-7;
+  }
+  ASSERT_TRUE(ValidateScene(row.scene));
+  const auto ratios = EstimateScaleRatios(row.scene, {}, {});
+  ASSERT_TRUE(ratios) << ratios.error().ToString();
+  for (const ScaleRatio& ratio : *ratios) {
+    EXPECT_EQ(ratio.verdict, RatioVerdict::kMeaningful);
+  }
 }
 
 TEST(ScaleRatios, ViewsWithoutIntrinsicsHaveNoRatios) {

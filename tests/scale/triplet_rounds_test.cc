@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
 #include <map>
 #include <memory>
 #include <string>
@@ -125,6 +126,54 @@ TEST(TestTriplets, HasNoCandidatesWithoutFeatures) {
   EXPECT_EQ((*ratios)[0].verdict, RatioVerdict::kMeaningful);
   EXPECT_EQ((*ratios)[1].verdict, RatioVerdict::kNoCandidates);
   EXPECT_EQ((*ratios)[1].views, kTriplets[1]);
+}
+
+// A test that gives ratios that are not finite, or fails, at some triplets.
+TEST(TestTriplets, OneThatFailsDoesNotLoseTheOthers) {
+  const testing::RowOfViews row;
+  std::vector<std::string> warnings;
+  RunContext context;
+  context.log = [&](LogLevel, const std::string& text) {
+    warnings.push_back(text);
+  };
+  const auto ratios = TestTriplets<ScaleRatio>(
+      row.scene, kTriplets, FirstAndUndecided(false), context, "test",
+      [](const TripletView& view,
+         const TripletEvidence&) -> Result<ScaleRatio> {
+        if (view.views == kTriplets[0]) {
+          return MakeError(ErrorCode::kNumerical, "nothing converged");
+        }
+        ScaleRatio ratio;
+        ratio.views = view.views;
+        ratio.verdict = RatioVerdict::kMeaningful;
+        if (view.views == kTriplets[2]) {
+          ratio.kinds.emplace_back().log10_nfa =
+              -std::numeric_limits<double>::infinity();
+        }
+        return ratio;
+      });
+  ASSERT_TRUE(ratios.has_value());
+  EXPECT_EQ((*ratios)[0].verdict, RatioVerdict::kNoCandidates);
+  EXPECT_EQ((*ratios)[1].verdict, RatioVerdict::kMeaningful);
+  EXPECT_EQ((*ratios)[2].verdict, RatioVerdict::kNoCandidates);
+  EXPECT_TRUE((*ratios)[2].kinds.empty());
+  EXPECT_EQ((*ratios)[2].views, kTriplets[2]);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], ::testing::HasSubstr("2 triplets"));
+  EXPECT_THAT(warnings[0],
+              ::testing::HasSubstr(row.scene.views.at(0).filename));
+  EXPECT_THAT(warnings[0], ::testing::HasSubstr("nothing converged"));
+}
+
+TEST(TestTriplets, CanBeCancelledByTheTest) {
+  const testing::RowOfViews row;
+  const auto ratios = TestTriplets<ScaleRatio>(
+      row.scene, kTriplets, FirstAndUndecided(false), RunContext(), "test",
+      [](const TripletView&, const TripletEvidence&) -> Result<ScaleRatio> {
+        return MakeError(ErrorCode::kCancelled, "");
+      });
+  ASSERT_FALSE(ratios.has_value());
+  EXPECT_EQ(ratios.error().code, ErrorCode::kCancelled);
 }
 
 }  // namespace

@@ -12,9 +12,11 @@ namespace {
 
 bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
 
+// Wider than what a valid scene keeps to, since relative poses are inverted.
 bool IsUnitTransform(const RigidTransform& transform) {
-  return RotationDefect(transform.rotation) < 1e-6 &&
-         std::abs(transform.translation.norm() - 1.0) < 1e-6;
+  constexpr double kTolerance = 1e-5;
+  return RotationDefect(transform.rotation) <= kTolerance &&
+         std::abs(transform.translation.norm() - 1.0) <= kTolerance;
 }
 
 Status CheckTriplet(const TripletView& triplet) {

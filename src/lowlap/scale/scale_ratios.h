@@ -15,9 +15,10 @@ namespace lowlap {
 /// meaningful or have no candidates (see their verdict). Kinds of evidence of
 /// EvidenceRound::kUndecided are asked in a second test of those that are not
 /// meaningful without. Triplets with a view without an intrinsic or features
-/// have no candidates. The same for any number of threads.
+/// have no candidates; nor have those at which the estimator fails, of which a
+/// warning tells. The same for any number of threads.
 ///
-/// Errors: those of MakeTripletView and the estimator, kCancelled.
+/// Errors: those of MakeTripletView, kCancelled.
 Result<std::vector<ScaleRatio>> EstimateScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
     const ScaleEstimator& estimator, const RunContext& context);

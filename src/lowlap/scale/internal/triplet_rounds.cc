@@ -1,6 +1,7 @@
 #include "lowlap/scale/internal/triplet_rounds.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -39,6 +40,34 @@ Result<EvidenceKinds> PrepareRound(const EvidenceKinds& kinds,
     asked.push_back(*prepared == nullptr ? kind : std::move(*prepared));
   }
   return asked;
+}
+
+bool IsDefined(const ScaleRatio& ratio) {
+  const auto& mode = ratio.second_mode;
+  return std::isfinite(ratio.log_ratio) &&
+         std::isfinite(ratio.log_ratio_stddev) &&
+         std::isfinite(ratio.log10_nfa) &&
+         (!mode ||
+          (std::isfinite(mode->log_ratio) && std::isfinite(mode->log10_nfa))) &&
+         std::all_of(ratio.kinds.begin(), ratio.kinds.end(),
+                     [](const KindSupport& kind) {
+                       return std::isfinite(kind.log10_nfa) &&
+                              std::isfinite(kind.threshold_px) &&
+                              std::isfinite(kind.information_share);
+                     });
+}
+
+void WarnOfFailures(const Scene& scene, const std::vector<ViewTriplet>& failed,
+                    const std::string& first_reason,
+                    const RunContext& context) {
+  if (failed.empty()) return;
+  const auto name = [&](ViewId view) { return scene.views.at(view).filename; };
+  context.Log(LogLevel::kWarning,
+              std::to_string(failed.size()) +
+                  (failed.size() == 1 ? " triplet has" : " triplets have") +
+                  " no ratio since its estimation failed, first that of " +
+                  name(failed[0].first) + ", " + name(failed[0].middle) +
+                  " and " + name(failed[0].last) + ": " + first_reason);
 }
 
 bool MaySpeak(const EvidenceKinds& kinds, EvidenceRound round,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -34,45 +35,72 @@ bool MaySpeak(const EvidenceKinds& kinds, EvidenceRound round,
 /// The ratio of an outcome of a test; see also RatioProfile.
 inline ScaleRatio& RatioOf(ScaleRatio& ratio) { return ratio; }
 
+/// Whether all numbers of the ratio are finite.
+bool IsDefined(const ScaleRatio& ratio);
+
+/// Warns of the triplets whose test failed, if there are any.
+void WarnOfFailures(const Scene& scene, const std::vector<ViewTriplet>& failed,
+                    const std::string& first_reason, const RunContext& context);
+
 /// `test` of every triplet, in parallel:
 /// Result<Outcome>(TripletView, TripletEvidence). Triplets without features
-/// have no candidates.
-/// Errors: those of MakeTripletView and of the test, kCancelled.
+/// have no candidates; nor have those whose test fails or gives numbers that
+/// are not finite, of which a warning tells: one does not lose the others.
+/// Errors: those of MakeTripletView, kCancelled.
 template <class Outcome, class Test>
 Result<std::vector<Outcome>> TestOnce(const SceneFeatures& features,
                                       const std::vector<ViewTriplet>& triplets,
                                       const EvidenceKinds& kinds, int num_tests,
                                       const RunContext& context,
                                       const char* stage, const Test& test) {
+  const auto nothing_of = [](const ViewTriplet& views) {
+    Outcome nothing;
+    RatioOf(nothing).views = views;
+    RatioOf(nothing).verdict = RatioVerdict::kNoCandidates;
+    return nothing;
+  };
   const std::vector<std::size_t> order = LargestFirst(features.scene, triplets);
+  // Of a triplet that cannot be made; of one whose test fails.
+  std::vector<Status> made(triplets.size());
   std::vector<Result<Outcome>> results(triplets.size());
   const Status status =
       ParallelFor(context, stage, triplets.size(), [&](std::size_t n) {
         const ViewTriplet& views = triplets[order[n]];
         Result<Outcome>& result = results[order[n]];
         if (!features.HasAll(views)) {
-          Outcome nothing;
-          RatioOf(nothing).views = views;
-          RatioOf(nothing).verdict = RatioVerdict::kNoCandidates;
-          result = std::move(nothing);
+          result = nothing_of(views);
           return;
         }
         const Result<TripletView> triplet = MakeTripletView(features, views);
         if (!triplet) {
-          result = tl::unexpected<Error>(triplet.error());
+          made[order[n]] = tl::unexpected<Error>(triplet.error());
           return;
         }
         TripletEvidence evidence = GatherEvidence(kinds, *triplet);
         evidence.num_tests = num_tests;
         result = test(*triplet, evidence);
+        if (result && !IsDefined(RatioOf(*result))) {
+          result = MakeError(ErrorCode::kNumerical, "it is not finite");
+        }
       });
   if (!status) return tl::unexpected<Error>(status.error());
   std::vector<Outcome> outcomes;
   outcomes.reserve(results.size());
-  for (Result<Outcome>& result : results) {
-    if (!result) return tl::unexpected<Error>(std::move(result.error()));
+  std::vector<ViewTriplet> failed;
+  std::string first_reason;
+  for (std::size_t n = 0; n < results.size(); ++n) {
+    if (!made[n]) return tl::unexpected<Error>(std::move(made[n].error()));
+    Result<Outcome>& result = results[n];
+    if (!result) {
+      if (result.error().code == ErrorCode::kCancelled)
+        return tl::unexpected<Error>(std::move(result.error()));
+      if (failed.empty()) first_reason = result.error().ToString();
+      failed.push_back(triplets[n]);
+      result = nothing_of(triplets[n]);
+    }
     outcomes.push_back(std::move(*result));
   }
+  WarnOfFailures(features.scene, failed, first_reason, context);
   return outcomes;
 }
 
