@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <map>
 #include <string>
 #include <utility>
@@ -128,6 +129,41 @@ TEST(DecideHypotheses, OtherScenesStayAsTheyAre) {
   const Scene before = wall.scene;
   EXPECT_TRUE(Decide(&wall.scene).empty());
   EXPECT_TRUE(wall.scene == before);
+}
+
+// Counts the lines of the triplets that it is asked about.
+class LineCounter : public ScaleEstimator {
+ public:
+  LineCounter() : ScaleEstimator({}) {}
+  mutable std::atomic<int> num_asked = 0;
+  mutable std::atomic<int> num_lines = 0;
+
+ protected:
+  Result<ScaleRatio> Judge(const TripletView& triplet,
+                           const TripletEvidence&) const override {
+    ++num_asked;
+    num_lines += static_cast<int>(triplet.lines.size());
+    ScaleRatio ratio;
+    ratio.views = triplet.views;
+    return ratio;
+  }
+};
+
+TEST(DecideHypotheses, TripletsSeeTheLineTracks) {
+  SyntheticScene wall = Wall("chain", 0);
+  PutWrongMotionFirst({2, 3}, &wall);
+  Scene& scene = wall.scene;
+  Track everything;
+  for (const auto& [view, features] : scene.features) {
+    for (FeatureIndex n = 0; n < features.segments.size(); ++n) {
+      everything.push_back({view, n});
+    }
+  }
+  scene.line_tracks = {{0, everything}};
+  const LineCounter estimator;
+  ASSERT_TRUE(DecideHypotheses(&scene, estimator, PoseOptions(), RunContext()));
+  EXPECT_GT(estimator.num_asked, 0);
+  EXPECT_EQ(estimator.num_lines, estimator.num_asked);
 }
 
 TEST(DecideHypotheses, IsTheSameForAnyNumberOfThreads) {

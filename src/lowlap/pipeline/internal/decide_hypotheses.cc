@@ -70,6 +70,11 @@ Scene SceneOf(const Scene& scene, const Trial& trial) {
     const auto features = scene.features.find(id);
     if (features != scene.features.end()) part.features.insert(*features);
   }
+  for (const auto& [id, track] : scene.line_tracks) {
+    for (const FeatureRef& ref : track) {
+      if (part.views.count(ref.view) > 0) part.line_tracks[id].push_back(ref);
+    }
+  }
   const auto edges = EdgesOf(views);
   for (std::size_t n = 0; n < edges.size(); ++n) {
     part.relative_poses[edges[n]] =
