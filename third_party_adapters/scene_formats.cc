@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "third_party_adapters/onedsfm/internal/scene_format.h"
 #include "third_party_adapters/openmvg/internal/scene_format.h"
 
@@ -56,9 +57,7 @@ Result<Scene> ReadScene(const std::string& path, SceneNotes* notes) {
   const SceneFormats formats = AllSceneFormats();
   const SceneFormat* format = FindByContent(formats, path);
   if (format == nullptr) {
-    const Result<const SceneFormat*> found = FindSceneFormat(formats, path);
-    if (!found) return tl::unexpected<Error>(found.error());
-    format = *found;
+    LOWLAP_ASSIGN_OR_RETURN(format, FindSceneFormat(formats, path));
   }
   if (!format->read) {
     return MakeError(ErrorCode::kUnsupported,
@@ -71,16 +70,15 @@ Result<Scene> ReadScene(const std::string& path, SceneNotes* notes) {
 Result<SceneNotes> WriteScene(const Scene& scene, const std::string& path,
                               const std::string& format, FileSet* files) {
   const SceneFormats formats = AllSceneFormats();
-  const Result<const SceneFormat*> chosen =
-      format.empty() ? FindSceneFormat(formats, path)
-                     : FindNamedSceneFormat(formats, format);
-  if (!chosen) return tl::unexpected<Error>(chosen.error());
-  if (!(*chosen)->write) {
+  LOWLAP_ASSIGN_OR_RETURN(const SceneFormat* chosen,
+                          format.empty()
+                              ? FindSceneFormat(formats, path)
+                              : FindNamedSceneFormat(formats, format));
+  if (!chosen->write) {
     return MakeError(ErrorCode::kUnsupported,
-                     "the format " + (*chosen)->name + " cannot be written",
-                     path);
+                     "the format " + chosen->name + " cannot be written", path);
   }
-  return (*chosen)->write(scene, path, files);
+  return chosen->write(scene, path, files);
 }
 
 Result<SceneNotes> WriteScene(const Scene& scene, const std::string& path,
@@ -88,9 +86,7 @@ Result<SceneNotes> WriteScene(const Scene& scene, const std::string& path,
   FileSet files;
   Result<SceneNotes> notes = WriteScene(scene, path, format, &files);
   if (!notes) return notes;
-  if (const Status written = files.Commit(); !written) {
-    return tl::unexpected<Error>(written.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(files.Commit());
   return notes;
 }
 

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/solve_flags.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/report/internal/table_text.h"
 #include "lowlap/study/internal/result_log.h"
@@ -42,7 +43,7 @@ std::string SettingsText(const RobustnessOptions& options, std::uint64_t seed) {
 
 Status Complete(const Flags& flags, const RunContext& context,
                 RobustnessStudy* study) {
-  if (Status made = PrepareOutputFolder(flags.output); !made) return made;
+  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(flags.output));
   const auto log = ResultLog::Open(
       (std::filesystem::path(flags.output) / "trials.jsonl").string(),
       SettingsText(study->options, flags.common.seed),
@@ -59,8 +60,7 @@ Status Complete(const Flags& flags, const RunContext& context,
   };
   sinks.scenario = [&](const RobustnessStudy& so_far,
                        std::size_t scenario) -> Status {
-    const auto plots = DrawScenario(so_far, scenario);
-    if (!plots) return tl::unexpected<Error>(plots.error());
+    LOWLAP_ASSIGN_OR_RETURN(const auto plots, DrawScenario(so_far, scenario));
     const std::chrono::duration<double> elapsed =
         std::chrono::steady_clock::now() - start;
     context.Log(LogLevel::kInfo,
@@ -68,7 +68,7 @@ Status Complete(const Flags& flags, const RunContext& context,
                     std::to_string(scenario + 1) + " of " +
                     std::to_string(so_far.scenarios.size()) + ", " +
                     NumberText(std::round(elapsed.count()), 6) + " s)");
-    return WriteTextFiles(*plots, flags.output);
+    return WriteTextFiles(plots, flags.output);
   };
   return RunRobustnessStudy(context, sinks, study);
 }

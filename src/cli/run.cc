@@ -8,6 +8,7 @@
 #include "cli/solve_flags.h"
 #include "cli/truth.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/internal/measure/image_measurements.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
@@ -51,9 +52,8 @@ Result<IntrinsicSource> ReadIntrinsics(const RunFlags& flags) {
   if (scene.error().code != ErrorCode::kUnsupported) {
     return tl::unexpected<Error>(scene.error());
   }
-  const auto matrix = strecha::ReadCalibrationMatrix(flags.intrinsics);
-  if (!matrix) return tl::unexpected<Error>(matrix.error());
-  source.calibration = *matrix;
+  LOWLAP_ASSIGN_OR_RETURN(source.calibration,
+                          strecha::ReadCalibrationMatrix(flags.intrinsics));
   return source;
 }
 
@@ -66,19 +66,16 @@ Result<std::vector<PairReport>> Measure(const RunFlags& flags,
                                         const RunContext& context,
                                         StageLog* stages, Scene* scene,
                                         std::map<ViewId, Error>* failed) {
-  const auto measurements = MatchImages(*scene, front_end, context, stages);
-  if (!measurements) return tl::unexpected<Error>(measurements.error());
-  *failed = measurements->failed;
-  auto pairs = RelatePairs(*measurements, front_end, context, stages, scene);
+  LOWLAP_ASSIGN_OR_RETURN(const auto measurements,
+                          MatchImages(*scene, front_end, context, stages));
+  *failed = measurements.failed;
+  auto pairs = RelatePairs(measurements, front_end, context, stages, scene);
   if (!pairs || !options.adjust || flags.solve.refine_intrinsics.empty()) {
     return pairs;
   }
   Scene first = *scene;
-  if (const Status set = SetRefinement(flags.solve.refine_intrinsics, &first,
-                                       &options.adjustment);
-      !set) {
-    return tl::unexpected<Error>(set.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(SetRefinement(flags.solve.refine_intrinsics, &first,
+                                       &options.adjustment));
   const auto solved = SolveScene(&first, options, context, stages);
   if (!solved && solved.error().code == ErrorCode::kCancelled) {
     return tl::unexpected<Error>(solved.error());
@@ -94,7 +91,7 @@ Result<std::vector<PairReport>> Measure(const RunFlags& flags,
   }
   scene->intrinsics = first.intrinsics;
   scene->given_intrinsics = first.given_intrinsics;
-  return RelatePairs(*measurements, front_end, context, stages, scene);
+  return RelatePairs(measurements, front_end, context, stages, scene);
 }
 
 int Run(const RunFlags& flags) {

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
 #include "third_party_adapters/openmvg/internal/import.h"
@@ -26,19 +27,19 @@ Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
     const StageLog::Scope scope(stages, "import");
     openmvg::ImportOptions options;
     options.match_file = flags.match_file;
-    auto project =
-        openmvg::ImportProject(flags.scene, flags.matches_dir, options);
-    if (!project) return tl::unexpected<Error>(project.error());
-    context.Log(LogLevel::kInfo, "matches from " + project->match_file);
-    if (project->num_dropped_pairs > 0) {
+    LOWLAP_ASSIGN_OR_RETURN(
+        auto project,
+        openmvg::ImportProject(flags.scene, flags.matches_dir, options));
+    context.Log(LogLevel::kInfo, "matches from " + project.match_file);
+    if (project.num_dropped_pairs > 0) {
       context.Log(LogLevel::kInfo,
-                  std::to_string(project->num_dropped_pairs) +
+                  std::to_string(project.num_dropped_pairs) +
                       " pairs name views that the listing does not have");
     }
-    const auto excluded = ExcludedViews(project->scene, flags);
-    if (!excluded) return tl::unexpected<Error>(excluded.error());
-    loaded.scene = WithoutViews(project->scene, *excluded);
-    for (auto& [views, points] : project->matches) {
+    LOWLAP_ASSIGN_OR_RETURN(const auto excluded,
+                            ExcludedViews(project.scene, flags));
+    loaded.scene = WithoutViews(project.scene, excluded);
+    for (auto& [views, points] : project.matches) {
       if (loaded.scene.views.count(views.first) > 0 &&
           loaded.scene.views.count(views.second) > 0) {
         matches[views].points = std::move(points);
@@ -46,10 +47,9 @@ Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
     }
   }
   const StageLog::Scope scope(stages, "relative poses");
-  auto pairs = EstimateRelativePoses(&loaded.scene, matches, nullptr,
-                                     RelativePoseOptions{}, context);
-  if (!pairs) return tl::unexpected<Error>(pairs.error());
-  loaded.pairs = std::move(*pairs);
+  LOWLAP_ASSIGN_OR_RETURN(
+      loaded.pairs, EstimateRelativePoses(&loaded.scene, matches, nullptr,
+                                          RelativePoseOptions{}, context));
   return loaded;
 }
 
@@ -57,14 +57,11 @@ Result<LoadedScene> ReadOwnScene(const SceneInputFlags& flags,
                                  const RunContext& context, StageLog* stages) {
   const StageLog::Scope scope(stages, "read");
   SceneNotes notes;
-  auto scene = ReadScene(flags.scene, &notes);
-  if (!scene) return tl::unexpected<Error>(scene.error());
+  LOWLAP_ASSIGN_OR_RETURN(auto scene, ReadScene(flags.scene, &notes));
   for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
-  const auto excluded = ExcludedViews(*scene, flags);
-  if (!excluded) return tl::unexpected<Error>(excluded.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto excluded, ExcludedViews(scene, flags));
   return LoadedScene{
-      excluded->empty() ? std::move(*scene) : WithoutViews(*scene, *excluded),
-      {}};
+      excluded.empty() ? std::move(scene) : WithoutViews(scene, excluded), {}};
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 
 namespace lowlap::cli {
@@ -128,9 +129,7 @@ Result<ScaleOptions> MakeScaleOptions(const ScaleFlags& flags) {
   options.nfa_form =
       flags.nfa == "paper" ? NfaForm::kPaper : NfaForm::kCalibrated;
   options.threshold_px = flags.threshold_px;
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   return options;
 }
 
@@ -204,11 +203,10 @@ void AddStrictFlag(CLI::App* command, bool* strict) {
 
 Status SetAdjustedFeatures(const std::vector<std::string>& features,
                            AdjustmentOptions* options) {
-  const auto kinds = ParseKinds(features);
-  if (!kinds) return tl::unexpected<Error>(kinds.error());
-  options->use_points = kinds->points;
-  options->use_lines = kinds->lines || kinds->coplanar;
-  options->use_coplanar = kinds->coplanar;
+  LOWLAP_ASSIGN_OR_RETURN(const auto kinds, ParseKinds(features));
+  options->use_points = kinds.points;
+  options->use_lines = kinds.lines || kinds.coplanar;
+  options->use_coplanar = kinds.coplanar;
   return {};
 }
 
@@ -247,9 +245,8 @@ Result<IntrinsicRefinement> ParseRefinement(const std::string& parts) {
 
 Status SetRefinement(const std::string& parts, Scene* scene,
                      AdjustmentOptions* options) {
-  const auto refinement = ParseRefinement(parts);
-  if (!refinement) return tl::unexpected<Error>(refinement.error());
-  RefineAllIntrinsics(*refinement, scene, options);
+  LOWLAP_ASSIGN_OR_RETURN(const auto refinement, ParseRefinement(parts));
+  RefineAllIntrinsics(refinement, scene, options);
   return {};
 }
 
@@ -272,27 +269,18 @@ void PrintCalibration(const Scene& scene, const AdjustmentOptions& options,
 }
 
 Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
-  if (const auto refinement = ParseRefinement(flags.refine_intrinsics);
-      !refinement) {
-    return tl::unexpected<Error>(refinement.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ParseRefinement(flags.refine_intrinsics));
   SolveOptions options;
-  const auto scale = MakeScaleOptions(flags.scale);
-  if (!scale) return tl::unexpected<Error>(scale.error());
-  options.scale_estimator = MakeScaleEstimator(*scale);
-  const auto averager = AveragerRegistry::WithBuiltIns().Make(flags.strategy);
-  if (!averager) return tl::unexpected<Error>(averager.error());
-  options.poses.averager = *averager;
-  if (const Status set =
-          SetAdjustedFeatures(flags.adjust_features, &options.adjustment);
-      !set) {
-    return tl::unexpected<Error>(set.error());
-  }
+  LOWLAP_ASSIGN_OR_RETURN(const auto scale, MakeScaleOptions(flags.scale));
+  options.scale_estimator = MakeScaleEstimator(scale);
+  LOWLAP_ASSIGN_OR_RETURN(
+      options.poses.averager,
+      AveragerRegistry::WithBuiltIns().Make(flags.strategy));
+  LOWLAP_RETURN_IF_ERROR(
+      SetAdjustedFeatures(flags.adjust_features, &options.adjustment));
   options.adjustment.principal_point_stddev = flags.principal_point_stddev;
   options.adjust = !flags.no_adjust;
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   return options;
 }
 

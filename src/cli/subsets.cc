@@ -14,6 +14,7 @@
 #include "cli/solve_flags.h"
 #include "cli/truth.h"
 #include "lowlap/core/internal/hash.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/scene_binary.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/pipeline/internal/scene_reduction.h"
@@ -40,10 +41,9 @@ struct Flags {
 // What the results depend on, apart from the choice of the subsets.
 Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
                                  const GroundTruth& truth) {
-  const auto bytes = FormatSceneBinary(scene);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto bytes, FormatSceneBinary(scene));
   Hash128 hash;
-  hash.Add(*bytes);
+  hash.Add(bytes);
   for (const auto& [view, pose] : truth) {
     hash.Add(view.value());
     for (int n = 0; n < 3; ++n) hash.Add(pose.center(n));

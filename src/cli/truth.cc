@@ -4,6 +4,7 @@
 #include <system_error>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "third_party_adapters/onedsfm/internal/problem.h"
 #include "third_party_adapters/scene_formats.h"
 #include "third_party_adapters/strecha/internal/strecha.h"
@@ -42,9 +43,8 @@ Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
   if (path.empty()) return std::optional<GroundTruth>();
   std::error_code ignored;
   if (std::filesystem::is_regular_file(path, ignored)) {
-    const auto solved = ReadScene(path);
-    if (!solved) return tl::unexpected<Error>(solved.error());
-    auto truth = GroundTruthFromScene(*solved, scene);
+    LOWLAP_ASSIGN_OR_RETURN(const auto solved, ReadScene(path));
+    auto truth = GroundTruthFromScene(solved, scene);
     if (!truth) {
       truth.error().file = path;
       return tl::unexpected<Error>(truth.error());
@@ -52,13 +52,11 @@ Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
     return KnownTruth(std::move(*truth), scene, path);
   }
   if (onedsfm::IsProblemFolder(path)) {
-    auto truth = onedsfm::ReadTruePoses(path);
-    if (!truth) return tl::unexpected<Error>(truth.error());
-    return KnownTruth(std::move(*truth), scene, path);
+    LOWLAP_ASSIGN_OR_RETURN(auto truth, onedsfm::ReadTruePoses(path));
+    return KnownTruth(std::move(truth), scene, path);
   }
-  const auto poses = strecha::ReadGroundTruth(path);
-  if (!poses) return tl::unexpected<Error>(poses.error());
-  auto truth = GroundTruthByName(scene, *poses);
+  LOWLAP_ASSIGN_OR_RETURN(const auto poses, strecha::ReadGroundTruth(path));
+  auto truth = GroundTruthByName(scene, poses);
   if (!truth) {
     if (truth.error().file.empty()) truth.error().file = path;
     return tl::unexpected<Error>(truth.error());

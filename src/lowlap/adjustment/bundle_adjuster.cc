@@ -15,6 +15,7 @@
 #include "lowlap/adjustment/internal/rounds/pair_terms.h"
 #include "lowlap/adjustment/internal/rounds/solve.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
@@ -192,36 +193,24 @@ class Adjuster {
     }
     initial_ = ComputeRmse(*cameras_, *state_, options_.coplanar_residual);
     if (options_.fixed_rotations_first) {
-      if (Status status =
-              Solve("fixed rotations", true, std::max(rough, kFirstTolerance));
-          !status) {
-        return status;
-      }
+      LOWLAP_RETURN_IF_ERROR(
+          Solve("fixed rotations", true, std::max(rough, kFirstTolerance)));
     }
-    if (Status status = Solve("everything", false, rough); !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(Solve("everything", false, rough));
     bool at_rest = options_.max_outlier_rounds == 0;
     for (int round = 1; round <= options_.max_outlier_rounds; ++round) {
-      const Result<double> changed = Update(round <= kRoundsWithNewPairs);
-      if (!changed) return tl::unexpected<Error>(changed.error());
-      at_rest = *changed <= options_.outlier_round_tolerance;
+      LOWLAP_ASSIGN_OR_RETURN(const double changed,
+                              Update(round <= kRoundsWithNewPairs));
+      at_rest = changed <= options_.outlier_round_tolerance;
       if (at_rest) break;
       summary_->outlier_rounds = round;
-      if (Status status = Solve("round " + std::to_string(round), false, rough);
-          !status) {
-        return status;
-      }
+      LOWLAP_RETURN_IF_ERROR(
+          Solve("round " + std::to_string(round), false, rough));
     }
-    if (Status status = Solve(kFinalStage, false, options_.function_tolerance);
-        !status) {
-      return status;
-    }
-    if (Status status =
-            FollowPoses(options_, noise_.lines, context_, *cameras_, state_);
-        !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(
+        Solve(kFinalStage, false, options_.function_tolerance));
+    LOWLAP_RETURN_IF_ERROR(
+        FollowPoses(options_, noise_.lines, context_, *cameras_, state_));
     summary_->converged = at_rest && summary_->solves.back().converged;
     for (LineTrackState& line : state_->lines) {
       if (line.IsLandmark()) UpdateLineExtent(*cameras_, &line);
@@ -239,10 +228,8 @@ class Adjuster {
     const SolveRequest request{
         stage, fixed_rotations, function_tolerance, noise_,
         stage == kFinalStage && options_.compute_center_covariances};
-    Result<SolveOutcome> outcome =
-        SolveOnce(options_, request, context_, cameras_, state_);
-    if (!outcome) return tl::unexpected<Error>(outcome.error());
-    last_ = std::move(*outcome);
+    LOWLAP_ASSIGN_OR_RETURN(
+        last_, SolveOnce(options_, request, context_, cameras_, state_));
     const SolveReport& report = last_.report;
     context_.Log(LogLevel::kInfo,
                  "adjustment: " + stage + ": cost " +
@@ -266,18 +253,15 @@ class Adjuster {
   Result<double> Update(bool take_new_pairs) {
     // Segments are undistorted with the intrinsics of the last solve.
     if (options_.MovesIntrinsics()) RefreshRays(scene_, *cameras_, state_);
-    if (Status status =
-            FollowPoses(options_, noise_.lines, context_, *cameras_, state_);
-        !status) {
-      return tl::unexpected<Error>(status.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(
+        FollowPoses(options_, noise_.lines, context_, *cameras_, state_));
     EstimateNoise();
-    const Result<ObservationChanges> changes = UpdateObservations(
-        options_, noise_, take_new_pairs, context_, *cameras_, state_);
-    if (!changes) return tl::unexpected<Error>(changes.error());
-    return changes->total > 0 ? static_cast<double>(changes->changed) /
-                                    static_cast<double>(changes->total)
-                              : 0.0;
+    LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes,
+                            UpdateObservations(options_, noise_, take_new_pairs,
+                                               context_, *cameras_, state_));
+    return changes.total > 0 ? static_cast<double>(changes.changed) /
+                                   static_cast<double>(changes.total)
+                             : 0.0;
   }
 
   const Scene& scene_;
@@ -300,10 +284,8 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
   if (scene == nullptr) {
     return MakeError(ErrorCode::kInvalidArgument, "the scene is null");
   }
-  Status status = options.Validate();
-  if (!status) return tl::unexpected<Error>(status.error());
-  status = ValidateScene(*scene);
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
+  LOWLAP_RETURN_IF_ERROR(ValidateScene(*scene));
   for (const auto& [id, refinement] : options.refine_intrinsics) {
     if (scene->intrinsics.count(id) == 0) {
       return MakeError(
@@ -325,8 +307,7 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
       CountObservationsWithoutCamera(*scene, cameras);
 
   Adjuster adjuster(*scene, options, context, &cameras, &state, &summary);
-  status = adjuster.Run();
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(adjuster.Run());
 
   FillKinds(adjuster.noise(), adjuster.initial(),
             ComputeRmse(cameras, state, options.coplanar_residual), state,

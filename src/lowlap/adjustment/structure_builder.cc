@@ -11,6 +11,7 @@
 #include "lowlap/adjustment/internal/structure/coplanar_pairs.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
 #include "lowlap/core/internal/median.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
@@ -87,11 +88,8 @@ Status BuildPoints(const CameraSet& cameras, const StructureOptions& options,
   } else {
     // From all observations of every track, whatever its errors, one sees how
     // far the poses let true observations stray.
-    if (Status status =
-            TriangulatePoints(cameras, limits, context, all, points);
-        !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(
+        TriangulatePoints(cameras, limits, context, all, points));
     NoiseBounds bounds;
     bounds.fallback = {limits.noise_px, 3 * limits.noise_px};
     const NoiseScale noise = EstimatePointNoise(cameras, *points, bounds);
@@ -112,10 +110,8 @@ Status BuildLines(const CameraSet& cameras, const StructureOptions& options,
   if (options.max_line_error_px > 0) {
     limits.threshold_px = options.max_line_error_px;
   } else {
-    if (Status status = TriangulateLines(cameras, limits, context, all, lines);
-        !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(
+        TriangulateLines(cameras, limits, context, all, lines));
     NoiseBounds bounds;
     bounds.fallback = {limits.noise_px, 3 * limits.noise_px};
     const NoiseScale noise = EstimateLineNoise(cameras, *lines, bounds);
@@ -152,12 +148,8 @@ Result<StructureSummary> BuildStructure(Scene* scene,
   if (scene == nullptr) {
     return MakeError(ErrorCode::kInvalidArgument, "the scene is null");
   }
-  if (Status status = options.Validate(); !status) {
-    return tl::unexpected<Error>(status.error());
-  }
-  if (Status status = ValidateScene(*scene); !status) {
-    return tl::unexpected<Error>(status.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
+  LOWLAP_RETURN_IF_ERROR(ValidateScene(*scene));
 
   StructureSummary summary;
   const CameraSet cameras(*scene);
@@ -171,11 +163,9 @@ Result<StructureSummary> BuildStructure(Scene* scene,
   }
   if (options.use_points) {
     std::vector<PointTrackState> points = LoadPoints(*scene, cameras);
-    if (Status status = BuildPoints(cameras, options, verification_px, context,
-                                    &points, &summary.points.threshold_px);
-        !status) {
-      return tl::unexpected<Error>(status.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(BuildPoints(cameras, options, verification_px,
+                                       context, &points,
+                                       &summary.points.threshold_px));
     Summarise(points, cameras, &summary.points);
     for (const PointTrackState& track : points) {
       if (track.IsLandmark()) {
@@ -188,11 +178,9 @@ Result<StructureSummary> BuildStructure(Scene* scene,
   }
   if (options.use_lines) {
     std::vector<LineTrackState> lines = LoadLines(*scene, cameras, false);
-    if (Status status = BuildLines(cameras, options, verification_px, context,
-                                   &lines, &summary.lines.threshold_px);
-        !status) {
-      return tl::unexpected<Error>(status.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(BuildLines(cameras, options, verification_px,
+                                      context, &lines,
+                                      &summary.lines.threshold_px));
     Summarise(lines, cameras, &summary.lines);
     for (const LineTrackState& track : lines) {
       if (track.IsLandmark()) {

@@ -12,6 +12,7 @@
 #include "lowlap/averaging/strategies/internal/revised_lud.h"
 #include "lowlap/averaging/strategies/internal/scale_chain.h"
 #include "lowlap/averaging/strategies/internal/triplet_programs.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -143,9 +144,9 @@ AveragerRegistry AveragerRegistry::WithBuiltIns() {
   filter.options = ListOptions(OneDSfmOptions());
   filter.make = [](const OptionValues& values,
                    Averager inner) -> Result<Averager> {
-    const auto options = ReadOptions(values, OneDSfmOptions());
-    if (!options) return tl::unexpected<Error>(options.error());
-    return std::make_shared<const OneDSfmAverager>(std::move(inner), *options);
+    LOWLAP_ASSIGN_OR_RETURN(const auto options,
+                            ReadOptions(values, OneDSfmOptions()));
+    return std::make_shared<const OneDSfmAverager>(std::move(inner), options);
   };
   r.Register(std::move(filter));
   return r;
@@ -189,14 +190,13 @@ Result<Averager> AveragerRegistry::Make(const std::string& request) const {
   const std::size_t plus = request.find('+');
   const bool is_filtered =
       filter != filters_.end() && plus != std::string::npos;
-  const auto entry =
-      ParseEntry(is_filtered ? request.substr(0, plus) : request);
-  if (!entry) return tl::unexpected<Error>(entry.error());
-  const auto& [name, values] = *entry;
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto entry,
+      ParseEntry(is_filtered ? request.substr(0, plus) : request));
+  const auto& [name, values] = entry;
   if (is_filtered) {
-    auto inner = Make(request.substr(plus + 1));
-    if (!inner) return inner;
-    return Named(name, filter->make(values, std::move(*inner)));
+    LOWLAP_ASSIGN_OR_RETURN(auto inner, Make(request.substr(plus + 1)));
+    return Named(name, filter->make(values, std::move(inner)));
   }
   const auto strategy = FindEntry(strategies_, name);
   if (strategy != strategies_.end()) {

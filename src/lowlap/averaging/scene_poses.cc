@@ -7,6 +7,7 @@
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
 #include "lowlap/core/internal/median.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/median_deviation.h"
 
@@ -101,9 +102,7 @@ Status PoseOptions::Validate() const {
 Result<SceneRotations> AverageSceneRotations(const Scene& scene,
                                              const PoseOptions& options,
                                              const RunContext& context) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   RotationAveragingOptions rotation = options.rotation;
   rotation.seed = context.seed;
   return AverageSceneRotations(scene, rotation, options.outlier_reach,
@@ -112,18 +111,16 @@ Result<SceneRotations> AverageSceneRotations(const Scene& scene,
 
 Result<PoseSummary> SolveScenePoses(Scene* scene, const PoseOptions& options,
                                     const RunContext& context) {
-  const auto rotations = AverageSceneRotations(*scene, options, context);
-  if (!rotations) return tl::unexpected<Error>(rotations.error());
-  return SolveScenePoses(scene, *rotations, options, context);
+  LOWLAP_ASSIGN_OR_RETURN(const auto rotations,
+                          AverageSceneRotations(*scene, options, context));
+  return SolveScenePoses(scene, rotations, options, context);
 }
 
 Result<PoseSummary> SolveScenePoses(Scene* scene,
                                     const SceneRotations& rotations,
                                     const PoseOptions& options,
                                     const RunContext& context) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   const GraphScalesAverager graph;
   const TranslationAverager& averager =
       options.averager ? *options.averager : graph;

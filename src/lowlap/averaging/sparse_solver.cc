@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lowlap/averaging/internal/cancellation.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -108,8 +109,7 @@ Result<double> RunGradients(const Matrix& lower, const Eigen::VectorXd& rhs,
                              residual.norm() > kGradientTolerance * rhs_norm;
        ++step) {
     if (step % kStepsBetweenQuestions == 0) {
-      const Status go_on = AskToGoOn(context, step, kMaxGradientSteps);
-      if (!go_on) return tl::unexpected<Error>(go_on.error());
+      LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, step, kMaxGradientSteps));
     }
     const Eigen::VectorXd image = a * direction;
     const double length = product / direction.dot(image);
@@ -136,9 +136,9 @@ Result<Eigen::MatrixXd> SolveByGradients(const Matrix& lower,
   }
   for (Eigen::Index c = 0; c < rhs.cols(); ++c) {
     Eigen::VectorXd column = solution.col(c);
-    const auto error = RunGradients(lower, rhs.col(c), context, &column);
-    if (!error) return tl::unexpected<Error>(error.error());
-    if (!column.allFinite() || !(*error <= kWorstGradientError)) {
+    LOWLAP_ASSIGN_OR_RETURN(const auto error,
+                            RunGradients(lower, rhs.col(c), context, &column));
+    if (!column.allFinite() || !(error <= kWorstGradientError)) {
       return Unsolvable(lower);
     }
     solution.col(c) = column;

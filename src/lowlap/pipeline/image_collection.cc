@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/image.h"
 #include "lowlap/pipeline/internal/measure/calibration_fit.h"
 #include "lowlap/pipeline/internal/measure/exif.h"
@@ -80,15 +81,14 @@ Intrinsic WithFocal(double focal_px, const ImageSize& size) {
 }
 
 Result<Intrinsic> FromExif(const std::string& path, const ImageSize& size) {
-  const auto exif = ReadExif(path, size);
-  if (!exif) return tl::unexpected<Error>(exif.error());
-  if (!exif->focal_px) {
+  LOWLAP_ASSIGN_OR_RETURN(const auto exif, ReadExif(path, size));
+  if (!exif.focal_px) {
     return MakeError(ErrorCode::kInsufficientData,
                      "holds no focal length in EXIF data; give a calibration "
                      "matrix, a focal length, or a file of intrinsics",
                      path);
   }
-  return WithFocal(*exif->focal_px, size);
+  return WithFocal(*exif.focal_px, size);
 }
 
 // The id of the intrinsic in a scene that an image is to have.
@@ -122,17 +122,16 @@ Result<std::optional<Intrinsic>> CommonIntrinsic(
     intrinsic.fx_px = k(0, 0);
     intrinsic.fy_px = k(1, 1);
     intrinsic.principal_point_px = {k(0, 2), k(1, 2)};
-    const auto made_for = FindCalibratedSize(intrinsic, paths, sizes);
-    if (!made_for) return tl::unexpected<Error>(made_for.error());
-    intrinsic.width_px = made_for->size.width_px;
-    intrinsic.height_px = made_for->size.height_px;
-    if (!made_for->warning.empty()) notes->push_back(made_for->warning);
+    LOWLAP_ASSIGN_OR_RETURN(const auto made_for,
+                            FindCalibratedSize(intrinsic, paths, sizes));
+    intrinsic.width_px = made_for.size.width_px;
+    intrinsic.height_px = made_for.size.height_px;
+    if (!made_for.warning.empty()) notes->push_back(made_for.warning);
     return std::optional<Intrinsic>(intrinsic);
   }
   if (source.focal_px) {
-    const auto size = FindCommonSize(paths, sizes);
-    if (!size) return tl::unexpected<Error>(size.error());
-    return std::optional<Intrinsic>(WithFocal(*source.focal_px, *size));
+    LOWLAP_ASSIGN_OR_RETURN(const auto size, FindCommonSize(paths, sizes));
+    return std::optional<Intrinsic>(WithFocal(*source.focal_px, size));
   }
   return std::optional<Intrinsic>();
 }
@@ -167,51 +166,49 @@ Result<Scene> SceneFromImages(const std::string& folder,
                      "give one of a calibration matrix, a focal length, and a "
                      "scene with intrinsics");
   }
-  auto names = ListImages(folder);
-  if (!names) return tl::unexpected<Error>(names.error());
+  LOWLAP_ASSIGN_OR_RETURN(auto names, ListImages(folder));
   for (const std::string& name : excluded) {
     const auto kept = std::remove_if(
-        names->begin(), names->end(),
+        names.begin(), names.end(),
         [&](const auto& filename) { return NameFits(name, filename); });
-    if (kept == names->end()) {
+    if (kept == names.end()) {
       return MakeError(ErrorCode::kInvalidArgument,
                        "no image '" + name + "' to exclude", folder);
     }
-    names->erase(kept, names->end());
+    names.erase(kept, names.end());
   }
-  if (names->size() < 2) {
-    return MakeError(ErrorCode::kInsufficientData,
-                     "at least two images are needed, found " +
-                         std::to_string(names->size()),
-                     folder);
+  if (names.size() < 2) {
+    return MakeError(
+        ErrorCode::kInsufficientData,
+        "at least two images are needed, found " + std::to_string(names.size()),
+        folder);
   }
 
   std::vector<std::string> paths;
   std::vector<ImageSize> sizes;
-  for (const std::string& name : *names) {
+  for (const std::string& name : names) {
     paths.push_back((fs::path(folder) / name).string());
-    const auto size = ReadImageSize(paths.back());
-    if (!size) return tl::unexpected<Error>(size.error());
-    sizes.push_back(*size);
+    LOWLAP_ASSIGN_OR_RETURN(const auto size, ReadImageSize(paths.back()));
+    sizes.push_back(size);
   }
   std::vector<std::string> unused;
   if (notes == nullptr) notes = &unused;
-  const auto common = CommonIntrinsic(intrinsics, paths, sizes, notes);
-  if (!common) return tl::unexpected<Error>(common.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto common,
+                          CommonIntrinsic(intrinsics, paths, sizes, notes));
 
   Scene scene;
   scene.root_path = folder;
-  for (std::size_t n = 0; n < names->size(); ++n) {
-    const std::string& name = (*names)[n];
+  for (std::size_t n = 0; n < names.size(); ++n) {
+    const std::string& name = names[n];
     Result<Intrinsic> given;
     IntrinsicId wanted = kInvalidId;
     if (intrinsics.scene) {
-      const auto id = FindInScene(*intrinsics.scene, name, paths[n]);
-      if (!id) return tl::unexpected<Error>(id.error());
-      wanted = *id;
-      given = intrinsics.scene->intrinsics.at(*id);
-    } else if (*common) {
-      given = **common;
+      LOWLAP_ASSIGN_OR_RETURN(const auto id,
+                              FindInScene(*intrinsics.scene, name, paths[n]));
+      wanted = id;
+      given = intrinsics.scene->intrinsics.at(id);
+    } else if (common) {
+      given = *common;
       const bool stands = (sizes[n].height_px > sizes[n].width_px) !=
                           (given->height_px > given->width_px);
       if (intrinsics.focal_px && stands) {
@@ -221,19 +218,19 @@ Result<Scene> SceneFromImages(const std::string& folder,
       given = FromExif(paths[n], sizes[n]);
     }
     if (!given) return tl::unexpected<Error>(given.error());
-    const auto fitted = FitToPhotograph(*given, paths[n], sizes[n]);
-    if (!fitted) return tl::unexpected<Error>(fitted.error());
-    if (const Status valid = fitted->intrinsic.Validate(); !valid) {
+    LOWLAP_ASSIGN_OR_RETURN(const auto fitted,
+                            FitToPhotograph(*given, paths[n], sizes[n]));
+    if (const Status valid = fitted.intrinsic.Validate(); !valid) {
       return MakeError(valid.error().code, valid.error().message, paths[n]);
     }
-    if (!fitted->change.empty()) {
-      notes->push_back(name + ": the calibration was " + fitted->change);
+    if (!fitted.change.empty()) {
+      notes->push_back(name + ": the calibration was " + fitted.change);
     }
     View view;
     view.filename = name;
     view.width_px = sizes[n].width_px;
     view.height_px = sizes[n].height_px;
-    view.intrinsic_id = Add(fitted->intrinsic, wanted, &scene);
+    view.intrinsic_id = Add(fitted.intrinsic, wanted, &scene);
     view.pose_id = static_cast<PoseId>(n);
     scene.views[static_cast<ViewId>(n)] = view;
   }
@@ -245,9 +242,8 @@ Result<std::vector<ViewId>> FindViews(const Scene& scene,
   const ViewNames names(scene);
   std::set<ViewId> found;
   for (const std::string& word : words) {
-    const Result<ViewId> view = names.Find(word);
-    if (!view) return tl::unexpected<Error>(view.error());
-    found.insert(*view);
+    LOWLAP_ASSIGN_OR_RETURN(const ViewId view, names.Find(word));
+    found.insert(view);
   }
   return std::vector<ViewId>(found.begin(), found.end());
 }

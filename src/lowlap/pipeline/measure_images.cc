@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/matching/internal/pair_retrieval.h"
 #include "lowlap/matching/internal/pair_selection.h"
 #include "lowlap/matching/internal/points/subpixel_refinement.h"
@@ -19,12 +20,12 @@ namespace {
 Status RefinePoints(const std::map<ViewId, DetectedFeatures>& detected,
                     const MeasurementOptions& options,
                     const RunContext& context, Scene* scene) {
-  const auto summary =
-      RefinePointTracks(detected, options.refinement, context, scene);
-  if (!summary) return tl::unexpected<Error>(summary.error());
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto summary,
+      RefinePointTracks(detected, options.refinement, context, scene));
   context.Log(LogLevel::kInfo,
-              "point refinement: " + std::to_string(summary->refined) + " of " +
-                  std::to_string(summary->observations) +
+              "point refinement: " + std::to_string(summary.refined) + " of " +
+                  std::to_string(summary.observations) +
                   " observations aligned");
   return RefineRelativePoses(scene, detected, options.relative_poses, context);
 }
@@ -59,35 +60,27 @@ Result<ImageMeasurements> MatchImages(const Scene& scene,
                                       const MeasurementOptions& options,
                                       const RunContext& context,
                                       StageLog* stages) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   const bool retrieve = options.pairs == "auto";
   std::vector<ViewPair> pairs;
   if (!retrieve) {  // what can be refused is refused before the long work
-    auto selected = SelectViewPairs(scene, options.pairs);
-    if (!selected) return tl::unexpected<Error>(selected.error());
-    pairs = std::move(*selected);
+    LOWLAP_ASSIGN_OR_RETURN(pairs, SelectViewPairs(scene, options.pairs));
   }
 
   std::optional<CacheFolder> cache;
   if (!options.cache_folder.empty()) {
-    auto folder = CacheFolder::Open(options.cache_folder);
-    if (!folder) return tl::unexpected<Error>(folder.error());
-    cache = std::move(*folder);
+    LOWLAP_ASSIGN_OR_RETURN(cache, CacheFolder::Open(options.cache_folder));
   }
   KeyedFeatures detected;
   {
     const StageLog::Scope scope(stages, "features");
     if (cache) {
-      auto result = DetectFeatures(scene, options.features, *cache, context);
-      if (!result) return tl::unexpected<Error>(result.error());
-      detected = std::move(*result);
+      LOWLAP_ASSIGN_OR_RETURN(
+          detected, DetectFeatures(scene, options.features, *cache, context));
     } else {
-      auto result =
-          DetectFeatures(scene, options.features, context, &detected.failed);
-      if (!result) return tl::unexpected<Error>(result.error());
-      detected.features = std::move(*result);
+      LOWLAP_ASSIGN_OR_RETURN(
+          detected.features,
+          DetectFeatures(scene, options.features, context, &detected.failed));
     }
   }
   for (const auto& [view, error] : detected.failed) {
@@ -102,19 +95,17 @@ Result<ImageMeasurements> MatchImages(const Scene& scene,
               pairs.end());
   if (retrieve) {
     const StageLog::Scope scope(stages, "pair retrieval");
-    auto found = RetrievePairs(detected.features, options.retrieval, context);
-    if (!found) return tl::unexpected<Error>(found.error());
-    pairs = std::move(*found);
+    LOWLAP_ASSIGN_OR_RETURN(
+        pairs, RetrievePairs(detected.features, options.retrieval, context));
   }
   std::map<ViewPair, PairMatches> matches;
   {
     const StageLog::Scope scope(stages, "matching");
-    auto result = cache ? MatchFeatures(detected, pairs, options.matching,
-                                        *cache, context)
-                        : MatchFeatures(detected.features, pairs,
-                                        options.matching, context);
-    if (!result) return tl::unexpected<Error>(result.error());
-    matches = std::move(*result);
+    LOWLAP_ASSIGN_OR_RETURN(
+        matches, cache ? MatchFeatures(detected, pairs, options.matching,
+                                       *cache, context)
+                       : MatchFeatures(detected.features, pairs,
+                                       options.matching, context));
     if (cache) cache->Prune(options.max_cache_gb * 1e9);
   }
   return ImageMeasurements{std::move(detected.features), std::move(matches),
@@ -137,9 +128,8 @@ Result<std::vector<PairReport>> RelatePairs(
   }
   if (options.refine_points) {
     const StageLog::Scope scope(stages, "point refinement");
-    const Status refined =
-        RefinePoints(measurements.features, options, context, scene);
-    if (!refined) return tl::unexpected<Error>(refined.error());
+    LOWLAP_RETURN_IF_ERROR(
+        RefinePoints(measurements.features, options, context, scene));
     UpdateCounts(*scene, &*reports);
   }
   KeepMatchedFeatures(scene);
@@ -150,9 +140,9 @@ Result<std::vector<PairReport>> MeasureImages(Scene* scene,
                                               const MeasurementOptions& options,
                                               const RunContext& context,
                                               StageLog* stages) {
-  const auto measurements = MatchImages(*scene, options, context, stages);
-  if (!measurements) return tl::unexpected<Error>(measurements.error());
-  return RelatePairs(*measurements, options, context, stages, scene);
+  LOWLAP_ASSIGN_OR_RETURN(const auto measurements,
+                          MatchImages(*scene, options, context, stages));
+  return RelatePairs(measurements, options, context, stages, scene);
 }
 
 }  // namespace lowlap

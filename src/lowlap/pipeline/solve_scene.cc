@@ -8,6 +8,7 @@
 
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
@@ -83,9 +84,9 @@ Result<std::vector<ScaleRatio>> CompleteRatios(
   for (const ViewTriplet& views : triplets) {
     if (ratios.count(views) == 0) missing.push_back(views);
   }
-  auto estimated = EstimateScaleRatios(scene, missing, estimator, context);
-  if (!estimated) return estimated;
-  for (ScaleRatio& ratio : *estimated) ratios[ratio.views] = std::move(ratio);
+  LOWLAP_ASSIGN_OR_RETURN(
+      auto estimated, EstimateScaleRatios(scene, missing, estimator, context));
+  for (ScaleRatio& ratio : estimated) ratios[ratio.views] = std::move(ratio);
   std::vector<ScaleRatio> complete;
   complete.reserve(triplets.size());
   for (const ViewTriplet& views : triplets) {
@@ -109,13 +110,11 @@ Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
                                  const RunContext& context, StageLog* stages) {
   const StageLog::Scope scope(stages, "rotations");
   SolveStart start;
-  auto motions =
-      DecideHypotheses(scene, *options.scale_estimator, options.poses, context);
-  if (!motions) return tl::unexpected<Error>(motions.error());
-  start.motions = std::move(*motions);
-  auto averaged = AverageSceneRotations(*scene, options.poses, context);
-  if (!averaged) return tl::unexpected<Error>(averaged.error());
-  start.rotations = std::move(*averaged);
+  LOWLAP_ASSIGN_OR_RETURN(start.motions,
+                          DecideHypotheses(scene, *options.scale_estimator,
+                                           options.poses, context));
+  LOWLAP_ASSIGN_OR_RETURN(
+      start.rotations, AverageSceneRotations(*scene, options.poses, context));
   return start;
 }
 
@@ -127,11 +126,11 @@ Result<RatioSummary> EstimateBelievedRatios(Scene* scene,
   const StageLog::Scope scope(stages, "scale ratios");
   std::vector<ScaleRatio> known;
   if (options.reuse_ratios) known = std::move(scene->scale_ratios);
-  auto ratios = CompleteRatios(
-      *scene, BelievedTriplets(*scene, start.rotations), std::move(known),
-      start.motions, *options.scale_estimator, context);
-  if (!ratios) return tl::unexpected<Error>(ratios.error());
-  scene->scale_ratios = std::move(*ratios);
+  LOWLAP_ASSIGN_OR_RETURN(
+      scene->scale_ratios,
+      CompleteRatios(*scene, BelievedTriplets(*scene, start.rotations),
+                     std::move(known), start.motions, *options.scale_estimator,
+                     context));
   return SummarizeRatios(scene->scale_ratios);
 }
 
@@ -164,35 +163,30 @@ Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
   Refinement refinement;
   {
     const StageLog::Scope scope(stages, "structure");
-    auto structure = BuildStructure(scene, options.structure, context);
-    if (!structure) return tl::unexpected<Error>(structure.error());
-    refinement.structure = std::move(*structure);
+    LOWLAP_ASSIGN_OR_RETURN(refinement.structure,
+                            BuildStructure(scene, options.structure, context));
   }
   if (options.adjust) {
     const StageLog::Scope scope(stages, "adjustment");
-    auto adjustment = AdjustScene(scene, options.adjustment, context);
-    if (!adjustment) return tl::unexpected<Error>(adjustment.error());
-    refinement.adjustment = std::move(*adjustment);
+    LOWLAP_ASSIGN_OR_RETURN(refinement.adjustment,
+                            AdjustScene(scene, options.adjustment, context));
   }
   return refinement;
 }
 
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
                                const RunContext& context, StageLog* stages) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   SolveResult result;
-  auto start = StartSolution(scene, options, context, stages);
-  if (!start) return tl::unexpected<Error>(start.error());
-  auto ratios = EstimateBelievedRatios(scene, *start, options, context, stages);
-  if (!ratios) return tl::unexpected<Error>(ratios.error());
-  result.ratios = *ratios;
-  result.motions = std::move(start->motions);
-  auto poses =
-      ComposePoses(scene, start->rotations, options.poses, context, stages);
-  if (!poses) return tl::unexpected<Error>(poses.error());
-  result.poses = std::move(*poses);
+  LOWLAP_ASSIGN_OR_RETURN(auto start,
+                          StartSolution(scene, options, context, stages));
+  LOWLAP_ASSIGN_OR_RETURN(
+      result.ratios,
+      EstimateBelievedRatios(scene, start, options, context, stages));
+  result.motions = std::move(start.motions);
+  LOWLAP_ASSIGN_OR_RETURN(
+      result.poses,
+      ComposePoses(scene, start.rotations, options.poses, context, stages));
   result.poses_before_adjustment = scene->poses;
   auto refinement = RefineSolution(scene, options, context, stages);
   if (!refinement && options.adjust &&

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/matching/internal/tracks.h"
 #include "lowlap/scene/validation.h"
@@ -114,12 +115,8 @@ void TranslationScaleEstimator::SetRotation(ViewId view,
 Result<TranslationEstimate> TranslationScaleEstimator::Estimate(
     const RunContext& context) const {
   if (error_) return tl::unexpected<Error>(*error_);
-  if (const Status valid = ValidateScene(scene_); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
-  if (const Status valid = options_.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateScene(scene_));
+  LOWLAP_RETURN_IF_ERROR(options_.Validate());
   for (const auto& [view, rotation] : cam_from_world_) {
     if (scene_.views.count(view) == 0 || !(RotationDefect(rotation) < 1e-6)) {
       return MakeError(ErrorCode::kInvalidScene,
@@ -140,26 +137,24 @@ Result<TranslationEstimate> TranslationScaleEstimator::Estimate(
   scene.line_tracks = BuildLineTracks(scene, LineTrackOptions());
   SolveStart start;
   if (cam_from_world_.empty()) {
-    auto averaged = StartSolution(&scene, options_, context, nullptr);
-    if (!averaged) return tl::unexpected<Error>(averaged.error());
-    start = std::move(*averaged);
+    LOWLAP_ASSIGN_OR_RETURN(start,
+                            StartSolution(&scene, options_, context, nullptr));
   } else {
     start.rotations = Given(cam_from_world_);
   }
-  const auto ratios =
-      EstimateBelievedRatios(&scene, start, options_, context, nullptr);
-  if (!ratios) return tl::unexpected<Error>(ratios.error());
-  auto summary =
+  LOWLAP_RETURN_IF_ERROR(
+      EstimateBelievedRatios(&scene, start, options_, context, nullptr));
+  LOWLAP_ASSIGN_OR_RETURN(
+      auto summary,
       cam_from_world_.empty()
           ? ComposePoses(&scene, start.rotations, options_.poses, context,
                          nullptr)
-          : SolveScenePoses(&scene, start.rotations, options_.poses, context);
-  if (!summary) return tl::unexpected<Error>(summary.error());
+          : SolveScenePoses(&scene, start.rotations, options_.poses, context));
 
   TranslationEstimate estimate;
   estimate.ratios = std::move(scene.scale_ratios);
-  estimate.unplaced = summary->unplaced;
-  estimate.summary = std::move(*summary);
+  estimate.unplaced = summary.unplaced;
+  estimate.summary = std::move(summary);
   for (const auto& [view, description] : scene.views) {
     if (const Pose* pose = scene.FindPose(view)) estimate.poses[view] = *pose;
   }

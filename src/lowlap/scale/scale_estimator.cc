@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
 
@@ -45,8 +46,7 @@ bool ScaleOptions::Asks(const std::string& feature) const {
 }
 
 Status ScaleOptions::Validate() const {
-  const auto kinds = EvidenceRegistry::BuiltIn().Make(features, without);
-  if (!kinds) return tl::unexpected<Error>(kinds.error());
+  LOWLAP_RETURN_IF_ERROR(EvidenceRegistry::BuiltIn().Make(features, without));
   if (!IsPositive(threshold_px)) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "the inlier threshold must be positive");
@@ -58,17 +58,13 @@ ScaleEstimator::ScaleEstimator(EvidenceKinds kinds)
     : kinds_(std::move(kinds)) {}
 
 Result<ScaleRatio> ScaleEstimator::Estimate(const TripletView& triplet) const {
-  if (const Status status = CheckTriplet(triplet); !status) {
-    return tl::unexpected<Error>(status.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(CheckTriplet(triplet));
   return Estimate(triplet, GatherEvidence(kinds_, triplet));
 }
 
 Result<ScaleRatio> ScaleEstimator::Estimate(
     const TripletView& triplet, const TripletEvidence& evidence) const {
-  if (const Status status = CheckTriplet(triplet); !status) {
-    return tl::unexpected<Error>(status.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(CheckTriplet(triplet));
   return Judge(triplet, evidence);
 }
 

@@ -1,5 +1,6 @@
 #include "lowlap/scale/scale_ratios.h"
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/scale/internal/triplet_rounds.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -18,9 +19,7 @@ Result<std::vector<ScaleRatio>> EstimateScaleRatios(
 Result<std::vector<ScaleRatio>> EstimateScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
     const ScaleOptions& options, const RunContext& context) {
-  if (const Status status = options.Validate(); !status) {
-    return tl::unexpected<Error>(status.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   return EstimateScaleRatios(scene, triplets, *MakeScaleEstimator(options),
                              context);
 }

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/scale/internal/uncertainty/pose_uncertainty.h"
 
 namespace lowlap {
@@ -151,10 +152,9 @@ Result<TripletView> MakeTripletView(const SceneFeatures& features,
                            "of a view, are missing");
     }
     for (const bool points : {true, false}) {
-      const Status status = CheckMatches(
+      LOWLAP_RETURN_IF_ERROR(CheckMatches(
           scene, *edges[n],
-          points ? edges[n]->point_inliers : edges[n]->line_inliers, points);
-      if (!status) return tl::unexpected<Error>(status.error());
+          points ? edges[n]->point_inliers : edges[n]->line_inliers, points));
     }
   }
   const SeenView i(features, views.first), j(features, views.middle),

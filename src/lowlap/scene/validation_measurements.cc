@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/internal/validation_parts.h"
 #include "lowlap/scene/validation.h"
@@ -101,24 +102,19 @@ Status ValidateRelativePose(const ViewTable& views, const RelativePose& edge,
   if (!(edge.views.first < edge.views.second)) {
     return Invalid("the first view must have the smaller id", place + ".views");
   }
-  if (Status status = ValidateMotion(edge, place); !status) return status;
+  LOWLAP_RETURN_IF_ERROR(ValidateMotion(edge, place));
   for (std::size_t n = 0; n < edge.alternatives.size(); ++n) {
-    if (Status status = ValidateMotion(edge.alternatives[n],
-                                       place + ".alternatives" + IndexPlace(n));
-        !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(ValidateMotion(
+        edge.alternatives[n], place + ".alternatives" + IndexPlace(n)));
   }
   if (!(edge.point_threshold_px >= 0) ||
       !std::isfinite(edge.point_threshold_px)) {
     return Invalid("must be finite and not negative",
                    place + ".point_threshold_px");
   }
-  if (Status status = ValidateMatches(edge.point_inliers, first->points,
-                                      second->points, place + ".point_inliers");
-      !status) {
-    return status;
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateMatches(edge.point_inliers, first->points,
+                                         second->points,
+                                         place + ".point_inliers"));
   return ValidateMatches(edge.line_inliers, first->segments, second->segments,
                          place + ".line_inliers");
 }
@@ -130,13 +126,9 @@ Status ValidateRelativePose(const ViewTable& views, const RelativePose& edge,
 namespace lowlap {
 
 Status ValidateRelativePose(const RelativePose& pose) {
-  if (Status status = ValidateMotion(pose, {}); !status) {
-    return status;
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateMotion(pose, {}));
   for (const AlternativeMotion& other : pose.alternatives) {
-    if (Status status = ValidateMotion(other, {}); !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(ValidateMotion(other, {}));
   }
   return {};
 }
@@ -150,9 +142,7 @@ Status ValidateFeatures(const Scene& scene, const ViewTable& views) {
     const std::string place =
         OwnItemPlace("features", "view", std::to_string(view.value()));
     if (!views.Find(view)) return Invalid(UnknownView(view), place);
-    if (Status status = ValidateViewFeatures(features, place); !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(ValidateViewFeatures(features, place));
   }
   return {};
 }
@@ -167,9 +157,7 @@ Status ValidateRelativePoses(const Scene& scene, const ViewTable& views) {
       return Invalid("is stored under other views than its own",
                      place + ".views");
     }
-    if (Status status = ValidateRelativePose(views, edge, place); !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(ValidateRelativePose(views, edge, place));
   }
   return {};
 }
@@ -234,11 +222,8 @@ Status ValidateTracks(const Scene& scene, const ViewTable& views) {
     }
     return {};
   };
-  if (Status status =
-          validate(scene.point_tracks, "point_tracks", FeatureKind::kPoint);
-      !status) {
-    return status;
-  }
+  LOWLAP_RETURN_IF_ERROR(
+      validate(scene.point_tracks, "point_tracks", FeatureKind::kPoint));
   return validate(scene.line_tracks, "line_tracks", FeatureKind::kSegment);
 }
 

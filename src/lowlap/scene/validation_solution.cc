@@ -4,6 +4,7 @@
 #include <string>
 #include <tuple>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/scene/internal/validation_parts.h"
 
 namespace lowlap {
@@ -78,9 +79,7 @@ Status ValidateScaleRatio(const Scene& scene, const ViewTable& views,
     if (!kinds.insert(support.kind).second) {
       return Invalid("the kind is listed twice", of_kind);
     }
-    if (Status status = ValidateSupport(support, of_kind); !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(ValidateSupport(support, of_kind));
   }
   if (ratio.num_rejected_negative < 0) {
     return Invalid("must not be negative", place + ".num_rejected_negative");
@@ -183,10 +182,7 @@ Status ValidateScaleRatios(const Scene& scene, const ViewTable& views) {
         "scale_ratios", "views",
         std::to_string(first.value()) + "," + std::to_string(middle.value()) +
             "," + std::to_string(last.value()));
-    if (Status status = ValidateScaleRatio(scene, views, ratio, place);
-        !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(ValidateScaleRatio(scene, views, ratio, place));
     // (i, j, k) and (k, j, i) are one triplet.
     if (!seen.emplace(middle, std::min(first, last), std::max(first, last))
              .second) {

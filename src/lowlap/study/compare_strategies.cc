@@ -6,6 +6,7 @@
 
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/averaging/scene_poses.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/study/internal/consistency.h"
 
 namespace lowlap {
@@ -29,9 +30,8 @@ Result<std::vector<NamedAverager>> MakeAveragers(
               [&](const NamedAverager& each) { return each.name == name; })) {
         continue;
       }
-      const auto averager = options.registry.Make(name);
-      if (!averager) return tl::unexpected<Error>(averager.error());
-      averagers.push_back({name, *averager});
+      LOWLAP_ASSIGN_OR_RETURN(const auto averager, options.registry.Make(name));
+      averagers.push_back({name, averager});
     }
   }
   if (averagers.empty()) {
@@ -196,43 +196,36 @@ StrategyResult* FindReference(const std::string& name,
 }  // namespace
 
 Status CompareOptions::Validate() const {
-  if (const Status valid = solve.Validate(); !valid) return valid;
-  const auto averagers = MakeAveragers(*this);
-  if (!averagers) return tl::unexpected<Error>(averagers.error());
-  if (const auto known = registry.Make(reference); !known) {
-    return tl::unexpected<Error>(known.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(solve.Validate());
+  LOWLAP_RETURN_IF_ERROR(MakeAveragers(*this));
+  LOWLAP_RETURN_IF_ERROR(registry.Make(reference));
   return {};
 }
 
 Result<Comparison> CompareStrategies(const Scene& scene,
                                      const CompareOptions& options,
                                      const RunContext& context) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
-  const auto averagers = MakeAveragers(options);
-  if (!averagers) return tl::unexpected<Error>(averagers.error());
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
+  LOWLAP_ASSIGN_OR_RETURN(const auto averagers, MakeAveragers(options));
 
   Scene start_scene = scene;
   StageLog stages;
-  const auto start =
-      StartSolution(&start_scene, options.solve, context, &stages);
-  if (!start) return tl::unexpected<Error>(start.error());
-  const auto ratios = EstimateBelievedRatios(&start_scene, *start,
-                                             options.solve, context, &stages);
-  if (!ratios) return tl::unexpected<Error>(ratios.error());
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto start,
+      StartSolution(&start_scene, options.solve, context, &stages));
+  LOWLAP_RETURN_IF_ERROR(EstimateBelievedRatios(
+      &start_scene, start, options.solve, context, &stages));
   start_scene.poses.clear();
   start_scene.structure.clear();
   start_scene.line_structure.clear();
   start_scene.coplanar_pairs.clear();
 
-  Input input{start_scene, options, PairsOf(start->rotations.outliers), {}};
+  Input input{start_scene, options, PairsOf(start.rotations.outliers), {}};
   const bool with_tracks = std::any_of(
-      averagers->begin(), averagers->end(),
+      averagers.begin(), averagers.end(),
       [](const auto& each) { return each.averager->NeedsTracks(); });
   input.problem =
-      MakeTranslationProblem(start_scene, start->rotations.cam_from_world,
+      MakeTranslationProblem(start_scene, start.rotations.cam_from_world,
                              input.outliers, {}, with_tracks);
 
   Comparison comparison;
@@ -242,9 +235,9 @@ Result<Comparison> CompareStrategies(const Scene& scene,
   comparison.num_outlier_edges = static_cast<int>(input.outliers.size());
   comparison.has_truth = options.truth.has_value();
   comparison.shared_costs = stages.stages();
-  for (const NamedAverager& averager : *averagers) {
+  for (const NamedAverager& averager : averagers) {
     if (!context.Progress("strategies", comparison.results.size(),
-                          averagers->size())) {
+                          averagers.size())) {
       return MakeError(ErrorCode::kCancelled, "stopped", {}, "strategies");
     }
     comparison.results.push_back(RunStrategy(averager, input, context));
@@ -253,7 +246,7 @@ Result<Comparison> CompareStrategies(const Scene& scene,
       return tl::unexpected<Error>(*failure);
     }
   }
-  context.Progress("strategies", averagers->size(), averagers->size());
+  context.Progress("strategies", averagers.size(), averagers.size());
 
   if (StrategyResult* reference =
           FindReference(options.reference, &comparison.results)) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/synthetic/internal/coplanar_truth.h"
@@ -157,9 +158,7 @@ SyntheticScene Build(const SyntheticOptions& options, double off_wall) {
 }  // namespace
 
 Result<SyntheticScene> Simulate(const SyntheticOptions& options) {
-  if (const Status status = options.Validate(); !status) {
-    return tl::make_unexpected(status.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   SyntheticScene best = Build(options, 0.0);
   const double wanted = options.wrong_candidate_share;
   if (wanted <= 0) return best;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/synthetic/internal/pair_graph.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
@@ -48,9 +49,8 @@ Status SyntheticOptions::Validate() const {
     return Invalid("num_views must be in [2, " + std::to_string(kMaxViews) +
                    "]");
   }
-  const Result<PairRule> rule = PairRule::Parse(pairs);
-  if (!rule) return tl::make_unexpected(rule.error());
-  if (rule->all && num_views > kMaxViewsForAllPairs) {
+  LOWLAP_ASSIGN_OR_RETURN(const PairRule rule, PairRule::Parse(pairs));
+  if (rule.all && num_views > kMaxViewsForAllPairs) {
     return Invalid("pairs 'all' needs num_views <= " +
                    std::to_string(kMaxViewsForAllPairs));
   }

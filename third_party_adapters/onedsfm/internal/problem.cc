@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "third_party_adapters/onedsfm/internal/bundle_file.h"
 #include "third_party_adapters/onedsfm/internal/problem_files.h"
 
@@ -29,9 +30,7 @@ Status ReadIfThere(const std::string& path,
   const Result<std::string> text = ReadWholeFile(path);
   if (!text && text.error().code == ErrorCode::kNotFound) return {};
   if (!text) return tl::unexpected<Error>(text.error());
-  Result<T> parsed = parse(*text, path);
-  if (!parsed) return tl::unexpected<Error>(parsed.error());
-  *content = std::move(*parsed);
+  LOWLAP_ASSIGN_OR_RETURN(*content, parse(*text, path));
   return {};
 }
 
@@ -49,15 +48,14 @@ Result<Files> ReadFiles(const std::string& folder) {
   const auto read = [&](const char* name, auto parse, auto* content) {
     return ReadIfThere(PathOf(folder, name), parse, content);
   };
-  Status status = read("EGs.txt", ParseGeometries, &files.geometries);
-  if (status && !files.geometries) {
+  LOWLAP_RETURN_IF_ERROR(read("EGs.txt", ParseGeometries, &files.geometries));
+  if (!files.geometries) {
     return MakeError(ErrorCode::kNotFound, "there is no EGs.txt", folder);
   }
-  if (status) status = read("cc.txt", ParseIndices, &files.used);
-  if (status) status = read("list.txt", ParseList, &files.list);
-  if (status) status = read("coords.txt", ParseCoords, &files.coords);
-  if (status) status = read("tracks.txt", ParseTracks, &files.tracks);
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(read("cc.txt", ParseIndices, &files.used));
+  LOWLAP_RETURN_IF_ERROR(read("list.txt", ParseList, &files.list));
+  LOWLAP_RETURN_IF_ERROR(read("coords.txt", ParseCoords, &files.coords));
+  LOWLAP_RETURN_IF_ERROR(read("tracks.txt", ParseTracks, &files.tracks));
   return files;
 }
 
@@ -224,20 +222,17 @@ bool IsProblemFolder(const std::string& path) {
 }
 
 Result<Problem> ReadProblem(const std::string& folder) {
-  const Result<Files> files = ReadFiles(folder);
-  if (!files) return tl::unexpected<Error>(files.error());
+  LOWLAP_ASSIGN_OR_RETURN(const Files files, ReadFiles(folder));
   Problem problem;
-  for (const ImageIndex index : UsedImages(*files)) {
-    const Status added = AddView(*files, folder, index, &problem.scene);
-    if (!added) return tl::unexpected<Error>(added.error());
+  for (const ImageIndex index : UsedImages(files)) {
+    LOWLAP_RETURN_IF_ERROR(AddView(files, folder, index, &problem.scene));
   }
-  AddRelativePoses(*files, &problem);
-  if (files->tracks && !files->coords) {
-    AddNote(files->tracks->size(), "tracks mean nothing without coords.txt",
+  AddRelativePoses(files, &problem);
+  if (files.tracks && !files.coords) {
+    AddNote(files.tracks->size(), "tracks mean nothing without coords.txt",
             &problem);
-  } else if (files->tracks) {
-    const Status added = AddTracks(*files->tracks, folder, &problem);
-    if (!added) return tl::unexpected<Error>(added.error());
+  } else if (files.tracks) {
+    LOWLAP_RETURN_IF_ERROR(AddTracks(*files.tracks, folder, &problem));
   }
   AddNote(problem.scene.views.size() - problem.scene.intrinsics.size(),
           "views have no known focal length", &problem);
@@ -246,9 +241,8 @@ Result<Problem> ReadProblem(const std::string& folder) {
 
 Result<std::map<ViewId, Pose>> ReadTruePoses(const std::string& folder) {
   std::optional<std::map<ViewId, Pose>> poses;
-  const Status status =
-      ReadIfThere(PathOf(folder, "gt_bundle.out"), ParseBundlePoses, &poses);
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(
+      ReadIfThere(PathOf(folder, "gt_bundle.out"), ParseBundlePoses, &poses));
   if (!poses) {
     return MakeError(ErrorCode::kNotFound,
                      "there is no gt_bundle.out, the reference cameras",

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "third_party_adapters/onedsfm/internal/problem.h"
 
 namespace lowlap::onedsfm {
@@ -14,10 +15,9 @@ SceneFormats OneDSfmFormats() {
   format.recognizes_folder = IsProblemFolder;
   format.read = [](const std::string& path,
                    SceneNotes* notes) -> Result<Scene> {
-    auto problem = ReadProblem(path);
-    if (!problem) return tl::unexpected<Error>(problem.error());
-    for (std::string& note : problem->notes) notes->push_back(std::move(note));
-    return std::move(problem->scene);
+    LOWLAP_ASSIGN_OR_RETURN(auto problem, ReadProblem(path));
+    for (std::string& note : problem.notes) notes->push_back(std::move(note));
+    return std::move(problem.scene);
   };
   return {std::move(format)};
 }

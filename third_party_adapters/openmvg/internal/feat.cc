@@ -1,6 +1,7 @@
 #include "third_party_adapters/openmvg/internal/feat.h"
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/token_reader.h"
 
 namespace lowlap::openmvg {
@@ -37,9 +38,8 @@ Result<std::vector<Vec2>> ParseFeat(std::string_view text,
 }
 
 Result<std::vector<Vec2>> ReadFeat(const std::string& path) {
-  const Result<std::string> text = ReadWholeFile(path);
-  if (!text) return tl::unexpected<Error>(text.error());
-  return ParseFeat(*text, path);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string text, ReadWholeFile(path));
+  return ParseFeat(text, path);
 }
 
 }  // namespace lowlap::openmvg

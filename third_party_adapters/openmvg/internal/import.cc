@@ -6,6 +6,7 @@
 #include <system_error>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/scene_format.h"
 #include "lowlap/scene/validation.h"
 #include "third_party_adapters/openmvg/internal/feat.h"
@@ -54,9 +55,7 @@ Status ReadFeatures(const std::string& dir, Scene& scene) {
                            " share one feature file",
                        path);
     }
-    Result<std::vector<Vec2>> points = ReadFeat(path);
-    if (!points) return tl::unexpected<Error>(points.error());
-    scene.features[id].points_px = std::move(*points);
+    LOWLAP_ASSIGN_OR_RETURN(scene.features[id].points_px, ReadFeat(path));
   }
   return {};
 }
@@ -115,30 +114,23 @@ Status CheckMatches(ImportedProject& project) {
 Result<ImportedProject> ImportProject(const std::string& sfm_data_path,
                                       const std::string& matches_dir,
                                       const ImportOptions& options) {
-  Result<Scene> listing = ReadListing(sfm_data_path);
-  if (!listing) return tl::unexpected<Error>(listing.error());
+  LOWLAP_ASSIGN_OR_RETURN(Scene listing, ReadListing(sfm_data_path));
   ImportedProject project;
-  project.scene.root_path = std::move(listing->root_path);
-  project.scene.views = std::move(listing->views);
-  project.scene.intrinsics = std::move(listing->intrinsics);
+  project.scene.root_path = std::move(listing.root_path);
+  project.scene.views = std::move(listing.views);
+  project.scene.intrinsics = std::move(listing.intrinsics);
 
   // The match file first: a wrong name is found before the slow part.
-  Result<std::string> match_file =
-      FindMatchFile(options.match_file, matches_dir);
-  if (!match_file) return tl::unexpected<Error>(match_file.error());
-  project.match_file = std::move(*match_file);
-  Result<PairMatches> matches = ReadMatches(project.match_file);
-  if (!matches) return tl::unexpected<Error>(matches.error());
-  project.matches = std::move(*matches);
+  LOWLAP_ASSIGN_OR_RETURN(project.match_file,
+                          FindMatchFile(options.match_file, matches_dir));
+  LOWLAP_ASSIGN_OR_RETURN(project.matches, ReadMatches(project.match_file));
 
-  Status status = ReadFeatures(matches_dir, project.scene);
-  if (status) status = CheckMatches(project);
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(ReadFeatures(matches_dir, project.scene));
+  LOWLAP_RETURN_IF_ERROR(CheckMatches(project));
   // The structure of the listing names lines of the .feat files.
-  if (status = ValidateScene(project.scene); !status) {
-    Error error = status.error();
-    error.file = sfm_data_path;
-    return tl::unexpected<Error>(std::move(error));
+  if (Status valid = ValidateScene(project.scene); !valid) {
+    valid.error().file = sfm_data_path;
+    return tl::unexpected<Error>(valid.error());
   }
   return project;
 }

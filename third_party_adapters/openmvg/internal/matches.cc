@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/token_reader.h"
 #include "third_party_adapters/openmvg/internal/archive_reader.h"
 
@@ -86,10 +87,9 @@ Result<PairMatches> ParseMatchesBin(std::string_view bytes,
 Result<PairMatches> ReadMatches(const std::string& path) {
   const bool is_text = EndsWith(path, ".txt");
   if (!is_text && !EndsWith(path, ".bin")) return UnknownExtension(path);
-  const Result<std::string> content = ReadWholeFile(path);
-  if (!content) return tl::unexpected<Error>(content.error());
-  return is_text ? ParseMatchesText(*content, path)
-                 : ParseMatchesBin(*content, path);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string content, ReadWholeFile(path));
+  return is_text ? ParseMatchesText(content, path)
+                 : ParseMatchesBin(content, path);
 }
 
 }  // namespace lowlap::openmvg

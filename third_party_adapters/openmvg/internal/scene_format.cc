@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/json/scene_json.h"
 #include "lowlap/scene/validation.h"
 #include "third_party_adapters/openmvg/internal/prepare.h"
@@ -27,9 +28,7 @@ bool IsXmlStart(std::string_view start) {
 }
 
 Result<std::string> FormatBin(const Scene& scene) {
-  if (const Status valid = ValidateScene(scene); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateScene(scene));
   return SerializeSfmDataBin(scene);
 }
 
@@ -39,8 +38,7 @@ auto WritePrepared(FormatScene format) {
                                         const std::string& path,
                                         FileSet* files) -> Result<SceneNotes> {
     PreparedScene prepared = PrepareForOpenMvg(scene);
-    const Result<SceneNotes> written = write(prepared.scene, path, files);
-    if (!written) return written;
+    LOWLAP_RETURN_IF_ERROR(write(prepared.scene, path, files));
     return std::move(prepared.notes);
   };
 }

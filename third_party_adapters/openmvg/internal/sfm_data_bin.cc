@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/scene/validation.h"
 #include "third_party_adapters/openmvg/internal/archive_reader.h"
 #include "third_party_adapters/openmvg/internal/polymorphic.h"
@@ -227,9 +228,8 @@ Result<Scene> ParseSfmDataBin(std::string_view bytes, const std::string& file) {
 }
 
 Result<Scene> ReadSfmDataBin(const std::string& path) {
-  const Result<std::string> bytes = ReadWholeFile(path);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
-  Result<Scene> scene = ParseSfmDataBin(*bytes, path);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string bytes, ReadWholeFile(path));
+  Result<Scene> scene = ParseSfmDataBin(bytes, path);
   if (!scene) return scene;
   if (const Status status = ValidateScene(*scene); !status) {
     Error error = status.error();

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/json/scene_json.h"
 #include "third_party_adapters/openmvg/internal/xml_structure.h"
 
@@ -52,7 +53,7 @@ class JsonFromXml {
         json += Json(std::string(child->name(), child->name_size())).dump();
         json += ':';
       }
-      if (Status status = Append(*child, json); !status) return status;
+      LOWLAP_RETURN_IF_ERROR(Append(*child, json));
     }
     json += is_array ? ']' : '}';
     return {};
@@ -92,10 +93,7 @@ class JsonFromXml {
 Result<Scene> ParseSfmDataXml(const std::string& text,
                               const std::string& file) {
   constexpr int kMaxDepth = 64;  // OpenMVG's files have 10
-  if (const Status checked = CheckXmlStructure(text, kMaxDepth, file);
-      !checked) {
-    return tl::unexpected<Error>(checked.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(CheckXmlStructure(text, kMaxDepth, file));
   std::string buffer = text;  // the parser writes into it
   std::string json;
   try {
@@ -106,10 +104,8 @@ Result<Scene> ParseSfmDataXml(const std::string& text,
       return MakeError(ErrorCode::kParse, "the element <cereal> is missing",
                        file);
     }
-    if (Status status = JsonFromXml(buffer.data(), file).Append(*root, json);
-        !status) {
-      return tl::unexpected<Error>(status.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(
+        JsonFromXml(buffer.data(), file).Append(*root, json));
   } catch (const rapidxml::parse_error& error) {
     return MakeError(
         ErrorCode::kParse, std::string("not XML: ") + error.what(), file,
@@ -121,9 +117,8 @@ Result<Scene> ParseSfmDataXml(const std::string& text,
 }
 
 Result<Scene> ReadSfmDataXml(const std::string& path) {
-  const Result<std::string> text = ReadWholeFile(path);
-  if (!text) return tl::unexpected<Error>(text.error());
-  return ParseSfmDataXml(*text, path);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string text, ReadWholeFile(path));
+  return ParseSfmDataXml(text, path);
 }
 
 }  // namespace lowlap::openmvg

@@ -1,6 +1,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/json/scene_json.h"
 #include "third_party_adapters/openmvg/internal/sfm_data_xml.h"
 
@@ -91,9 +92,8 @@ bool AppendElement(const std::string& name, const Json& value, int level,
 }  // namespace
 
 Result<std::string> FormatSfmDataXml(const Scene& scene) {
-  const Result<std::string> text = FormatSceneJson(scene);
-  if (!text) return text;
-  Json json = Json::parse(*text, nullptr, /*allow_exceptions=*/false);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string text, FormatSceneJson(scene));
+  Json json = Json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (json.is_discarded()) {
     return MakeError(ErrorCode::kInvalidScene, "the scene has no text form");
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/token_reader.h"
 #include "lowlap/geometry/internal/rotation.h"
 
@@ -68,19 +69,16 @@ bool IsImageSize(double value) {
 
 Result<Mat3> ParseCalibrationMatrix(std::string_view text,
                                     const std::string& file) {
-  const Result<std::vector<double>> numbers = ParseNumbers(text, 9, file);
-  if (!numbers) return tl::unexpected<Error>(numbers.error());
-  const Mat3 calibration = MatrixFromRows(numbers->data());
-  if (Status status = CheckCalibration(calibration, file); !status) {
-    return tl::unexpected<Error>(status.error());
-  }
+  LOWLAP_ASSIGN_OR_RETURN(const std::vector<double> numbers,
+                          ParseNumbers(text, 9, file));
+  const Mat3 calibration = MatrixFromRows(numbers.data());
+  LOWLAP_RETURN_IF_ERROR(CheckCalibration(calibration, file));
   return calibration;
 }
 
 Result<Mat3> ReadCalibrationMatrix(const std::string& path) {
-  const Result<std::string> text = ReadWholeFile(path);
-  if (!text) return tl::unexpected<Error>(text.error());
-  return ParseCalibrationMatrix(*text, path);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string text, ReadWholeFile(path));
+  return ParseCalibrationMatrix(text, path);
 }
 
 Intrinsic PinholeFromMatrix(const Mat3& calibration, int width_px,
@@ -95,13 +93,11 @@ Intrinsic PinholeFromMatrix(const Mat3& calibration, int width_px,
 }
 
 Result<Camera> ParseCamera(std::string_view text, const std::string& file) {
-  const Result<std::vector<double>> parsed = ParseNumbers(text, 26, file);
-  if (!parsed) return tl::unexpected<Error>(parsed.error());
-  const double* numbers = parsed->data();
+  LOWLAP_ASSIGN_OR_RETURN(const std::vector<double> parsed,
+                          ParseNumbers(text, 26, file));
+  const double* numbers = parsed.data();
   const Mat3 calibration = MatrixFromRows(numbers);
-  if (Status status = CheckCalibration(calibration, file); !status) {
-    return tl::unexpected<Error>(status.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(CheckCalibration(calibration, file));
   if (numbers[9] != 0 || numbers[10] != 0 || numbers[11] != 0) {
     return MakeError(ErrorCode::kUnsupported,
                      "0 0 0 is expected after the calibration matrix", file);
@@ -125,9 +121,8 @@ Result<Camera> ParseCamera(std::string_view text, const std::string& file) {
 }
 
 Result<Camera> ReadCamera(const std::string& path) {
-  const Result<std::string> text = ReadWholeFile(path);
-  if (!text) return tl::unexpected<Error>(text.error());
-  return ParseCamera(*text, path);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string text, ReadWholeFile(path));
+  return ParseCamera(text, path);
 }
 
 Result<std::map<std::string, Camera>> ReadCameras(const std::string& dir) {
@@ -149,9 +144,8 @@ Result<std::map<std::string, Camera>> ReadCameras(const std::string& dir) {
   }
   for (; entry != fs::directory_iterator(); entry.increment(error)) {
     if (entry->path().extension() != extension) continue;
-    Result<Camera> camera = ReadCamera(entry->path().string());
-    if (!camera) return tl::unexpected<Error>(camera.error());
-    cameras.emplace(entry->path().stem().string(), std::move(*camera));
+    LOWLAP_ASSIGN_OR_RETURN(Camera camera, ReadCamera(entry->path().string()));
+    cameras.emplace(entry->path().stem().string(), std::move(camera));
   }
   if (error) {
     return MakeError(ErrorCode::kIo, error.message(), folder.string());
@@ -164,10 +158,9 @@ Result<std::map<std::string, Camera>> ReadCameras(const std::string& dir) {
 }
 
 Result<std::map<std::string, Pose>> ReadGroundTruth(const std::string& dir) {
-  const Result<std::map<std::string, Camera>> cameras = ReadCameras(dir);
-  if (!cameras) return tl::unexpected<Error>(cameras.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto cameras, ReadCameras(dir));
   std::map<std::string, Pose> poses;
-  for (const auto& [name, camera] : *cameras) poses.emplace(name, camera.pose);
+  for (const auto& [name, camera] : cameras) poses.emplace(name, camera.pose);
   return poses;
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -211,9 +212,7 @@ TripletPrediction PredictTripletAveraging(const Scene& scene,
 Result<ScaleDiagnosis> DiagnoseScales(const ViewGraph& graph,
                                       const std::vector<ScaleRatio>& ratios,
                                       const DiagnosisOptions& options) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   for (const ScaleRatio& ratio : ratios) {
     const ViewTriplet& v = ratio.views;
     for (const ViewId outer : {v.first, v.last}) {

@@ -7,6 +7,7 @@
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/averaging/rotations/internal/cycle_support.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/median_deviation.h"
@@ -136,8 +137,8 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
   Phase phase = with_l1 ? Phase::kL1 : Phase::kTighten;
   double scale = HUGE_VAL;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    const Status go_on = AskToGoOn(context, iteration, options.max_iterations);
-    if (!go_on) return tl::unexpected<Error>(go_on.error());
+    LOWLAP_RETURN_IF_ERROR(
+        AskToGoOn(context, iteration, options.max_iterations));
     std::vector<double> normalised(measurements.size());
     for (Eigen::Index e = 0; e < count; ++e) {
       steps.row(e) = Residual(measurements[e], rotations);
@@ -167,12 +168,12 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
       }
     }
     // exp(-w_j) E exp(w_i) ~ log E + w_i - w_j, so w_j - w_i = log E.
-    const auto tangent =
-        SolveDifferences(rotations.size(), edges, weights, steps, &solver);
-    if (!tangent) return tl::unexpected<Error>(tangent.error());
+    LOWLAP_ASSIGN_OR_RETURN(
+        const auto tangent,
+        SolveDifferences(rotations.size(), edges, weights, steps, &solver));
     double largest = 0;
     for (std::size_t n = 0; n < rotations.size(); ++n) {
-      const Vec3 w = tangent->row(static_cast<Eigen::Index>(n));
+      const Vec3 w = tangent.row(static_cast<Eigen::Index>(n));
       largest = std::max(largest, w.norm());
       rotations[n] = rotations[n] * RotationFromAngleAxis(w);
     }
@@ -219,9 +220,7 @@ Status RotationAveragingOptions::Validate() const {
 Result<RotationAveragingResult> AverageRotations(
     std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
     const RotationAveragingOptions& options, const RunContext& context) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::vector<DifferenceEdge> edges;
   edges.reserve(measurements.size());
   for (const RotationMeasurement& m : measurements) {
@@ -242,11 +241,8 @@ Result<RotationAveragingResult> AverageRotations(
     RotationAveragingResult result;
     result.cam_from_world =
         ComposeAlongForest(num_views, measurements, edges, start.costs);
-    if (const Status done = Refine(measurements, edges, options, start.with_l1,
-                                   context, &result);
-        !done) {
-      return tl::unexpected<Error>(done.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(
+        Refine(measurements, edges, options, start.with_l1, context, &result));
     const double cost = RobustCost(measurements, result.cam_from_world);
     // A start that ends in the same place does not replace an earlier one.
     if (cost < best_cost - 1e-6 * (1 + std::abs(cost))) {

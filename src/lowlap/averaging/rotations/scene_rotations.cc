@@ -8,6 +8,7 @@
 #include "lowlap/averaging/rotations/internal/rotation_averaging.h"
 #include "lowlap/averaging/translation_problem.h"
 #include "lowlap/core/internal/median.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/scene/view_graph.h"
@@ -36,9 +37,7 @@ class SceneRotationSolver {
 
   Result<SceneRotations> Solve() {
     do {
-      if (const Status averaged = Average(); !averaged) {
-        return tl::unexpected<Error>(averaged.error());
-      }
+      LOWLAP_RETURN_IF_ERROR(Average());
       // Leaving one out may take a view with it, so start over after it.
     } while (RejectByRotation() || SettleLoops() || RejectByEvidence());
     Report();
@@ -82,24 +81,24 @@ class SceneRotationSolver {
       measurements.push_back(m);
     }
     graph_ = ViewGraph(std::move(kept));
-    const auto solved =
-        AverageRotations(views_.size(), measurements, options_, context_);
-    if (!solved) return tl::unexpected<Error>(solved.error());
+    LOWLAP_ASSIGN_OR_RETURN(
+        const auto solved,
+        AverageRotations(views_.size(), measurements, options_, context_));
     for (std::size_t n = 0; n < views_.size(); ++n) {
-      rotations_[views_[n]] = solved->cam_from_world[n];
+      rotations_[views_[n]] = solved.cam_from_world[n];
     }
     if (sigma_ == 0) {
       std::vector<double> near;
       for (std::size_t e = 0; e < measurements.size(); ++e) {
-        const double r = solved->residuals_rad[e];
-        if (r <= 5 * solved->deviation_scale * measurements[e].stddev_rad) {
+        const double r = solved.residuals_rad[e];
+        if (r <= 5 * solved.deviation_scale * measurements[e].stddev_rad) {
           near.push_back(r);
         }
       }
       sigma_ = std::max(Median(std::move(near)) / kMedianOfNorm<3>,
                         kPoseErrorFloorRad);
     }
-    result_.median_residual_rad = Median(solved->residuals_rad);
+    result_.median_residual_rad = Median(solved.residuals_rad);
     return {};
   }
 

@@ -6,6 +6,7 @@
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/core/internal/median.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/union_find.h"
 #include "lowlap/robust/internal/robust_loss.h"
 
@@ -63,8 +64,7 @@ Result<std::vector<Vec3>> SolveCenters(std::size_t num_views,
   SparseSolver solver(context);
   std::vector<double> robust(edges.size(), 1.0);
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
-    const Status go_on = AskToGoOn(context, iteration, max_iterations);
-    if (!go_on) return tl::unexpected<Error>(go_on.error());
+    LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, iteration, max_iterations));
     Triplets entries;
     entries.reserve(24 * edges.size());
     Eigen::VectorXd rhs = Eigen::VectorXd::Zero(num_rows);
@@ -87,12 +87,11 @@ Result<std::vector<Vec3>> SolveCenters(std::size_t num_views,
     }
     Eigen::SparseMatrix<double> matrix(num_rows, num_rows);
     matrix.setFromTriplets(entries.begin(), entries.end());
-    const auto solution = solver.Solve(matrix, rhs);
-    if (!solution) return tl::unexpected<Error>(solution.error());
+    LOWLAP_ASSIGN_OR_RETURN(const auto solution, solver.Solve(matrix, rhs));
     double change = 0, extent = 0;
     for (std::size_t n = 0; n < num_views; ++n) {
       if (row[n] < 0) continue;
-      const Vec3 center = solution->block<3, 1>(row[n], 0);
+      const Vec3 center = solution.block<3, 1>(row[n], 0);
       change = std::max(change, (center - centers[n]).norm());
       extent = std::max(extent, center.norm());
       centers[n] = center;

@@ -8,6 +8,7 @@
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/core/internal/median.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/union_find.h"
 #include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/robust/internal/robust_loss.h"
@@ -69,8 +70,7 @@ class Averaging {
     // The absolute residuals only serve as a start.
     const double tolerance = loss == ScaleLoss::kAbsolute ? 1e-3 : 1e-11;
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
-      const Status go_on = AskToGoOn(context_, iteration, max_iterations);
-      if (!go_on) return go_on;
+      LOWLAP_RETURN_IF_ERROR(AskToGoOn(context_, iteration, max_iterations));
       SetWeights(loss, scales->normalised_residuals);
       const auto solution = SolveDifferences(problem_.edges.size(), graph_,
                                              weights_, measurements_, &solver_);
@@ -163,14 +163,13 @@ Result<EdgeScales> AverageEdgeScales(const TranslationProblem& problem,
   if (problem.ratios.empty()) return from_chain;
   Averaging averaging(problem, context);
   EdgeScales from_l1 = from_chain;
-  Status status = averaging.Run(ScaleLoss::kAbsolute, kL1Iterations, &from_l1);
-  if (status) {
-    status = averaging.Run(ScaleLoss::kGemanMcClure, max_iterations, &from_l1);
-  }
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(
+      averaging.Run(ScaleLoss::kAbsolute, kL1Iterations, &from_l1));
+  LOWLAP_RETURN_IF_ERROR(
+      averaging.Run(ScaleLoss::kGemanMcClure, max_iterations, &from_l1));
   if (problem.ratios.size() > kMaxRatiosOfChainStart) return from_l1;
-  status = averaging.Run(ScaleLoss::kGemanMcClure, max_iterations, &from_chain);
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(
+      averaging.Run(ScaleLoss::kGemanMcClure, max_iterations, &from_chain));
   const double chain_cost = ScaleCost(problem, from_chain);
   const double l1_cost = ScaleCost(problem, from_l1);
   return l1_cost < chain_cost - 1e-6 * (1 + chain_cost) ? from_l1 : from_chain;

@@ -7,6 +7,7 @@
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/core/internal/median.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/robust/internal/robust_loss.h"
 
@@ -201,8 +202,7 @@ Status RefineCenters(const TranslationProblem& problem,
       for (int r = 0; r < refiner.num_rows(); ++r) {
         damped.coeffRef(r, r) += damping * hessian.coeff(r, r);
       }
-      const Status go_on = AskToGoOn(context, iteration, max_iterations);
-      if (!go_on) return go_on;
+      LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, iteration, max_iterations));
       const auto step = solver.Solve(damped, -gradient);
       if (!step && step.error().code == ErrorCode::kCancelled) {
         return tl::unexpected<Error>(step.error());

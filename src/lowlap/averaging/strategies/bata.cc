@@ -6,6 +6,7 @@
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/averaging/strategies/internal/revised_lud.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/robust/internal/robust_loss.h"
 
 namespace lowlap {
@@ -32,9 +33,8 @@ Result<std::vector<Vec3>> SolveBata(const DirectionPart& part,
   // Of the mean weight: holds edges of inverse length 0 where they are, so that
   // no view comes loose.
   constexpr double kHold = 1e-9;
-  auto start = SolveRevisedLud(part, {}, context, num_iterations);
-  if (!start) return start;
-  std::vector<Vec3> centers = std::move(*start);
+  LOWLAP_ASSIGN_OR_RETURN(std::vector<Vec3> centers,
+                          SolveRevisedLud(part, {}, context, num_iterations));
 
   const auto num_edges = static_cast<Eigen::Index>(part.edges.size());
   std::vector<DifferenceEdge> differences;
@@ -53,8 +53,7 @@ Result<std::vector<Vec3>> SolveBata(const DirectionPart& part,
           (inverse * offset - edge.direction_in_world).norm(), kAngleHuber);
     }
     for (int step = 0; step < options.steps_per_round; ++step) {
-      const Status go_on = AskToGoOn(context, round, options.rounds);
-      if (!go_on) return tl::unexpected<Error>(go_on.error());
+      LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, round, options.rounds));
       for (Eigen::Index e = 0; e < num_edges; ++e) {
         const DirectionEdge& edge = part.edges[static_cast<std::size_t>(e)];
         const Vec3 offset = centers[edge.second] - centers[edge.first];
@@ -72,11 +71,11 @@ Result<std::vector<Vec3>> SolveBata(const DirectionPart& part,
                          "every direction of a part points backwards");
       }
       weights = weights.cwiseMax(hold);
-      const auto moved = SolveDifferences(part.views.size(), differences,
-                                          weights, measured, &solver);
-      if (!moved) return tl::unexpected<Error>(moved.error());
+      LOWLAP_ASSIGN_OR_RETURN(const auto moved,
+                              SolveDifferences(part.views.size(), differences,
+                                               weights, measured, &solver));
       for (std::size_t v = 0; v < centers.size(); ++v) {
-        centers[v] = moved->row(static_cast<Eigen::Index>(v)).transpose();
+        centers[v] = moved.row(static_cast<Eigen::Index>(v)).transpose();
       }
       ++*num_iterations;
     }

@@ -5,6 +5,7 @@
 
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/direction_system.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -46,9 +47,7 @@ Result<std::vector<Vec3>> UnitLengths(const DirectionPart& part,
     forces[edge.first] -= edge.direction_in_world;
   }
   const std::vector<Mat3> weights(part.edges.size(), Mat3::Identity());
-  if (const Status status = system->Factor(weights, 0); !status) {
-    return tl::unexpected<Error>(status.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(system->Factor(weights, 0));
   return system->Solve(forces);
 }
 
@@ -59,15 +58,12 @@ Result<int> MinimiseBounded(const DirectionPart& part, double width,
                             std::vector<Vec3>* centers) {
   DirectionSystem system(part);
   if (centers->empty()) {
-    auto start = UnitLengths(part, &system);
-    if (!start) return tl::unexpected<Error>(start.error());
-    *centers = std::move(*start);
+    LOWLAP_ASSIGN_OR_RETURN(*centers, UnitLengths(part, &system));
   }
   double cost = BoundedObjective(part, width, *centers);
   std::vector<Mat3> weights(part.edges.size());
   for (int iteration = 1; iteration <= max_iterations; ++iteration) {
-    const Status go_on = AskToGoOn(context, iteration - 1, max_iterations);
-    if (!go_on) return tl::unexpected<Error>(go_on.error());
+    LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, iteration - 1, max_iterations));
     std::vector<Vec3> forces(part.views.size(), Vec3::Zero());
     for (std::size_t e = 0; e < part.edges.size(); ++e) {
       const DirectionEdge& edge = part.edges[e];
@@ -82,22 +78,19 @@ Result<int> MinimiseBounded(const DirectionPart& part, double width,
       forces[edge.second] -= weight * residual;
       forces[edge.first] += weight * residual;
     }
-    if (const Status status = system.Factor(weights, kDamping); !status) {
-      return tl::unexpected<Error>(status.error());
-    }
-    const auto step = system.Solve(forces);
-    if (!step) return tl::unexpected<Error>(step.error());
+    LOWLAP_RETURN_IF_ERROR(system.Factor(weights, kDamping));
+    LOWLAP_ASSIGN_OR_RETURN(const auto step, system.Solve(forces));
     // Armijo: the step descends, since the system is positive definite.
     double slope = 0;
     for (std::size_t v = 1; v < forces.size(); ++v) {
-      slope -= forces[v].dot((*step)[v]);
+      slope -= forces[v].dot(step[v]);
     }
     std::vector<Vec3> moved(centers->size());
     double moved_cost = cost;
     bool is_lower = false;
     for (double part_of_step = 1; part_of_step > 1e-7; part_of_step /= 2) {
       for (std::size_t v = 0; v < moved.size(); ++v) {
-        moved[v] = (*centers)[v] + part_of_step * (*step)[v];
+        moved[v] = (*centers)[v] + part_of_step * step[v];
       }
       moved_cost = BoundedObjective(part, width, moved);
       is_lower = moved_cost <= cost + 1e-4 * part_of_step * slope;

@@ -9,6 +9,7 @@
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/bounded_lengths.h"
 #include "lowlap/averaging/strategies/internal/component_closure.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
@@ -33,12 +34,10 @@ class Merger {
 
   Result<std::vector<std::size_t>> Run() {
     for (std::size_t round = 0;; ++round) {
-      const Status go_on = AskToGoOn(context_, round, edges_.size());
-      if (!go_on) return tl::unexpected<Error>(go_on.error());
+      LOWLAP_RETURN_IF_ERROR(AskToGoOn(context_, round, edges_.size()));
       if (MergeIntersections() || MergeSharedPairs()) continue;
-      const auto merged = MergeRings();
-      if (!merged) return tl::unexpected<Error>(merged.error());
-      if (!*merged) return sets_.Labels();
+      LOWLAP_ASSIGN_OR_RETURN(const auto merged, MergeRings());
+      if (!merged) return sets_.Labels();
     }
   }
 
@@ -198,8 +197,7 @@ class Merger {
     }
     // Each in turn is the frame, until something moves with one.
     for (std::size_t frame = 0; frame + 2 < components.size(); ++frame) {
-      const Status go_on = AskToGoOn(context_, frame, components.size());
-      if (!go_on) return tl::unexpected<Error>(go_on.error());
+      LOWLAP_RETURN_IF_ERROR(AskToGoOn(context_, frame, components.size()));
       const std::vector<RigidComponent> rest(components.begin() + frame,
                                              components.end());
       const auto placements = CloseComponents(rest);

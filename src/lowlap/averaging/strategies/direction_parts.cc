@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lowlap/averaging/strategies/internal/direction_merging.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 
@@ -32,9 +33,8 @@ DirectionPart MakePart(const std::vector<DirectionEdge>& edges,
 
 Result<std::vector<DirectionPart>> FindDirectionParts(
     const TranslationProblem& problem, const RunContext& context) {
-  const auto labelled = LabelRigidEdges(problem, context);
-  if (!labelled) return tl::unexpected<Error>(labelled.error());
-  const std::vector<std::size_t>& labels = *labelled;
+  LOWLAP_ASSIGN_OR_RETURN(const std::vector<std::size_t>& labels,
+                          LabelRigidEdges(problem, context));
   std::vector<std::vector<std::size_t>> members;
   for (std::size_t e = 0; e < labels.size(); ++e) {
     if (labels[e] >= members.size()) members.resize(labels[e] + 1);
@@ -60,9 +60,7 @@ Result<std::vector<DirectionPart>> FindDirectionParts(
 Result<TranslationSolution> SolveDirectionParts(
     const TranslationProblem& problem, const RunContext& context,
     const PartSolver& solve) {
-  if (const Status valid = ValidateProblem(problem); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateProblem(problem));
   TranslationSolution solution;
   solution.component.assign(problem.views.size(), -1);
   solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
@@ -72,21 +70,21 @@ Result<TranslationSolution> SolveDirectionParts(
   };
   std::vector<Placed> placed;
   std::vector<char> is_taken(problem.views.size(), 0);
-  const auto parts = FindDirectionParts(problem, context);
-  if (!parts) return tl::unexpected<Error>(parts.error());
-  for (const DirectionPart& part : *parts) {
+  LOWLAP_ASSIGN_OR_RETURN(const auto parts,
+                          FindDirectionParts(problem, context));
+  for (const DirectionPart& part : parts) {
     std::vector<std::size_t> own;
     for (std::size_t n = 0; n < part.views.size(); ++n) {
       if (!is_taken[part.views[n]]) own.push_back(n);
     }
     if (own.size() < 2) continue;
-    const auto centers = solve(part, context, &solution.num_iterations);
-    if (!centers) return tl::unexpected<Error>(centers.error());
+    LOWLAP_ASSIGN_OR_RETURN(const auto centers,
+                            solve(part, context, &solution.num_iterations));
     Placed& component = placed.emplace_back();
     for (const std::size_t n : own) {
       is_taken[part.views[n]] = 1;
       component.views.push_back(part.views[n]);
-      component.centers.push_back((*centers)[n]);
+      component.centers.push_back(centers[n]);
     }
   }
   std::stable_sort(placed.begin(), placed.end(),

@@ -8,6 +8,7 @@
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/positioning_solver.h"
 #include "lowlap/averaging/strategies/internal/track_groups.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 
 namespace lowlap {
@@ -151,15 +152,13 @@ Result<std::vector<Part>> SolveGroup(Part group,
   const PositioningOptions solver = {options.huber_reach,
                                      options.max_iterations};
   const auto solve = [&](Part* part) -> Status {
-    const auto iterations =
-        SolvePositions(part->tracks, solver, context, &part->state);
-    if (!iterations) return tl::unexpected<Error>(iterations.error());
-    *num_iterations += *iterations;
+    LOWLAP_ASSIGN_OR_RETURN(
+        const auto iterations,
+        SolvePositions(part->tracks, solver, context, &part->state));
+    *num_iterations += iterations;
     return {};
   };
-  if (const Status solved = solve(&group); !solved) {
-    return tl::unexpected<Error>(solved.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(solve(&group));
   std::vector<Part> parts;
   if (options.max_angle_deg >= 180) {
     parts.push_back(std::move(group));
@@ -171,9 +170,7 @@ Result<std::vector<Part>> SolveGroup(Part group,
            options.min_shared_points)) {
     Part part = Restrict(cleaned, views, options.min_views_per_track,
                          [](std::size_t, std::size_t) { return true; });
-    if (const Status solved = solve(&part); !solved) {
-      return tl::unexpected<Error>(solved.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(solve(&part));
     parts.push_back(std::move(part));
   }
   return parts;
@@ -203,16 +200,14 @@ Status GlobalPositioningOptions::Validate() const {
 
 Result<TranslationSolution> GlobalPositioningAverager::Solve(
     const TranslationProblem& problem, const RunContext& context) const {
-  Status status = ValidateProblem(problem);
-  if (status) status = options_.Validate();
-  if (status && !options_.start.empty() &&
+  LOWLAP_RETURN_IF_ERROR(ValidateProblem(problem));
+  LOWLAP_RETURN_IF_ERROR(options_.Validate());
+  if (!options_.start.empty() &&
       options_.start.size() != problem.views.size()) {
-    status =
-        MakeError(ErrorCode::kInvalidArgument,
-                  "global positioning: the start needs one centre per view");
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "global positioning: the start needs one centre per view");
   }
-  if (status) status = AskToGoOn(context, 0, 1);
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, 0, 1));
   TranslationSolution solution;
   solution.component.assign(problem.views.size(), -1);
   solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
@@ -225,11 +220,11 @@ Result<TranslationSolution> GlobalPositioningAverager::Solve(
                     [&](std::size_t view) { return is_covered[view]; })) {
       continue;
     }
-    auto solved =
+    LOWLAP_ASSIGN_OR_RETURN(
+        auto solved,
         SolveGroup(StartPart(problem, options_, std::move(views), context.seed),
-                   options_, context, &solution.num_iterations);
-    if (!solved) return tl::unexpected<Error>(solved.error());
-    for (Part& part : *solved) {
+                   options_, context, &solution.num_iterations));
+    for (Part& part : solved) {
       for (const std::size_t view : part.views) is_covered[view] = true;
       parts.push_back(std::move(part));
     }

@@ -12,6 +12,7 @@
 #include "lowlap/averaging/scales/internal/edge_scales.h"
 #include "lowlap/averaging/scales/internal/refine_centers.h"
 #include "lowlap/averaging/strategies/internal/component_closure.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -67,19 +68,14 @@ class Growth {
       grown = false;
       for (std::size_t g = 0; g < groups_.size(); ++g) {
         if (used_[g]) continue;
-        const auto joined = JoinGroup(g);
-        if (!joined) return tl::unexpected<Error>(joined.error());
-        grown = grown || *joined;
+        LOWLAP_ASSIGN_OR_RETURN(const auto joined, JoinGroup(g));
+        grown = grown || joined;
       }
       if (!grown) {
-        const auto placed = IntersectOneView();
-        if (!placed) return tl::unexpected<Error>(placed.error());
-        grown = *placed;
+        LOWLAP_ASSIGN_OR_RETURN(grown, IntersectOneView());
       }
       if (!grown) {
-        const auto closed = CloseGroups();
-        if (!closed) return tl::unexpected<Error>(closed.error());
-        grown = *closed;
+        LOWLAP_ASSIGN_OR_RETURN(grown, CloseGroups());
       }
     }
     return {};
@@ -142,9 +138,9 @@ class Growth {
     std::vector<std::size_t> group_of = {0};
     for (std::size_t g = 0; g < groups_.size(); ++g) {
       if (used_[g] || components.size() > kMaxGroups) continue;
-      const auto local =
-          SolveScaleGroup(problem_, scales_, groups_[g], context_);
-      if (!local) return tl::unexpected<Error>(local.error());
+      LOWLAP_ASSIGN_OR_RETURN(
+          const auto local,
+          SolveScaleGroup(problem_, scales_, groups_[g], context_));
       RigidComponent component;
       component.stddev_rad = 0;
       for (const std::size_t e : groups_[g].edges) {
@@ -153,7 +149,7 @@ class Growth {
       }
       component.views = groups_[g].views;
       for (const std::size_t view : component.views) {
-        component.centers.push_back((*local)[view]);
+        component.centers.push_back(local[view]);
       }
       components.push_back(std::move(component));
       group_of.push_back(g);
@@ -182,8 +178,7 @@ class Growth {
     Vec3 best_center = Vec3::Zero();
     for (std::size_t view = 0; view < placed_.size(); ++view) {
       if (placed_[view]) continue;
-      const Status go_on = AskToGoOn(context_, view, placed_.size());
-      if (!go_on) return tl::unexpected<Error>(go_on.error());
+      LOWLAP_RETURN_IF_ERROR(AskToGoOn(context_, view, placed_.size()));
       Mat3 normal = Mat3::Zero();
       Vec3 rhs = Vec3::Zero();
       double stddev = 0;
@@ -256,17 +251,16 @@ Status GraphScalesOptions::Validate() const {
 
 Result<TranslationSolution> GraphScalesAverager::Solve(
     const TranslationProblem& problem, const RunContext& context) const {
-  Status status = ValidateProblem(problem);
-  if (status) status = options_.Validate();
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(ValidateProblem(problem));
+  LOWLAP_RETURN_IF_ERROR(options_.Validate());
   const std::size_t num_views = problem.views.size();
-  const auto scales =
-      AverageEdgeScales(problem, context, options_.max_scale_iterations);
-  if (!scales) return tl::unexpected<Error>(scales.error());
-  const std::vector<EdgeGroup> groups = RankedEdgeGroups(problem, *scales);
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto scales,
+      AverageEdgeScales(problem, context, options_.max_scale_iterations));
+  const std::vector<EdgeGroup> groups = RankedEdgeGroups(problem, scales);
 
   TranslationSolution solution;
-  solution.num_iterations = scales->num_iterations;
+  solution.num_iterations = scales.num_iterations;
   solution.component.assign(num_views, -1);
   solution.center_in_world.assign(num_views, Vec3::Zero());
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -274,14 +268,12 @@ Result<TranslationSolution> GraphScalesAverager::Solve(
         groups[g].views.begin(), groups[g].views.end(),
         [&](std::size_t view) { return solution.component[view] < 0; });
     if (!starts_here) continue;
-    Growth growth(problem, *scales, groups, context);
-    status = growth.Start(g);
-    if (status) status = growth.Grow();
-    if (status) {
-      status = RefineCenters(problem, growth.placed(), growth.mutable_centers(),
-                             context, options_.max_refinement_iterations);
-    }
-    if (!status) return tl::unexpected<Error>(status.error());
+    Growth growth(problem, scales, groups, context);
+    LOWLAP_RETURN_IF_ERROR(growth.Start(g));
+    LOWLAP_RETURN_IF_ERROR(growth.Grow());
+    LOWLAP_RETURN_IF_ERROR(RefineCenters(problem, growth.placed(),
+                                         growth.mutable_centers(), context,
+                                         options_.max_refinement_iterations));
     for (std::size_t view = 0; view < num_views; ++view) {
       if (!growth.placed()[view] || solution.component[view] >= 0) continue;
       solution.component[view] = solution.num_components;

@@ -5,6 +5,7 @@
 
 #include "lowlap/averaging/strategies/internal/vertex_order.h"
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 
 namespace lowlap {
@@ -56,16 +57,16 @@ Status OneDSfmOptions::Validate() const {
 Result<std::vector<double>> EdgeContradictions(
     const TranslationProblem& problem, const OneDSfmOptions& options,
     const RunContext& context) {
-  Status status = ValidateProblem(problem);
-  if (status) status = options.Validate();
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(ValidateProblem(problem));
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::vector<double> mean(problem.edges.size(), 0.0);
   if (problem.edges.empty()) return mean;
   const auto count = static_cast<std::size_t>(options.num_projections);
   std::vector<std::vector<double>> broken(count);
-  status = ParallelFor(context, "1DSfM", count, [&](std::size_t n) {
-    broken[n] = BrokenWeights(problem, DrawAxis(problem, context.seed, n));
-  });
+  const Status status =
+      ParallelFor(context, "1DSfM", count, [&](std::size_t n) {
+        broken[n] = BrokenWeights(problem, DrawAxis(problem, context.seed, n));
+      });
   if (!status) return tl::unexpected<Error>(status.error());
   for (const std::vector<double>& each : broken) {
     for (std::size_t e = 0; e < mean.size(); ++e) {

@@ -7,6 +7,7 @@
 #include "lowlap/averaging/strategies/internal/bata.h"
 #include "lowlap/averaging/strategies/internal/direction_system.h"
 #include "lowlap/averaging/strategies/internal/revised_lud.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/robust/internal/robust_loss.h"
 
 namespace lowlap {
@@ -56,9 +57,8 @@ Result<std::vector<Vec3>> SolveRevisedBata(const DirectionPart& part,
   constexpr double kDecrease = 1e-10;
   constexpr double kLeastDamping = 1e-9;
   constexpr double kMostDamping = 1e6;
-  auto start = SolveRevisedLud(part, {}, context, num_iterations);
-  if (!start) return start;
-  std::vector<Vec3> centers = std::move(*start);
+  LOWLAP_ASSIGN_OR_RETURN(std::vector<Vec3> centers,
+                          SolveRevisedLud(part, {}, context, num_iterations));
   FixScale(part, &centers);
   DirectionSystem system(part);
   double cost = AngleObjective(part, centers);
@@ -78,17 +78,13 @@ Result<std::vector<Vec3>> SolveRevisedBata(const DirectionPart& part,
     bool is_lower = false;
     double decrease = 0;
     while (!is_lower && damping <= kMostDamping) {
-      const Status go_on =
-          AskToGoOn(context, iteration, options.max_iterations);
-      if (!go_on) return tl::unexpected<Error>(go_on.error());
-      if (const Status status = system.Factor(hessians, damping); !status) {
-        return tl::unexpected<Error>(status.error());
-      }
-      const auto step = system.Solve(forces);
-      if (!step) return tl::unexpected<Error>(step.error());
+      LOWLAP_RETURN_IF_ERROR(
+          AskToGoOn(context, iteration, options.max_iterations));
+      LOWLAP_RETURN_IF_ERROR(system.Factor(hessians, damping));
+      LOWLAP_ASSIGN_OR_RETURN(const auto step, system.Solve(forces));
       std::vector<Vec3> moved(centers.size());
       for (std::size_t v = 0; v < moved.size(); ++v) {
-        moved[v] = centers[v] + (*step)[v];
+        moved[v] = centers[v] + step[v];
       }
       const double moved_cost = AngleObjective(part, moved);
       is_lower = moved_cost < cost;

@@ -5,6 +5,7 @@
 
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/direction_system.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 
@@ -33,8 +34,8 @@ Result<std::vector<Vec3>> SolveRevisedLud(const DirectionPart& part,
   double delta = HUGE_VAL;  // the first round is least squares
   double last_cost = HUGE_VAL;
   for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    const Status go_on = AskToGoOn(context, iteration, options.max_iterations);
-    if (!go_on) return tl::unexpected<Error>(go_on.error());
+    LOWLAP_RETURN_IF_ERROR(
+        AskToGoOn(context, iteration, options.max_iterations));
     for (std::size_t e = 0; e < part.edges.size(); ++e) {
       const DirectionEdge& edge = part.edges[e];
       const Vec3& d = edge.direction_in_world;
@@ -48,21 +49,18 @@ Result<std::vector<Vec3>> SolveRevisedLud(const DirectionPart& part,
       weights[e] = weight * across;
     }
     // H C = lambda a, a^T C = number of edges.
-    if (const Status status = system.Factor(weights, kDamping); !status) {
-      return tl::unexpected<Error>(status.error());
-    }
-    auto solved = system.Solve(pulls);
-    if (!solved) return tl::unexpected<Error>(solved.error());
+    LOWLAP_RETURN_IF_ERROR(system.Factor(weights, kDamping));
+    LOWLAP_ASSIGN_OR_RETURN(auto solved, system.Solve(pulls));
     double reach = 0;
     for (std::size_t v = 0; v < pulls.size(); ++v) {
-      reach += pulls[v].dot((*solved)[v]);
+      reach += pulls[v].dot(solved[v]);
     }
     if (!(reach > 0)) {
       return MakeError(ErrorCode::kNumerical,
                        "the directions of a part cancel out");
     }
-    for (Vec3& center : *solved) center *= num_edges / reach;
-    centers = std::move(*solved);
+    for (Vec3& center : solved) center *= num_edges / reach;
+    centers = std::move(solved);
     ++*num_iterations;
 
     delta = std::isinf(delta) ? 1.0 : std::max(delta / 2, kLeastDelta);

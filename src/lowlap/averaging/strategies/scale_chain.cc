@@ -6,14 +6,13 @@
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/scales/internal/edge_groups.h"
 #include "lowlap/averaging/scales/internal/edge_scales.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 
 Result<TranslationSolution> ScaleChainAverager::Solve(
     const TranslationProblem& problem, const RunContext& context) const {
-  if (const Status valid = ValidateProblem(problem); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateProblem(problem));
   const std::size_t num_views = problem.views.size();
   TranslationSolution solution;
   solution.component.assign(num_views, -1);
@@ -21,8 +20,7 @@ Result<TranslationSolution> ScaleChainAverager::Solve(
   const EdgeScales scales = ChainEdgeScales(problem);
   const std::vector<EdgeGroup> groups = RankedEdgeGroups(problem, scales);
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const Status go_on = AskToGoOn(context, g, groups.size());
-    if (!go_on) return tl::unexpected<Error>(go_on.error());
+    LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, g, groups.size()));
     const EdgeGroup& group = groups[g];
     std::vector<DifferenceEdge> graph;
     std::vector<double> costs;

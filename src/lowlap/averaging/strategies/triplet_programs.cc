@@ -5,6 +5,7 @@
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/linear_program.h"
 #include "lowlap/averaging/strategies/internal/triplet_baselines.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -107,18 +108,15 @@ Status TripletProgramOptions::Validate() const {
 
 Result<TranslationSolution> TripletProgramAverager::Solve(
     const TranslationProblem& problem, const RunContext& context) const {
-  Status status = ValidateProblem(problem);
-  if (status) status = options_.Validate();
-  if (status) status = AskToGoOn(context, 0, 1);
-  if (!status) return tl::unexpected<Error>(status.error());
+  LOWLAP_RETURN_IF_ERROR(ValidateProblem(problem));
+  LOWLAP_RETURN_IF_ERROR(options_.Validate());
+  LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, 0, 1));
   TranslationSolution solution;
   solution.component.assign(problem.views.size(), -1);
   solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
   for (const std::vector<TripletMotion>& triplets :
        FindTripletBaselines(problem, options_)) {
-    if (const Status fits = CheckSize(Name(), norm_, triplets.size()); !fits) {
-      return tl::unexpected<Error>(fits.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(CheckSize(Name(), norm_, triplets.size()));
     CenterProgram program(problem, norm_);
     for (const TripletMotion& motion : triplets) program.Add(motion);
     bool adds_views = false;
@@ -126,14 +124,13 @@ Result<TranslationSolution> TripletProgramAverager::Solve(
       adds_views = adds_views || solution.component[entry.first] < 0;
     }
     if (!adds_views) continue;
-    const auto optimum = program.Minimize(context);
-    if (!optimum) return tl::unexpected<Error>(optimum.error());
-    solution.num_iterations += optimum->num_iterations;
+    LOWLAP_ASSIGN_OR_RETURN(const auto optimum, program.Minimize(context));
+    solution.num_iterations += optimum.num_iterations;
     for (const auto& [view, x] : program.centers()) {
       if (solution.component[view] >= 0) continue;
       solution.component[view] = solution.num_components;
       solution.center_in_world[view] = {
-          optimum->values[x], optimum->values[x + 1], optimum->values[x + 2]};
+          optimum.values[x], optimum.values[x + 1], optimum.values[x + 2]};
     }
     ++solution.num_components;
   }

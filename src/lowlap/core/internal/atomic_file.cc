@@ -12,6 +12,8 @@
 #include <system_error>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
+
 namespace lowlap {
 namespace {
 
@@ -139,9 +141,7 @@ FileSet::~FileSet() {
 }
 
 Status FileSet::Add(const std::string& path, std::string_view content) {
-  const Result<Target> followed = FollowLinks(path);
-  if (!followed) return tl::unexpected<Error>(followed.error());
-  const Target& target = *followed;
+  LOWLAP_ASSIGN_OR_RETURN(const Target& target, FollowLinks(path));
   if (target.is_direct) {
     outputs_.push_back({path, target.path, {}, std::string(content), -1});
     return {};

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -79,12 +80,11 @@ bool LiesOn(const LineSegment& segment, const Piece& piece,
 }  // namespace
 
 Result<std::vector<TrueEdge>> ReadTrueEdges(const std::string& path) {
-  const Result<std::string> text = ReadWholeFile(path);
-  if (!text) return tl::unexpected<Error>(text.error());
+  LOWLAP_ASSIGN_OR_RETURN(const std::string text, ReadWholeFile(path));
   std::vector<TrueEdge> edges;
   std::string place;
   try {
-    const Json json = Json::parse(*text);
+    const Json json = Json::parse(text);
     for (const Json& edge : json.at("edges")) {
       place = "edge " + std::to_string(edges.size());
       edges.push_back(ParseEdge(edge));

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/evaluation/internal/relative_errors.h"
 
 namespace lowlap {
@@ -79,9 +80,7 @@ ErrorQuantiles QuantilesOf(std::vector<double> values) {
 Result<PairEvaluation> EvaluatePairs(const Scene& scene,
                                      const GroundTruth& truth,
                                      const PairEvaluationOptions& options) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::map<ViewPair, PairError> by_views;
   const std::set<ViewPair> consecutive = ConsecutivePairs(truth);
   for (const ViewPair& views : consecutive) by_views[views].consecutive = true;

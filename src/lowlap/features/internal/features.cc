@@ -11,6 +11,7 @@
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/image_memory.h"
 #include "lowlap/features/internal/undistorted_image.h"
 
@@ -27,43 +28,40 @@ double MachineMemoryGb() {
 
 Status AddPoints(const GrayImage& image, const FeatureOptions& options,
                  DetectedFeatures* detected) {
-  Result<PointFeatures> points = DetectPoints(image, options.points);
-  if (!points) return tl::unexpected<Error>(points.error());
-  for (const Keypoint& keypoint : points->keypoints) {
+  LOWLAP_ASSIGN_OR_RETURN(PointFeatures points,
+                          DetectPoints(image, options.points));
+  for (const Keypoint& keypoint : points.keypoints) {
     detected->features.points_px.push_back(keypoint.position_px);
     const Mat2& shape = keypoint.covariance;
     detected->features.point_covariances.emplace_back(shape(0, 0), shape(0, 1),
                                                       shape(1, 1));
   }
-  detected->keypoints = std::move(points->keypoints);
-  detected->point_descriptors = std::move(points->descriptors);
+  detected->keypoints = std::move(points.keypoints);
+  detected->point_descriptors = std::move(points.descriptors);
   return {};
 }
 
 Status AddLines(const GrayImage& image, const FeatureOptions& options,
                 DetectedFeatures* detected) {
-  Result<std::vector<LineSegment>> segments = DetectLines(image, options.lines);
-  if (!segments) return tl::unexpected<Error>(segments.error());
-  Result<std::vector<LineDescriptor>> descriptors =
-      DescribeLines(image, *segments);
-  if (!descriptors) return tl::unexpected<Error>(descriptors.error());
-  detected->features.segments = std::move(*segments);
-  detected->line_descriptors = std::move(*descriptors);
+  LOWLAP_ASSIGN_OR_RETURN(std::vector<LineSegment> segments,
+                          DetectLines(image, options.lines));
+  LOWLAP_ASSIGN_OR_RETURN(std::vector<LineDescriptor> descriptors,
+                          DescribeLines(image, segments));
+  detected->features.segments = std::move(segments);
+  detected->line_descriptors = std::move(descriptors);
   return {};
 }
 
 Status AddUndistortedLines(const GrayImage& image, const Intrinsic& intrinsic,
                            const FeatureOptions& options,
                            DetectedFeatures* detected) {
-  const Result<UndistortedImage> undistorted =
-      UndistortedImage::Make(image, intrinsic);
-  if (!undistorted) return tl::unexpected<Error>(undistorted.error());
+  LOWLAP_ASSIGN_OR_RETURN(const UndistortedImage undistorted,
+                          UndistortedImage::Make(image, intrinsic));
   DetectedFeatures found;
-  const Status added = AddLines(undistorted->image(), options, &found);
-  if (!added) return added;
+  LOWLAP_RETURN_IF_ERROR(AddLines(undistorted.image(), options, &found));
   for (std::size_t i = 0; i < found.features.segments.size(); ++i) {
     const std::optional<LineSegment> segment =
-        undistorted->ToDistorted(found.features.segments[i]);
+        undistorted.ToDistorted(found.features.segments[i]);
     if (!segment) continue;
     detected->features.segments.push_back(*segment);
     detected->line_descriptors.push_back(found.line_descriptors[i]);
@@ -78,7 +76,7 @@ Status FeatureOptions::Validate() const {
     return MakeError(ErrorCode::kInvalidArgument,
                      "max_memory_gb must be positive");
   }
-  if (const Status s = points.Validate(); !s) return s;
+  LOWLAP_RETURN_IF_ERROR(points.Validate());
   return lines.Validate();
 }
 
@@ -112,31 +110,31 @@ Result<DetectedFeatures> DetectFeaturesOfView(const Scene& scene, ViewId id,
                                               const std::string& image_bytes,
                                               const FeatureOptions& options) {
   const std::string path = scene.ImagePath(id);
-  const Result<GrayImage> image = DecodeGrayImage(image_bytes, path);
-  if (!image) return tl::unexpected<Error>(image.error());
+  LOWLAP_ASSIGN_OR_RETURN(const GrayImage image,
+                          DecodeGrayImage(image_bytes, path));
   const double needed_gb =
-      1e-9 * kBytesPerPixel * static_cast<double>(image->pixels.size());
+      1e-9 * kBytesPerPixel * static_cast<double>(image.pixels.size());
   if (options.detect_points && needed_gb > MachineMemoryGb()) {
     return MakeError(
         ErrorCode::kUnsupported,
         Format("the points of an image of %d x %d pixels take "
                "about %.0f GB of memory, this machine has %.0f",
-               image->width, image->height, needed_gb, MachineMemoryGb()),
+               image.width, image.height, needed_gb, MachineMemoryGb()),
         path);
   }
   const View& view = scene.views.at(id);
-  if (image->width != view.width_px || image->height != view.height_px) {
+  if (image.width != view.width_px || image.height != view.height_px) {
     return MakeError(ErrorCode::kInvalidScene,
-                     "the image has " + std::to_string(image->width) + " x " +
-                         std::to_string(image->height) + " pixels, its view " +
+                     "the image has " + std::to_string(image.width) + " x " +
+                         std::to_string(image.height) + " pixels, its view " +
                          std::to_string(view.width_px) + " x " +
                          std::to_string(view.height_px),
                      path, "view " + std::to_string(id.value()));
   }
   const Intrinsic* intrinsic = scene.FindIntrinsic(id);
   Result<DetectedFeatures> features =
-      intrinsic ? DetectFeatures(*image, *intrinsic, options)
-                : DetectFeatures(*image, options);
+      intrinsic ? DetectFeatures(image, *intrinsic, options)
+                : DetectFeatures(image, options);
   if (!features && features.error().file.empty()) features.error().file = path;
   return features;
 }
@@ -158,9 +156,7 @@ int DetectionThreads(const Scene& scene, const FeatureOptions& options,
 Result<std::map<ViewId, DetectedFeatures>> DetectFeatures(
     const Scene& scene, const FeatureOptions& options,
     const RunContext& context, std::map<ViewId, Error>* failed) {
-  if (const Status s = options.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::vector<ViewId> ids;
   for (const auto& [id, view] : scene.views) ids.push_back(id);
   std::vector<std::optional<Result<DetectedFeatures>>> results(ids.size());

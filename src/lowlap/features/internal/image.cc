@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/opencv.h"
 
 namespace lowlap {
@@ -118,9 +119,7 @@ Result<std::optional<ImageSize>> SizeFromHead(const std::string& bytes,
   if (!size || size->width_px <= 0 || size->height_px <= 0) {
     return std::optional<ImageSize>();
   }
-  if (const Status read = CheckSize(*size, path); !read) {
-    return tl::unexpected<Error>(read.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(CheckSize(*size, path));
   return size;
 }
 
@@ -144,15 +143,13 @@ Status GrayImage::Validate() const {
 }
 
 Result<GrayImage> ReadGrayImage(const std::string& path) {
-  const Result<std::string> bytes = ReadWholeFile(path);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
-  return DecodeGrayImage(*bytes, path);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string bytes, ReadWholeFile(path));
+  return DecodeGrayImage(bytes, path);
 }
 
 Result<GrayImage> DecodeGrayImage(const std::string& bytes,
                                   const std::string& path) {
-  const auto checked = SizeFromHead(bytes, path);
-  if (!checked) return tl::unexpected<Error>(checked.error());
+  LOWLAP_RETURN_IF_ERROR(SizeFromHead(bytes, path));
   GrayImage image;
   try {
     cv::Mat decoded;
@@ -168,8 +165,7 @@ Result<GrayImage> DecodeGrayImage(const std::string& bytes,
     }
     image.width = decoded.cols;
     image.height = decoded.rows;
-    const Status usable = CheckSize({image.width, image.height}, path);
-    if (!usable) return tl::unexpected<Error>(usable.error());
+    LOWLAP_RETURN_IF_ERROR(CheckSize({image.width, image.height}, path));
     image.pixels.assign(decoded.begin<std::uint8_t>(),
                         decoded.end<std::uint8_t>());
   } catch (const std::exception& e) {
@@ -181,14 +177,11 @@ Result<GrayImage> DecodeGrayImage(const std::string& bytes,
 }
 
 Result<ImageSize> ReadImageSize(const std::string& path) {
-  const Result<std::string> bytes = ReadWholeFile(path);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
-  const auto size = SizeFromHead(*bytes, path);
-  if (!size) return tl::unexpected<Error>(size.error());
-  if (*size) return **size;
-  const Result<GrayImage> image = DecodeGrayImage(*bytes, path);
-  if (!image) return tl::unexpected<Error>(image.error());
-  return ImageSize{image->width, image->height};
+  LOWLAP_ASSIGN_OR_RETURN(const std::string bytes, ReadWholeFile(path));
+  LOWLAP_ASSIGN_OR_RETURN(const auto size, SizeFromHead(bytes, path));
+  if (size) return *size;
+  LOWLAP_ASSIGN_OR_RETURN(const GrayImage image, DecodeGrayImage(bytes, path));
+  return ImageSize{image.width, image.height};
 }
 
 std::string ImageLibraryVersion() { return CV_VERSION; }

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/opencv.h"
 
 namespace lowlap {
@@ -54,9 +55,7 @@ Extent UndistortedExtent(const Intrinsic& intrinsic) {
 
 Result<UndistortedImage> UndistortedImage::Make(const GrayImage& distorted,
                                                 const Intrinsic& intrinsic) {
-  if (const Status s = distorted.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(distorted.Validate());
   if (intrinsic.model == CameraModel::kSpherical) {
     return MakeError(ErrorCode::kUnsupported,
                      "a panorama cannot be undistorted to a pinhole image");

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/byte_archive.h"
 #include "lowlap/io/internal/old_scale_ratios.h"
 #include "lowlap/io/internal/scale_ratio_records.h"
@@ -150,15 +151,12 @@ Result<Scene> ParseSceneBinary(const std::string& bytes,
 }
 
 Result<Scene> ReadSceneBinary(const std::string& path) {
-  const Result<std::string> bytes = ReadWholeFile(path);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
-  return ParseSceneBinary(*bytes, path);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string bytes, ReadWholeFile(path));
+  return ParseSceneBinary(bytes, path);
 }
 
 Result<std::string> FormatSceneBinary(const Scene& scene) {
-  if (Status valid = ValidateScene(scene); !valid) {
-    return tl::unexpected<Error>(std::move(valid).error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateScene(scene));
   std::string bytes(kMagic);
   bytes += Encoded(kSceneVersion);
   const std::vector<std::string_view> sections = SectionsOf(kSceneVersion);

@@ -3,12 +3,13 @@
 #include <string>
 
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 
 Status MatchOptions::Validate() const {
-  if (const Status s = points.Validate(); !s) return s;
-  if (const Status s = relaxed_points.Validate(); !s) return s;
+  LOWLAP_RETURN_IF_ERROR(points.Validate());
+  LOWLAP_RETURN_IF_ERROR(relaxed_points.Validate());
   return lines.Validate();
 }
 
@@ -37,9 +38,7 @@ Result<std::map<ViewPair, PairMatches>> MatchFeatures(
     const std::map<ViewId, DetectedFeatures>& features,
     const std::vector<ViewPair>& pairs, const MatchOptions& options,
     const RunContext& context) {
-  if (const Status s = options.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   for (const ViewPair& pair : pairs) {
     for (const ViewId id : {pair.first, pair.second}) {
       if (features.count(id) == 0) {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/matching/internal/points/point_matching.h"
 
 namespace lowlap {
@@ -71,9 +72,7 @@ Status RetrievalOptions::Validate() const {
 Result<std::vector<ViewPair>> RetrievePairs(
     const std::map<ViewId, DetectedFeatures>& features,
     const RetrievalOptions& options, const RunContext& context) {
-  if (const Status s = options.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::vector<ViewId> ids;
   for (const auto& [id, view] : features) ids.push_back(id);
   std::vector<Votes> votes;

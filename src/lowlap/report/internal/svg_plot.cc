@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/report/internal/markup.h"
 #include "lowlap/report/internal/plot_axis.h"
 
@@ -161,13 +162,13 @@ Result<std::string> DrawBarPlot(const BarPlot& plot) {
       if (value) values.push_back(*value);
     }
   }
-  const auto range = AxisRange::Make(plot.value, values);
-  if (!range) return tl::unexpected<Error>(range.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto range,
+                          AxisRange::Make(plot.value, values));
 
   constexpr double kBar = 15, kGroupGap = 10, kValueRoom = 70;
   const double right = kWidth - kPadding - kValueRoom;
   const auto x_of = [&](double value) {
-    return left + (right - left) * std::clamp(range->Position(value), 0.0, 1.0);
+    return left + (right - left) * std::clamp(range.Position(value), 0.0, 1.0);
   };
   Svg svg;
   double y = DrawHead(plot.title, plot.note, &svg);
@@ -177,14 +178,14 @@ Result<std::string> DrawBarPlot(const BarPlot& plot) {
       kBar * static_cast<double>(plot.series.size()) + kGroupGap;
   const double bottom =
       top + group_height * static_cast<double>(plot.groups.size()) + kGroupGap;
-  for (const double tick : range->Ticks()) {
+  for (const double tick : range.Ticks()) {
     svg.Line(x_of(tick), top, x_of(tick), bottom, kGrid);
     svg.Text(x_of(tick), bottom + 17, TickLabel(tick),
              "text-anchor=\"middle\"");
   }
   svg.Text((left + right) / 2, bottom + 38, plot.value.label,
            "text-anchor=\"middle\"");
-  const double zero = range->Contains(0) ? x_of(0) : left;
+  const double zero = range.Contains(0) ? x_of(0) : left;
   for (std::size_t g = 0; g < plot.groups.size(); ++g) {
     const double group_top =
         top + kGroupGap + group_height * static_cast<double>(g);
@@ -193,7 +194,7 @@ Result<std::string> DrawBarPlot(const BarPlot& plot) {
     for (std::size_t s = 0; s < plot.series.size(); ++s) {
       const double bar_top = group_top + kBar * static_cast<double>(s);
       const std::optional<double>& value = plot.series[s].values[g];
-      if (!value || !range->Shows(*value)) {
+      if (!value || !range.Shows(*value)) {
         svg.Text(zero + 5, bar_top + kBar - 3, "–",
                  "fill=\"#5c6b7a\" font-size=\"11\"");
         continue;
@@ -219,15 +220,13 @@ Result<std::string> DrawLinePlot(const LinePlot& plot) {
       all_y.push_back(y);
     }
   }
-  const auto x_range = AxisRange::Make(plot.x, all_x);
-  if (!x_range) return tl::unexpected<Error>(x_range.error());
-  const auto y_range = AxisRange::Make(plot.y, all_y);
-  if (!y_range) return tl::unexpected<Error>(y_range.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto x_range, AxisRange::Make(plot.x, all_x));
+  LOWLAP_ASSIGN_OR_RETURN(const auto y_range, AxisRange::Make(plot.y, all_y));
 
   for (const LineSeries& series : plot.series) {
     const bool is_drawn = std::any_of(
         series.points.begin(), series.points.end(), [&](const auto& point) {
-          return x_range->Shows(point.first) && y_range->Shows(point.second);
+          return x_range.Shows(point.first) && y_range.Shows(point.second);
         });
     names.push_back(is_drawn ? series.name : "");
   }
@@ -239,17 +238,17 @@ Result<std::string> DrawLinePlot(const LinePlot& plot) {
   top += 4;
   const double bottom = top + kHeight;
   const auto x_of = [&](double value) {
-    return kLeft + (kRight - kLeft) * x_range->Position(value);
+    return kLeft + (kRight - kLeft) * x_range.Position(value);
   };
   const auto y_of = [&](double value) {
-    return bottom - kHeight * y_range->Position(value);
+    return bottom - kHeight * y_range.Position(value);
   };
-  for (const double tick : x_range->Ticks()) {
+  for (const double tick : x_range.Ticks()) {
     svg.Line(x_of(tick), top, x_of(tick), bottom, kGrid);
     svg.Text(x_of(tick), bottom + 17, TickLabel(tick),
              "text-anchor=\"middle\"");
   }
-  for (const double tick : y_range->Ticks()) {
+  for (const double tick : y_range.Ticks()) {
     svg.Line(kLeft, y_of(tick), kRight, y_of(tick), kGrid);
     svg.Text(kLeft - 7, y_of(tick) + 4.5, TickLabel(tick),
              "text-anchor=\"end\"");
@@ -267,8 +266,8 @@ Result<std::string> DrawLinePlot(const LinePlot& plot) {
     std::string path, markers;
     bool pen_down = false;
     for (const auto& [x, y] : plot.series[s].points) {
-      if (!x_range->Shows(x) || !y_range->Shows(y) || !x_range->Contains(x) ||
-          !y_range->Contains(y)) {
+      if (!x_range.Shows(x) || !y_range.Shows(y) || !x_range.Contains(x) ||
+          !y_range.Contains(y)) {
         pen_down = false;
         continue;
       }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/report/internal/table_text.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
@@ -83,15 +84,14 @@ class Runner {
  private:
   Status Solve(const SolveOptions& options, Scene* scene, AblationCase* entry,
                StageLog* stages) const {
-    const auto ratios =
-        EstimateBelievedRatios(scene, start_, options, context_, stages);
-    if (!ratios) return tl::unexpected<Error>(ratios.error());
-    entry->ratios = *ratios;
+    LOWLAP_ASSIGN_OR_RETURN(
+        entry->ratios,
+        EstimateBelievedRatios(scene, start_, options, context_, stages));
     entry->abs_log_ratio = EvaluateScaleRatios(*scene, truth_).abs_log_error;
-    const auto poses =
-        ComposePoses(scene, start_.rotations, options.poses, context_, stages);
-    if (!poses) return tl::unexpected<Error>(poses.error());
-    entry->num_placed = poses->num_placed;
+    LOWLAP_ASSIGN_OR_RETURN(
+        const auto poses,
+        ComposePoses(scene, start_.rotations, options.poses, context_, stages));
+    entry->num_placed = poses.num_placed;
     entry->errors = EvaluatePoses(*scene, truth_);
     return {};
   }
@@ -110,8 +110,8 @@ bool IsCancelled(const AblationCase& entry) {
 }  // namespace
 
 Status AblationOptions::Validate() const {
-  if (const Status valid = solve.Validate(); !valid) return valid;
-  if (const Status valid = scale.Validate(); !valid) return valid;
+  LOWLAP_RETURN_IF_ERROR(solve.Validate());
+  LOWLAP_RETURN_IF_ERROR(scale.Validate());
   for (const double threshold_px : thresholds_px) {
     if (!(threshold_px > 0)) {
       return MakeError(ErrorCode::kInvalidArgument,
@@ -124,9 +124,7 @@ Status AblationOptions::Validate() const {
 Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
                         const AblationOptions& options,
                         const RunContext& context) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::size_t num_true = 0;
   for (const auto& entry : scene.views) num_true += truth.count(entry.first);
   if (num_true < 3) {
@@ -137,9 +135,9 @@ Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
   }
   Scene start_scene = scene;
   StageLog stages;
-  const auto start =
-      StartSolution(&start_scene, options.solve, context, &stages);
-  if (!start) return tl::unexpected<Error>(start.error());
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto start,
+      StartSolution(&start_scene, options.solve, context, &stages));
 
   const std::vector<Features> cases = FeatureCases();
   const Features& all = cases.back();
@@ -156,7 +154,7 @@ Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
         features.name, features, ScaleCriterion::kAContrario, options.scale));
   }
 
-  const Runner runner(start_scene, *start, truth, options.solve, context);
+  const Runner runner(start_scene, start, truth, options.solve, context);
   const std::size_t total =
       ablation.criteria.size() + ablation.features.size() + 1;
   std::size_t done = 0;

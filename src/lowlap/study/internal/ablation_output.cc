@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
 #include "lowlap/study/internal/ablation.h"
@@ -203,11 +204,10 @@ Result<std::vector<std::pair<std::string, std::string>>> DrawAblation(
 }
 
 Status WriteAblation(const Ablation& ablation, const std::string& folder) {
-  auto files = DrawAblation(ablation);
-  if (!files) return tl::unexpected<Error>(files.error());
-  files->emplace_back("ablate.csv", ToCsv(ablation));
-  files->emplace_back("ablate.json", ToJson(ablation) + "\n");
-  return WriteTextFiles(*files, folder);
+  LOWLAP_ASSIGN_OR_RETURN(auto files, DrawAblation(ablation));
+  files.emplace_back("ablate.csv", ToCsv(ablation));
+  files.emplace_back("ablate.json", ToJson(ablation) + "\n");
+  return WriteTextFiles(files, folder);
 }
 
 }  // namespace lowlap

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/study/compare_strategies.h"
 #include "lowlap/study/internal/comparison_figures.h"
@@ -215,11 +216,10 @@ std::string ToJson(const Comparison& comparison, const Scene& scene) {
 
 Status WriteComparison(const Comparison& comparison, const Scene& scene,
                        const std::string& folder) {
-  auto files = DrawComparison(comparison);
-  if (!files) return tl::unexpected<Error>(files.error());
-  files->emplace_back("compare.csv", ToCsv(comparison));
-  files->emplace_back("compare.json", ToJson(comparison, scene) + "\n");
-  return WriteTextFiles(*files, folder);
+  LOWLAP_ASSIGN_OR_RETURN(auto files, DrawComparison(comparison));
+  files.emplace_back("compare.csv", ToCsv(comparison));
+  files.emplace_back("compare.json", ToJson(comparison, scene) + "\n");
+  return WriteTextFiles(files, folder);
 }
 
 }  // namespace lowlap

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -61,9 +62,7 @@ Result<ResultLog> ResultLog::Open(
     }
     at = end + 1;
   }
-  if (const Status written = WriteFileAtomically(path, known); !written) {
-    return tl::unexpected<Error>(written.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(WriteFileAtomically(path, known));
   const int file = ::open(path.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC);
   if (file < 0) {
     return tl::unexpected<Error>(

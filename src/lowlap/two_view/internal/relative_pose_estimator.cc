@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/a_contrario.h"
@@ -222,12 +223,8 @@ const char* TwoViewGeometryName(TwoViewGeometry geometry) {
 Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
                                            const TwoViewOptions& options,
                                            std::uint64_t seed) {
-  if (Status status = options.Validate(); !status) {
-    return tl::unexpected(status.error());
-  }
-  if (Status status = ValidateInput(input); !status) {
-    return tl::unexpected(status.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
+  LOWLAP_RETURN_IF_ERROR(ValidateInput(input));
   Random random(seed);
   const ShuffledMatches matches = Shuffle(input, random);
   const PointPairs& pairs = matches.pairs;

@@ -9,6 +9,7 @@
 #include "lowlap/adjustment/internal/rounds/pair_selection.h"
 #include "lowlap/adjustment/internal/rounds/problem_selection.h"
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -138,9 +139,8 @@ Status FollowPoses(const AdjustmentOptions& options,
   std::vector<LineTrackState>& lines = state->lines;
   if (!options.use_lines) {
     const std::vector<std::size_t> all = AllOf(lines.size());
-    Status status = TriangulateLines(cameras, LineLimits(options, any), context,
-                                     all, &lines);
-    if (!status) return status;
+    LOWLAP_RETURN_IF_ERROR(TriangulateLines(cameras, LineLimits(options, any),
+                                            context, all, &lines));
     const NoiseScale noise = EstimateLineNoise(cameras, lines, bounds);
     return TriangulateLines(cameras, LineLimits(options, noise), context, all,
                             &lines);

@@ -5,6 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <opencv2/line_descriptor.hpp>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/opencv.h"
 
 namespace lowlap {
@@ -81,9 +82,7 @@ bool IsFinite(const LineSegment& segment) {
 
 Result<std::vector<LineDescriptor>> DescribeLines(
     const GrayImage& image, const std::vector<LineSegment>& segments) {
-  if (const Status s = image.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(image.Validate());
   // OpenCV rounds coordinates to 16 bits.
   constexpr int kMaxCoordinate = 30000;
   if (std::max(image.width, image.height) > kMaxCoordinate) {

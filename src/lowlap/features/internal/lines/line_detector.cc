@@ -4,6 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/lines/edge_fit.h"
 #include "lowlap/features/internal/lines/segment_merging.h"
 #include "lowlap/features/internal/opencv.h"
@@ -139,12 +140,8 @@ Status LineOptions::Validate() const {
 
 Result<std::vector<LineSegment>> DetectLines(const GrayImage& image,
                                              const LineOptions& options) {
-  if (const Status s = options.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
-  if (const Status s = image.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
+  LOWLAP_RETURN_IF_ERROR(image.Validate());
   if (std::min(image.width, image.height) < kMinLineImageSidePx) {
     return std::vector<LineSegment>{};
   }

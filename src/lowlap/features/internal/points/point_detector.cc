@@ -6,6 +6,7 @@
 #include <opencv2/features2d.hpp>
 #include <tuple>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/opencv.h"
 #include "lowlap/features/internal/points/point_localization.h"
 
@@ -103,12 +104,8 @@ Status PointOptions::Validate() const {
 
 Result<PointFeatures> DetectPoints(const GrayImage& image,
                                    const PointOptions& options) {
-  if (const Status s = options.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
-  if (const Status s = image.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
+  LOWLAP_RETURN_IF_ERROR(image.Validate());
   if (std::min(image.width, image.height) < kMinSidePx) return PointFeatures{};
   return CatchOpenCv("SIFT", [&]() -> Result<PointFeatures> {
     const SingleThreadedOpenCv single_threaded;

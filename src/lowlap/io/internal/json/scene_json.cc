@@ -1,6 +1,7 @@
 #include "lowlap/io/internal/json/scene_json.h"
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/json/json_tree.h"
 #include "lowlap/io/internal/json/json_value.h"
 #include "lowlap/io/internal/json/scene_json_sections.h"
@@ -22,15 +23,12 @@ Result<Scene> ParseSceneJson(const std::string& text, const std::string& file) {
 }
 
 Result<Scene> ReadSceneJson(const std::string& path) {
-  const Result<std::string> text = ReadWholeFile(path);
-  if (!text) return tl::unexpected<Error>(text.error());
-  return ParseSceneJson(*text, path);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string text, ReadWholeFile(path));
+  return ParseSceneJson(text, path);
 }
 
 Result<std::string> FormatSceneJson(const Scene& scene) {
-  if (Status valid = ValidateScene(scene); !valid) {
-    return tl::unexpected<Error>(std::move(valid).error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateScene(scene));
   std::string text = "{\n";
   AppendOpenMvgSections(scene, text);
   text += ",\n\"lowlap\": {\n";

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -66,9 +67,7 @@ Result<SubpixelSummary> RefinePointTracks(
     const std::map<ViewId, DetectedFeatures>& detected,
     const PatchAlignmentOptions& options, const RunContext& context,
     Scene* scene) {
-  if (const Status s = options.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::map<ViewId, ViewWork> of_view;
   std::vector<TrackPatch> patches;
   SubpixelSummary summary;

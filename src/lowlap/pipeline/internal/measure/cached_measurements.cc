@@ -8,6 +8,7 @@
 
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/image_memory.h"
 #include "lowlap/pipeline/internal/measure/measurement_bytes.h"
 #include "lowlap/pipeline/internal/measure/measurement_key.h"
@@ -81,9 +82,7 @@ Result<KeyedFeatures> DetectFeatures(const Scene& scene,
                                      const FeatureOptions& options,
                                      const CacheFolder& cache_folder,
                                      const RunContext& context) {
-  if (const Status s = options.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::vector<ViewSlot> slots;
   for (const auto& [id, view] : scene.views) {
     slots.emplace_back();
@@ -149,9 +148,7 @@ Result<std::map<ViewPair, PairMatches>> MatchFeatures(
     const KeyedFeatures& features, const std::vector<ViewPair>& pairs,
     const MatchOptions& options, const CacheFolder& cache_folder,
     const RunContext& context) {
-  if (const Status s = options.Validate(); !s) {
-    return tl::unexpected<Error>(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   Cache cache(cache_folder, "matches", context);
   std::vector<Hash128::Value> keys(pairs.size());
   std::vector<std::optional<PairMatches>> found(pairs.size());

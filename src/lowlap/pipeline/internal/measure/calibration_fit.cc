@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/measure/exif.h"
 
 namespace lowlap {
@@ -113,13 +114,12 @@ Result<FittedIntrinsic> FitToPhotograph(const Intrinsic& given,
   if (!HasShapeOf(size, {made_for.height_px, made_for.width_px})) {
     return refuse("the shapes differ");
   }
-  const auto exif = ReadExif(path, size);
-  if (!exif) return tl::unexpected<Error>(exif.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto exif, ReadExif(path, size));
   // The upright picture is the stored one turned clockwise (6) or against (8).
-  if (exif->orientation != 6 && exif->orientation != 8) {
+  if (exif.orientation != 6 && exif.orientation != 8) {
     return refuse("it was turned, and its EXIF data do not say which way");
   }
-  const QuarterTurn back = exif->orientation == 6
+  const QuarterTurn back = exif.orientation == 6
                                ? QuarterTurn::kCounterclockwise
                                : QuarterTurn::kClockwise;
   const std::optional<Intrinsic> turned = Turned(given, back);
@@ -148,11 +148,10 @@ Result<CalibratedSize> FindCalibratedSize(const Intrinsic& calibration,
   // Shrunk copies often keep the size of the original in their EXIF data;
   // turned ones are all there is where every photograph stands.
   for (std::size_t n = 0; n < paths.size(); ++n) {
-    const auto exif = ReadExif(paths[n], sizes[n]);
-    if (!exif) return tl::unexpected<Error>(exif.error());
+    LOWLAP_ASSIGN_OR_RETURN(const auto exif, ReadExif(paths[n], sizes[n]));
     const ImageSize upright{sizes[n].height_px, sizes[n].width_px};
     for (const ImageSize& size :
-         {exif->taken, ImageSize{exif->taken.height_px, exif->taken.width_px},
+         {exif.taken, ImageSize{exif.taken.height_px, exif.taken.width_px},
           upright}) {
       if (size.width_px > 0 && size.height_px > 0 &&
           PrincipalPointOffset(calibration, size) <= kCentredShare) {

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -78,17 +79,16 @@ std::optional<double> FocalFromFilm(ExifData* data, const ImageSize& size) {
 }  // namespace
 
 Result<ExifGeometry> ReadExif(const std::string& path, const ImageSize& size) {
-  const Result<std::string> bytes = ReadWholeFile(path);
-  if (!bytes) return tl::unexpected<Error>(bytes.error());
+  LOWLAP_ASSIGN_OR_RETURN(const std::string bytes, ReadWholeFile(path));
   ExifGeometry geometry;
-  if (bytes->compare(0, 2, "\xff\xd8") != 0 ||
-      bytes->size() > std::numeric_limits<unsigned>::max()) {
+  if (bytes.compare(0, 2, "\xff\xd8") != 0 ||
+      bytes.size() > std::numeric_limits<unsigned>::max()) {
     return geometry;
   }
   const ExifPointer data(
       exif_data_new_from_data(
-          reinterpret_cast<const unsigned char*>(bytes->data()),
-          static_cast<unsigned>(bytes->size())),
+          reinterpret_cast<const unsigned char*>(bytes.data()),
+          static_cast<unsigned>(bytes.size())),
       &exif_data_unref);
   if (data == nullptr) return geometry;
   geometry.focal_px = FocalFromSensor(data.get(), size);

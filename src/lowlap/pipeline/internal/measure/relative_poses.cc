@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -89,7 +90,7 @@ void LogPairsWithoutParallax(const Scene& scene,
 }  // namespace
 
 Status RelativePoseOptions::Validate() const {
-  if (const Status valid = pair.Validate(); !valid) return valid;
+  LOWLAP_RETURN_IF_ERROR(pair.Validate());
   return line_tracks.Validate();
 }
 
@@ -97,14 +98,12 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
     Scene* scene, const std::map<ViewPair, PairMatches>& matches,
     const std::map<ViewId, DetectedFeatures>* detected,
     const RelativePoseOptions& options, const RunContext& context) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::vector<ViewPair> pairs;
   for (const auto& entry : matches) pairs.push_back(entry.first);
-  const auto measurements =
-      MeasureViews(*scene, pairs, detected, options.vanishing, context);
-  if (!measurements) return tl::unexpected<Error>(measurements.error());
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto measurements,
+      MeasureViews(*scene, pairs, detected, options.vanishing, context));
 
   std::vector<PairEstimate> estimates(pairs.size());
   const Status done =
@@ -115,9 +114,9 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
             (static_cast<std::uint64_t>(pairs[n].first.value()) << 32) +
             pairs[n].second.value();
         estimates[n] =
-            EstimatePair(pairs[n], measurements->at(pairs[n].first),
-                         measurements->at(pairs[n].second),
-                         matches.at(pairs[n]), options.pair, pair_seed);
+            EstimatePair(pairs[n], measurements.at(pairs[n].first),
+                         measurements.at(pairs[n].second), matches.at(pairs[n]),
+                         options.pair, pair_seed);
       });
   if (!done) return tl::unexpected<Error>(done.error());
 
@@ -139,21 +138,21 @@ Status RefineRelativePoses(Scene* scene,
                            const std::map<ViewId, DetectedFeatures>& detected,
                            const RelativePoseOptions& options,
                            const RunContext& context) {
-  if (const Status valid = options.Validate(); !valid) return valid;
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::vector<RelativePose*> poses;
   std::vector<ViewPair> pairs;
   for (auto& [views, pose] : scene->relative_poses) {
     poses.push_back(&pose);
     pairs.push_back(views);
   }
-  const auto measurements =
-      MeasureViews(*scene, pairs, &detected, options.vanishing, context);
-  if (!measurements) return tl::unexpected<Error>(measurements.error());
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto measurements,
+      MeasureViews(*scene, pairs, &detected, options.vanishing, context));
   const Status done =
       ParallelFor(context, "relative poses", poses.size(), [&](std::size_t n) {
         RelativePose& pose = *poses[n];
-        pose = RefinePair(pose, measurements->at(pose.views.first),
-                          measurements->at(pose.views.second), options.pair);
+        pose = RefinePair(pose, measurements.at(pose.views.first),
+                          measurements.at(pose.views.second), options.pair);
       });
   if (!done) return done;
   scene->point_tracks = BuildPointTracks(*scene);

@@ -7,6 +7,7 @@
 #include <system_error>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/json/scene_json.h"
 #include "lowlap/io/internal/ply.h"
 #include "lowlap/io/internal/scene_binary.h"
@@ -41,7 +42,7 @@ Status CheckOutputFolder(const std::string& folder) {
 }
 
 Status PrepareOutputFolder(const std::string& folder) {
-  if (Status possible = CheckOutputFolder(folder); !possible) return possible;
+  LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(folder));
   std::error_code error;
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder, error)) {
@@ -60,32 +61,31 @@ Status WriteOutputs(Scene scene, const RunSummary& summary,
     const fs::path absolute = fs::absolute(scene.root_path, error);
     if (!error) scene.root_path = absolute.lexically_normal().string();
   }
-  if (Status made = PrepareOutputFolder(folder); !made) return made;
+  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(folder));
   FileSet files;
   // One after the other, so that one content at a time is in memory.
-  const auto add = [&](const char* name, const Result<std::string>& content) {
-    if (!content) return Status(tl::unexpected<Error>(content.error()));
+  const auto add = [&](const char* name,
+                       const Result<std::string>& content) -> Status {
+    LOWLAP_RETURN_IF_ERROR(content);
     return files.Add((fs::path(folder) / name).string(), *content);
   };
-  Status status = add("sfm_data.json", FormatSceneJson(scene));
-  if (status) status = add("scene.lowlap", FormatSceneBinary(scene));
-  if (status) status = add("cloud.ply", FormatPly(scene));
-  if (status) {
-    status =
-        add("report.html", FormatReport(scene, MakeReport(summary, scene)));
-  }
-  if (status) status = add("summary.json", ToJson(summary, scene) + "\n");
-  return status ? files.Commit() : status;
+  LOWLAP_RETURN_IF_ERROR(add("sfm_data.json", FormatSceneJson(scene)));
+  LOWLAP_RETURN_IF_ERROR(add("scene.lowlap", FormatSceneBinary(scene)));
+  LOWLAP_RETURN_IF_ERROR(add("cloud.ply", FormatPly(scene)));
+  LOWLAP_RETURN_IF_ERROR(
+      add("report.html", FormatReport(scene, MakeReport(summary, scene))));
+  LOWLAP_RETURN_IF_ERROR(add("summary.json", ToJson(summary, scene) + "\n"));
+  return files.Commit();
 }
 
 Status WriteTextFiles(
     const std::vector<std::pair<std::string, std::string>>& files,
     const std::string& folder) {
-  if (Status made = PrepareOutputFolder(folder); !made) return made;
+  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(folder));
   FileSet set;
   for (const auto& [name, content] : files) {
-    const Status added = set.Add((fs::path(folder) / name).string(), content);
-    if (!added) return added;
+    LOWLAP_RETURN_IF_ERROR(
+        set.Add((fs::path(folder) / name).string(), content));
   }
   return set.Commit();
 }

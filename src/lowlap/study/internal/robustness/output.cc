@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/report/internal/svg_plot.h"
 #include "lowlap/report/internal/table_text.h"
@@ -91,9 +92,8 @@ Result<Files> DrawScenario(const RobustnessStudy& study, std::size_t scenario) {
   Files files;
   const RobustnessScenario& info = study.scenarios[scenario];
   for (const Quantity& quantity : QuantitiesOf(info)) {
-    auto drawn = Draw(study, scenario, quantity);
-    if (!drawn) return tl::unexpected<Error>(drawn.error());
-    files.emplace_back(PlotName(info, quantity), std::move(*drawn));
+    LOWLAP_ASSIGN_OR_RETURN(auto drawn, Draw(study, scenario, quantity));
+    files.emplace_back(PlotName(info, quantity), std::move(drawn));
   }
   return files;
 }
@@ -139,9 +139,8 @@ Status WriteRobustness(const RobustnessStudy& study,
                  {"summary.txt", SummaryText(study)},
                  {"index.html", IndexHtml(study)}};
   for (std::size_t s = 0; s < study.scenarios.size(); ++s) {
-    auto plots = DrawScenario(study, s);
-    if (!plots) return tl::unexpected<Error>(plots.error());
-    for (auto& plot : *plots) files.push_back(std::move(plot));
+    LOWLAP_ASSIGN_OR_RETURN(auto plots, DrawScenario(study, s));
+    for (auto& plot : plots) files.push_back(std::move(plot));
   }
   return WriteTextFiles(files, folder);
 }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/study/internal/robustness/problem.h"
 
 namespace lowlap {
@@ -71,8 +72,7 @@ class StudyRun {
   Status RunScenario(std::size_t scenario) {
     const std::vector<RobustnessKey> missing = MissingCells(scenario);
     if (!missing.empty()) {
-      const Status simulated = SimulateProblems(missing);
-      if (!simulated) return simulated;
+      LOWLAP_RETURN_IF_ERROR(SimulateProblems(missing));
     }
     // Where levels differ in size, what a level shows decides who is asked for
     // the next.
@@ -85,8 +85,7 @@ class StudyRun {
               : std::find_if(begin, missing.end(), [&](const auto& key) {
                   return key.level != level;
                 });
-      const Status tried = TryCells({begin, end});
-      if (!tried) return tried;
+      LOWLAP_RETURN_IF_ERROR(TryCells({begin, end}));
       begin = end;
     }
     problems_.clear();
@@ -291,20 +290,16 @@ Status RobustnessOptions::Validate() const {
   if (!(tolerance > 0)) return invalid("the tolerance must be positive");
   if (!(time_limit_s > 0)) return invalid("the time limit must be positive");
   for (const std::string& name : scenarios) {
-    const auto made = MakeRobustnessScenarios(name, quick);
-    if (!made) return tl::unexpected<Error>(made.error());
+    LOWLAP_RETURN_IF_ERROR(MakeRobustnessScenarios(name, quick));
   }
   for (const std::string& name : strategies) {
-    const auto made = registry.Make(name);
-    if (!made) return tl::unexpected<Error>(made.error());
+    LOWLAP_RETURN_IF_ERROR(registry.Make(name));
   }
   return {};
 }
 
 Result<RobustnessStudy> PlanRobustnessStudy(const RobustnessOptions& options) {
-  if (const Status valid = options.Validate(); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   RobustnessStudy study;
   study.options = options;
   if (options.scenarios.empty()) {
@@ -316,9 +311,9 @@ Result<RobustnessStudy> PlanRobustnessStudy(const RobustnessOptions& options) {
   DropRepetitions(&study.options.scenarios);
   DropRepetitions(&study.options.strategies);
   for (const std::string& name : study.options.scenarios) {
-    auto scenarios = MakeRobustnessScenarios(name, options.quick);
-    if (!scenarios) return tl::unexpected<Error>(scenarios.error());
-    for (RobustnessScenario& each : *scenarios) {
+    LOWLAP_ASSIGN_OR_RETURN(auto scenarios,
+                            MakeRobustnessScenarios(name, options.quick));
+    for (RobustnessScenario& each : scenarios) {
       study.scenarios.push_back(std::move(each));
     }
   }
@@ -330,8 +325,7 @@ Status RunRobustnessStudy(const RunContext& context,
                           RobustnessStudy* study) {
   StudyRun run(context, sinks, study);
   for (std::size_t s = 0; s < study->scenarios.size(); ++s) {
-    const Status done = run.RunScenario(s);
-    if (!done) return done;
+    LOWLAP_RETURN_IF_ERROR(run.RunScenario(s));
   }
   return {};
 }
