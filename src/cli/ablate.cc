@@ -6,6 +6,7 @@
 #include "cli/solve_flags.h"
 #include "cli/truth.h"
 #include "lowlap/averaging/averager_registry.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/study/internal/ablation.h"
 
@@ -21,40 +22,33 @@ struct Flags {
   std::string output;
 };
 
-int RunAblation(const Flags& flags) {
+Result<int> RunAblation(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
   AblationOptions options;
   options.thresholds_px = flags.thresholds_px;
-  const auto averager = AveragerRegistry::WithBuiltIns().Make(flags.strategy);
-  if (!averager) return Fail(averager.error());
-  options.solve.poses.averager = *averager;
-  if (const Status valid = options.Validate(); !valid) {
-    return Fail(valid.error());
-  }
+  LOWLAP_ASSIGN_OR_RETURN(
+      options.solve.poses.averager,
+      AveragerRegistry::WithBuiltIns().Make(flags.strategy));
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   if (!flags.output.empty()) {
     // A folder that cannot be written is found before the work.
-    if (const Status usable = CheckOutputFolder(flags.output); !usable) {
-      return Fail(usable.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
   }
   StageLog stages;
-  const auto loaded = LoadMeasuredScene(flags.input, context, &stages);
-  if (!loaded) return Fail(loaded.error());
-  const auto truth = LoadGroundTruth(flags.ground_truth, loaded->scene);
-  if (!truth) return Fail(truth.error());
-  if (!*truth) {
-    return Fail({ErrorCode::kInvalidArgument, "--gt names no cameras", {}, {}});
+  LOWLAP_ASSIGN_OR_RETURN(const auto loaded,
+                          LoadMeasuredScene(flags.input, context, &stages));
+  LOWLAP_ASSIGN_OR_RETURN(const auto truth,
+                          LoadGroundTruth(flags.ground_truth, loaded.scene));
+  if (!truth) {
+    return MakeError(ErrorCode::kInvalidArgument, "--gt names no cameras");
   }
-  const auto ablation = Ablate(loaded->scene, **truth, options, context);
-  if (!ablation) return Fail(ablation.error());
-  if (IsInterrupted()) return Fail({ErrorCode::kCancelled, {}, {}, {}});
+  LOWLAP_ASSIGN_OR_RETURN(const auto ablation,
+                          Ablate(loaded.scene, *truth, options, context));
+  if (IsInterrupted()) return MakeError(ErrorCode::kCancelled, {});
   if (!flags.output.empty()) {
-    if (const Status written = WriteAblation(*ablation, flags.output);
-        !written) {
-      return Fail(written.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(WriteAblation(ablation, flags.output));
   }
-  std::printf("%s", ToText(*ablation).c_str());
+  std::printf("%s", ToText(ablation).c_str());
   if (!flags.output.empty()) {
     std::printf("\nwritten to %s: ablate.csv ablate.json and plots (.svg)\n",
                 flags.output.c_str());
@@ -80,9 +74,7 @@ void AddAblate(CLI::App* program, Action* action) {
       .SeparatedBy(',')
       .ShowDefault();
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command, [flags, action] {
-    *action = [flags] { return RunAblation(*flags); };
-  });
+  RunWhenChosen(command, flags, RunAblation, action);
 }
 
 }  // namespace lowlap::cli

@@ -7,6 +7,7 @@
 #include "cli/truth.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/pipeline/internal/output/summary_json.h"
 #include "third_party_adapters/scene_formats.h"
@@ -25,66 +26,54 @@ struct Flags {
   std::string ground_truth;
 };
 
-int Adjust(const Flags& flags) {
+Result<int> Adjust(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
   AdjustmentOptions options;
-  if (const Status set = SetAdjustedFeatures(flags.features, &options); !set) {
-    return Fail(set.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(SetAdjustedFeatures(flags.features, &options));
   options.principal_point_stddev = flags.principal_point_stddev;
-  if (const Status valid = options.Validate(); !valid) {
-    return Fail(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   // A folder that cannot be written is found before the work.
-  if (const Status usable = CheckOutputFolder(flags.output); !usable) {
-    return Fail(usable.error());
+  LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
+  LOWLAP_ASSIGN_OR_RETURN(auto scene, ReadScene(flags.scene));
+  if (scene.poses.empty()) {
+    return MakeError(ErrorCode::kInvalidScene,
+                     "holds no poses to adjust; 'lowlap solve' finds them",
+                     flags.scene);
   }
-  auto scene = ReadScene(flags.scene);
-  if (!scene) return Fail(scene.error());
-  if (scene->poses.empty()) {
-    return Fail({ErrorCode::kInvalidScene,
-                 "holds no poses to adjust; 'lowlap solve' finds them",
-                 flags.scene,
-                 {}});
-  }
-  RestoreGivenIntrinsics(&*scene);
-  const auto truth = LoadGroundTruth(flags.ground_truth, *scene);
-  if (!truth) return Fail(truth.error());
+  RestoreGivenIntrinsics(&scene);
+  LOWLAP_ASSIGN_OR_RETURN(const auto truth,
+                          LoadGroundTruth(flags.ground_truth, scene));
   RunSummary summary;
   summary.command = "adjust";
-  if (*truth) {
-    summary.evaluation_before_adjustment = EvaluatePoses(*scene, **truth);
+  if (truth) {
+    summary.evaluation_before_adjustment = EvaluatePoses(scene, *truth);
   }
-  if (const Status set =
-          SetRefinement(flags.refine_intrinsics, &*scene, &options);
-      !set) {
-    return Fail(set.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(
+      SetRefinement(flags.refine_intrinsics, &scene, &options));
   StageLog stages;
   SolveResult result;
   if (flags.retriangulate ||
-      (scene->structure.empty() && scene->line_structure.empty())) {
+      (scene.structure.empty() && scene.line_structure.empty())) {
     const StageLog::Scope scope(&stages, "structure");
-    auto structure = BuildStructure(&*scene, StructureOptions{}, context);
-    if (!structure) return Fail(structure.error());
-    result.structure = std::move(*structure);
+    LOWLAP_ASSIGN_OR_RETURN(
+        result.structure, BuildStructure(&scene, StructureOptions{}, context));
   }
   {
     const StageLog::Scope scope(&stages, "adjustment");
-    auto adjustment = AdjustScene(&*scene, options, context);
+    auto adjustment = AdjustScene(&scene, options, context);
     if (!adjustment) {
       if (adjustment.error().file.empty()) {
         adjustment.error().file = flags.scene;
       }
-      return Fail(adjustment.error());
+      return tl::unexpected<Error>(adjustment.error());
     }
     result.adjustment = std::move(*adjustment);
   }
-  if (*truth) summary.evaluation = EvaluatePoses(*scene, **truth);
-  result.ratios = SummarizeRatios(scene->scale_ratios);
-  result.poses.num_views = static_cast<int>(scene->views.size());
-  for (const auto& entry : scene->views) {
-    if (scene->FindPose(entry.first) != nullptr) {
+  if (truth) summary.evaluation = EvaluatePoses(scene, *truth);
+  result.ratios = SummarizeRatios(scene.scale_ratios);
+  result.poses.num_views = static_cast<int>(scene.views.size());
+  for (const auto& entry : scene.views) {
+    if (scene.FindPose(entry.first) != nullptr) {
       ++result.poses.num_placed;
     } else {
       result.poses.unplaced.push_back(entry.first);
@@ -92,13 +81,12 @@ int Adjust(const Flags& flags) {
   }
   summary.solve = std::move(result);
   summary.stages = stages.stages();
-  const Status written = WriteOutputs(*scene, summary, flags.output);
-  if (!written) return Fail(written.error());
+  LOWLAP_RETURN_IF_ERROR(WriteOutputs(scene, summary, flags.output));
   const AdjustmentSummary& adjustment = *summary.solve->adjustment;
   std::printf("cost %.6g -> %.6g in %d iterations, %d outlier rounds\n",
               adjustment.initial_cost, adjustment.final_cost,
               adjustment.iterations, adjustment.outlier_rounds);
-  PrintCalibration(*scene, options, adjustment);
+  PrintCalibration(scene, options, adjustment);
   if (summary.evaluation) {
     std::printf("\n%s\n", ToText(*summary.evaluation).c_str());
   }
@@ -129,8 +117,7 @@ void AddAdjust(CLI::App* program, Action* action) {
   AddOption(command, "--gt", flags->ground_truth,
             "True cameras to evaluate against (folder or scene file)");
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command,
-             [flags, action] { *action = [flags] { return Adjust(*flags); }; });
+  RunWhenChosen(command, flags, Adjust, action);
 }
 
 }  // namespace lowlap::cli

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "cli/command_line.h"
@@ -38,7 +39,14 @@ int Fail(const Error& error);
 inline constexpr int kNotFirm = 2;
 
 /// What a parsed command line asks for; returns the exit code.
-using Action = std::function<int()>;
+using Action = std::function<Result<int>()>;
+
+/// `action` runs `run` with the flags, if the command is chosen.
+template <class Flags>
+void RunWhenChosen(CLI::App* command, const std::shared_ptr<Flags>& flags,
+                   Result<int> (*run)(const Flags&), Action* action) {
+  WhenChosen(command, [=] { *action = [=] { return run(*flags); }; });
+}
 
 // Each adds one command to the program; `action` is set if it is chosen.
 void AddRun(CLI::App* program, Action* action);

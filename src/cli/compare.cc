@@ -6,6 +6,7 @@
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
 #include "cli/truth.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/study/compare_strategies.h"
 
@@ -21,38 +22,28 @@ struct Flags {
   std::string output;
 };
 
-int Compare(const Flags& flags) {
+Result<int> Compare(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
   CompareOptions options;
   options.strategies = flags.strategies;
   options.reference = flags.reference;
-  const auto solve = MakeSolveOptions(flags.solve);
-  if (!solve) return Fail(solve.error());
-  options.solve = *solve;
-  if (const Status valid = options.Validate(); !valid) {
-    return Fail(valid.error());
-  }
+  LOWLAP_ASSIGN_OR_RETURN(options.solve, MakeSolveOptions(flags.solve));
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
   // A folder that cannot be written is found before the work.
-  if (const Status usable = CheckOutputFolder(flags.output); !usable) {
-    return Fail(usable.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
   StageLog stages;
-  const auto loaded = LoadMeasuredScene(flags.input, context, &stages);
-  if (!loaded) return Fail(loaded.error());
-  auto truth = LoadGroundTruth(flags.solve.ground_truth, loaded->scene);
-  if (!truth) return Fail(truth.error());
-  options.truth = std::move(*truth);
+  LOWLAP_ASSIGN_OR_RETURN(const auto loaded,
+                          LoadMeasuredScene(flags.input, context, &stages));
+  LOWLAP_ASSIGN_OR_RETURN(
+      options.truth, LoadGroundTruth(flags.solve.ground_truth, loaded.scene));
 
-  const auto comparison = CompareStrategies(loaded->scene, options, context);
-  if (!comparison) return Fail(comparison.error());
-  if (IsInterrupted()) return Fail({ErrorCode::kCancelled, {}, {}, {}});
-  if (const Status written =
-          WriteComparison(*comparison, loaded->scene, flags.output);
-      !written) {
-    return Fail(written.error());
-  }
+  LOWLAP_ASSIGN_OR_RETURN(const auto comparison,
+                          CompareStrategies(loaded.scene, options, context));
+  if (IsInterrupted()) return MakeError(ErrorCode::kCancelled, {});
+  LOWLAP_RETURN_IF_ERROR(
+      WriteComparison(comparison, loaded.scene, flags.output));
   std::printf("%s\nwritten to %s: compare.csv compare.json and plots (.svg)\n",
-              ToText(*comparison).c_str(), flags.output.c_str());
+              ToText(comparison).c_str(), flags.output.c_str());
   return 0;
 }
 
@@ -78,9 +69,7 @@ void AddCompare(CLI::App* program, Action* action) {
   AddAdjustFlags(command, &flags->solve);
   AddTruthFlag(command, &flags->solve.ground_truth);
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command, [flags, action] {
-    *action = [flags] { return Compare(*flags); };
-  });
+  RunWhenChosen(command, flags, Compare, action);
 }
 
 }  // namespace lowlap::cli

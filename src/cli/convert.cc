@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "cli/command.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/scene_reduction.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -18,19 +19,17 @@ struct Flags {
   std::optional<std::string> root_path;
 };
 
-int Convert(const Flags& flags) {
+Result<int> Convert(const Flags& flags) {
   SceneNotes notes;
-  auto scene = ReadScene(flags.input, &notes);
-  if (!scene) return Fail(scene.error());
-  if (flags.drop_solution) DropSolution(&*scene);
+  LOWLAP_ASSIGN_OR_RETURN(auto scene, ReadScene(flags.input, &notes));
+  if (flags.drop_solution) DropSolution(&scene);
   if (flags.max_point_matches > 0) {
-    const Status limited = LimitPointMatches(flags.max_point_matches, &*scene);
-    if (!limited) return Fail(limited.error());
+    LOWLAP_RETURN_IF_ERROR(LimitPointMatches(flags.max_point_matches, &scene));
   }
-  if (flags.root_path) scene->root_path = *flags.root_path;
-  const auto written = WriteScene(*scene, flags.output, flags.format);
-  if (!written) return Fail(written.error());
-  notes.insert(notes.end(), written->begin(), written->end());
+  if (flags.root_path) scene.root_path = *flags.root_path;
+  LOWLAP_ASSIGN_OR_RETURN(const auto written,
+                          WriteScene(scene, flags.output, flags.format));
+  notes.insert(notes.end(), written.begin(), written.end());
   const RunContext context = MakeContext(flags.common);
   for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
   return 0;
@@ -59,9 +58,7 @@ void AddConvert(CLI::App* program, Action* action) {
             "have moved");
   SetFooter(command, "Formats:\n" + DescribeSceneFormats(AllSceneFormats()));
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command, [flags, action] {
-    *action = [flags] { return Convert(*flags); };
-  });
+  RunWhenChosen(command, flags, Convert, action);
 }
 
 }  // namespace lowlap::cli

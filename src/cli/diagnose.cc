@@ -7,6 +7,7 @@
 #include "cli/solve_flags.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/diagnosis_output.h"
 #include "lowlap/scale/scale_ratios.h"
 
@@ -22,31 +23,26 @@ struct Flags {
   bool strict = false;
 };
 
-int RunDiagnose(const Flags& flags) {
+Result<int> RunDiagnose(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
-  const auto options = MakeScaleOptions(flags.scale);
-  if (!options) return Fail(options.error());
-  if (const Status valid = flags.diagnosis.Validate(); !valid) {
-    return Fail(valid.error());
-  }
+  LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeScaleOptions(flags.scale));
+  LOWLAP_RETURN_IF_ERROR(flags.diagnosis.Validate());
   StageLog stages;
-  auto loaded = LoadMeasuredScene(flags.input, context, &stages);
-  if (!loaded) return Fail(loaded.error());
-  Scene scene = std::move(loaded->scene);
+  LOWLAP_ASSIGN_OR_RETURN(auto loaded,
+                          LoadMeasuredScene(flags.input, context, &stages));
+  Scene scene = std::move(loaded.scene);
   if (scene.scale_ratios.empty()) {
-    auto ratios = EstimateScaleRatios(scene, *options, context);
-    if (!ratios) return Fail(ratios.error());
-    scene.scale_ratios = std::move(*ratios);
+    LOWLAP_ASSIGN_OR_RETURN(scene.scale_ratios,
+                            EstimateScaleRatios(scene, options, context));
   }
-  const auto diagnosis = Diagnose(scene, flags.diagnosis);
-  if (!diagnosis) return Fail(diagnosis.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto diagnosis,
+                          Diagnose(scene, flags.diagnosis));
   if (!flags.json.empty()) {
-    const Status written =
-        WriteFileAtomically(flags.json, ToJson(*diagnosis, scene) + "\n");
-    if (!written) return Fail(written.error());
+    LOWLAP_RETURN_IF_ERROR(
+        WriteFileAtomically(flags.json, ToJson(diagnosis, scene) + "\n"));
   }
-  std::printf("%s", ToText(*diagnosis, scene).c_str());
-  return flags.strict && !diagnosis->IsFirm() ? kNotFirm : 0;
+  std::printf("%s", ToText(diagnosis, scene).c_str());
+  return flags.strict && !diagnosis.IsFirm() ? kNotFirm : 0;
 }
 
 }  // namespace
@@ -76,9 +72,7 @@ void AddDiagnose(CLI::App* program, Action* action) {
           "Exit code 2 unless all views hang together firmly: one "
           "scale, without weak ratios");
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command, [flags, action] {
-    *action = [flags] { return RunDiagnose(*flags); };
-  });
+  RunWhenChosen(command, flags, RunDiagnose, action);
 }
 
 }  // namespace lowlap::cli

@@ -5,6 +5,7 @@
 
 #include "cli/command.h"
 #include "cli/truth.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/evaluation/internal/line_match_errors.h"
 #include "lowlap/evaluation/internal/pair_errors.h"
 #include "lowlap/matching/internal/pair_selection.h"
@@ -41,52 +42,48 @@ Result<std::vector<ViewPair>> ParsePairs(
   return pairs;
 }
 
-int EvaluateMeasurements(const Flags& flags, const Scene& scene,
-                         const GroundTruth& truth) {
+Result<int> EvaluateMeasurements(const Flags& flags, const Scene& scene,
+                                 const GroundTruth& truth) {
   PairEvaluationOptions options;
-  auto expected = ParsePairs(flags.expected_pairs);
-  if (!expected) return Fail(expected.error());
-  options.expected = std::move(*expected);
-  const auto evaluation = EvaluatePairs(scene, truth, options);
-  if (!evaluation) return Fail(evaluation.error());
+  LOWLAP_ASSIGN_OR_RETURN(options.expected, ParsePairs(flags.expected_pairs));
+  LOWLAP_ASSIGN_OR_RETURN(const auto evaluation,
+                          EvaluatePairs(scene, truth, options));
   std::printf("%s\n",
-              (flags.json ? ToJson(*evaluation) : ToText(*evaluation)).c_str());
+              (flags.json ? ToJson(evaluation) : ToText(evaluation)).c_str());
   return 0;
 }
 
-int EvaluateLines(const Flags& flags, const Scene& scene,
-                  const GroundTruth& truth) {
-  const auto edges = ReadTrueEdges(flags.true_edges);
-  if (!edges) return Fail(edges.error());
-  const auto pairs = SelectViewPairs(scene, flags.line_pairs);
-  if (!pairs) return Fail(pairs.error());
-  const auto evaluation = EvaluateLineMatches(scene, truth, *edges, *pairs, {});
-  if (!evaluation) return Fail(evaluation.error());
+Result<int> EvaluateLines(const Flags& flags, const Scene& scene,
+                          const GroundTruth& truth) {
+  LOWLAP_ASSIGN_OR_RETURN(const auto edges, ReadTrueEdges(flags.true_edges));
+  LOWLAP_ASSIGN_OR_RETURN(const auto pairs,
+                          SelectViewPairs(scene, flags.line_pairs));
+  LOWLAP_ASSIGN_OR_RETURN(const auto evaluation,
+                          EvaluateLineMatches(scene, truth, edges, pairs, {}));
   std::printf("%s\n",
-              (flags.json ? ToJson(*evaluation) : ToText(*evaluation)).c_str());
+              (flags.json ? ToJson(evaluation) : ToText(evaluation)).c_str());
   return 0;
 }
 
-int Evaluate(const Flags& flags) {
-  const auto scene = ReadScene(flags.solution);
-  if (!scene) return Fail(scene.error());
+Result<int> Evaluate(const Flags& flags) {
+  LOWLAP_ASSIGN_OR_RETURN(const auto scene, ReadScene(flags.solution));
   const auto truth = LoadGroundTruth(
       flags.ground_truth.empty() ? flags.truth_option : flags.ground_truth,
-      *scene);
-  if (!truth) return Fail(truth.error());
+      scene);
+  if (!truth) return tl::unexpected<Error>(truth.error());
   if (!*truth) {
-    return Fail({ErrorCode::kInvalidArgument,
-                 "the true cameras are missing: second argument, or --gt", "",
-                 "evaluate"});
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "the true cameras are missing: second argument, or --gt",
+                     "", "evaluate");
   }
-  if (!flags.true_edges.empty()) return EvaluateLines(flags, *scene, **truth);
+  if (!flags.true_edges.empty()) return EvaluateLines(flags, scene, **truth);
   if (flags.relative_poses) {
-    return EvaluateMeasurements(flags, *scene, **truth);
+    return EvaluateMeasurements(flags, scene, **truth);
   }
-  const PoseEvaluation evaluation = EvaluatePoses(*scene, **truth);
+  const PoseEvaluation evaluation = EvaluatePoses(scene, **truth);
   if (evaluation.scope == EvaluationScope::kNothing) {
-    return Fail(
-        {ErrorCode::kInsufficientData, evaluation.note, flags.solution, ""});
+    return MakeError(ErrorCode::kInsufficientData, evaluation.note,
+                     flags.solution);
   }
   std::printf("%s\n",
               (flags.json ? ToJson(evaluation) : ToText(evaluation)).c_str());
@@ -135,9 +132,7 @@ void AddEvaluate(CLI::App* program, Action* action) {
       .Needs(lines)
       .ShowDefault();
   AddFlag(command, "--json", flags->json, "Print JSON instead of a table");
-  WhenChosen(command, [flags, action] {
-    *action = [flags] { return Evaluate(*flags); };
-  });
+  RunWhenChosen(command, flags, Evaluate, action);
 }
 
 }  // namespace lowlap::cli

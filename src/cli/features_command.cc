@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/features.h"
 #include "lowlap/features/internal/overlay.h"
 
@@ -28,19 +29,17 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-int Features(const Flags& flags) {
+Result<int> Features(const Flags& flags) {
   const bool both = flags.points == flags.lines;
-  const auto image = ReadGrayImage(flags.image);
-  if (!image) return Fail(image.error());
-  const double megapixels = 1e-6 * image->width * image->height;
-  std::printf("%s: %d x %d px\n", flags.image.c_str(), image->width,
-              image->height);
+  LOWLAP_ASSIGN_OR_RETURN(const auto image, ReadGrayImage(flags.image));
+  const double megapixels = 1e-6 * image.width * image.height;
+  std::printf("%s: %d x %d px\n", flags.image.c_str(), image.width,
+              image.height);
   ViewFeatures features;
   if (flags.points || both) {
     const Stopwatch stopwatch;
-    const auto points = DetectPoints(*image, {});
-    if (!points) return Fail(points.error());
-    for (const Keypoint& keypoint : points->keypoints) {
+    LOWLAP_ASSIGN_OR_RETURN(const auto points, DetectPoints(image, {}));
+    for (const Keypoint& keypoint : points.keypoints) {
       features.points_px.push_back(keypoint.position_px);
     }
     const double ms = stopwatch.Milliseconds();
@@ -49,22 +48,18 @@ int Features(const Flags& flags) {
   }
   if (flags.lines || both) {
     const Stopwatch stopwatch;
-    auto segments = DetectLines(*image, {});
-    if (!segments) return Fail(segments.error());
+    LOWLAP_ASSIGN_OR_RETURN(auto segments, DetectLines(image, {}));
     const double ms = stopwatch.Milliseconds();
-    const auto descriptors = DescribeLines(*image, *segments);
-    if (!descriptors) return Fail(descriptors.error());
+    LOWLAP_RETURN_IF_ERROR(DescribeLines(image, segments));
     const double described_ms = stopwatch.Milliseconds() - ms;
     std::printf(
         "segments: %6zu, %7.1f ms, %6.1f ms per megapixel; descriptors "
         "%.1f ms\n",
-        segments->size(), ms, ms / megapixels, described_ms);
-    features.segments = std::move(*segments);
+        segments.size(), ms, ms / megapixels, described_ms);
+    features.segments = std::move(segments);
   }
   if (flags.draw.empty()) return 0;
-  if (const Status s = WriteOverlay(*image, features, flags.draw); !s) {
-    return Fail(s.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(WriteOverlay(image, features, flags.draw));
   std::printf("written to %s\n", flags.draw.c_str());
   return 0;
 }
@@ -82,9 +77,7 @@ void AddFeatures(CLI::App* program, Action* action) {
             "Write the image with its features as this PNG");
   AddFlag(command, "--points", flags->points, "Points only");
   AddFlag(command, "--lines", flags->lines, "Segments only");
-  WhenChosen(command, [flags, action] {
-    *action = [flags] { return Features(*flags); };
-  });
+  RunWhenChosen(command, flags, Features, action);
 }
 
 }  // namespace lowlap::cli

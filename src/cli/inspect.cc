@@ -6,6 +6,8 @@
 #include "cli/scene_input.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/joined.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/summary_json.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -19,11 +21,8 @@ struct Flags {
 };
 
 std::string Names(const Scene& scene, const std::vector<ViewId>& views) {
-  std::string text;
-  for (const ViewId view : views) {
-    text += (text.empty() ? "" : " ") + scene.views.at(view).filename;
-  }
-  return text;
+  return Joined(views, " ",
+                [&](ViewId view) { return scene.views.at(view).filename; });
 }
 
 void PrintContent(const Scene& scene) {
@@ -84,10 +83,9 @@ void PrintGroups(const RigidityReport& report, const Scene& scene) {
                 Names(scene, report.groups[g].views).c_str());
   }
   for (const ArticulationView& hinge : report.articulation_views) {
-    std::string groups;
-    for (const std::size_t g : hinge.groups) {
-      groups += (groups.empty() ? "" : ", ") + std::to_string(g + 1);
-    }
+    const std::string groups = Joined(hinge.groups, ", ", [](std::size_t g) {
+      return std::to_string(g + 1);
+    });
     std::printf(
         "  groups %s meet in %s: only scale ratios across it join "
         "them\n",
@@ -95,22 +93,21 @@ void PrintGroups(const RigidityReport& report, const Scene& scene) {
   }
 }
 
-int Inspect(const Flags& flags) {
+Result<int> Inspect(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
   StageLog stages;
-  const auto loaded = LoadScene(flags.input, context, &stages);
-  if (!loaded) return Fail(loaded.error());
-  const Scene& scene = loaded->scene;
+  LOWLAP_ASSIGN_OR_RETURN(const auto loaded,
+                          LoadScene(flags.input, context, &stages));
+  const Scene& scene = loaded.scene;
   const ViewGraph graph(scene);
   const RigidityReport by_directions = AnalyzeRigidity(graph);
   constexpr int kMinSharedTracks = 30;
   const RigidityReport by_triplets =
       AnalyzeTripletRigidity(scene, kMinSharedTracks);
   if (!flags.json.empty()) {
-    const Status written = WriteFileAtomically(
+    LOWLAP_RETURN_IF_ERROR(WriteFileAtomically(
         flags.json, "{\"by_directions\": " + ToJson(by_directions) +
-                        ",\n\"by_triplets\": " + ToJson(by_triplets) + "}\n");
-    if (!written) return Fail(written.error());
+                        ",\n\"by_triplets\": " + ToJson(by_triplets) + "}\n"));
   }
   PrintContent(scene);
   if (scene.relative_poses.empty()) return 0;
@@ -143,9 +140,7 @@ void AddInspect(CLI::App* program, Action* action) {
   AddOption(command, "--json", flags->json,
             "Also write groups and hinges as JSON");
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command, [flags, action] {
-    *action = [flags] { return Inspect(*flags); };
-  });
+  RunWhenChosen(command, flags, Inspect, action);
 }
 
 }  // namespace lowlap::cli

@@ -53,7 +53,8 @@ int main(int argc, char** argv) {
   CLI11_PARSE(program, argc, argv);
   lowlap::cli::CatchInterrupts();
   try {
-    return action();
+    const lowlap::Result<int> exit_code = action();
+    return exit_code ? *exit_code : lowlap::cli::Fail(exit_code.error());
   } catch (const std::exception& exception) {
     // The library reports errors as values; this is memory running out and the
     // like.

@@ -6,6 +6,7 @@
 
 #include "cli/command.h"
 #include "cli/solve_flags.h"
+#include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/report/internal/table_text.h"
@@ -24,18 +25,11 @@ struct Flags {
   std::string output;
 };
 
-std::string Joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names)
-    text += (text.empty() ? "" : ", ") + name;
-  return text;
-}
-
 // What the trials depend on.
 std::string SettingsText(const RobustnessOptions& options, std::uint64_t seed) {
-  return "version " LOWLAP_VERSION "\nscenarios " + Joined(options.scenarios) +
-         (options.quick ? ", quick" : "") + "\nstrategies " +
-         Joined(options.strategies) + "\nseeds " +
+  return "version " LOWLAP_VERSION "\nscenarios " +
+         Joined(options.scenarios, ", ") + (options.quick ? ", quick" : "") +
+         "\nstrategies " + Joined(options.strategies, ", ") + "\nseeds " +
          std::to_string(options.num_seeds) + " from " + std::to_string(seed) +
          "\ntolerance " + NumberText(options.tolerance, 9) + "\ntime limit " +
          NumberText(options.time_limit_s, 9) + "\n";
@@ -73,21 +67,16 @@ Status Complete(const Flags& flags, const RunContext& context,
   return RunRobustnessStudy(context, sinks, study);
 }
 
-int StudyAndWrite(const Flags& flags) {
-  auto study = PlanRobustnessStudy(flags.options);
-  if (!study) return Fail(study.error());
-  const Status done = Complete(flags, MakeContext(flags.common), &*study);
-  if (!done) return Fail(done.error());
-  if (const Status written = WriteRobustness(*study, flags.output); !written) {
-    return Fail(written.error());
-  }
+Result<int> StudyAndWrite(const Flags& flags) {
+  LOWLAP_ASSIGN_OR_RETURN(auto study, PlanRobustnessStudy(flags.options));
+  LOWLAP_RETURN_IF_ERROR(Complete(flags, MakeContext(flags.common), &study));
+  LOWLAP_RETURN_IF_ERROR(WriteRobustness(study, flags.output));
   std::printf(
       "%s\n%zu scenarios, %zu trials, %zu strategies\n"
       "written to %s: index.html summary.txt curves.csv trials.csv and plots "
       "(.svg)\n",
-      SummaryText(*study).c_str(), study->scenarios.size(),
-      study->outcomes.size(), study->options.strategies.size(),
-      flags.output.c_str());
+      SummaryText(study).c_str(), study.scenarios.size(), study.outcomes.size(),
+      study.options.strategies.size(), flags.output.c_str());
   return 0;
 }
 
@@ -106,7 +95,7 @@ void AddRobustness(CLI::App* program, Action* action) {
       .Required();
   AddOption(command, "--scenario", o.scenarios,
             "What gets worse, separated by commas; all if left out: " +
-                Joined(RobustnessScenarioNames()))
+                Joined(RobustnessScenarioNames(), ", "))
       .SeparatedBy(',');
   AddStrategiesFlag(command, &o.strategies);
   AddOption(command, "--seeds", o.num_seeds, "Simulations per value")
@@ -121,9 +110,7 @@ void AddRobustness(CLI::App* program, Action* action) {
   AddFlag(command, "--quick", o.quick,
           "The room alone, few values, small graphs: seconds");
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command, [flags, action] {
-    *action = [flags] { return StudyAndWrite(*flags); };
-  });
+  RunWhenChosen(command, flags, StudyAndWrite, action);
 }
 
 }  // namespace lowlap::cli

@@ -94,25 +94,19 @@ Result<std::vector<PairReport>> Measure(const RunFlags& flags,
   return RelatePairs(measurements, front_end, context, stages, scene);
 }
 
-int Run(const RunFlags& flags) {
+Result<int> Run(const RunFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   // Everything that can be refused is refused before the long work.
-  const auto options = MakeSolveOptions(flags.solve);
-  if (!options) return Fail(options.error());
-  const auto scale = MakeScaleOptions(flags.solve.scale);
-  if (!scale) return Fail(scale.error());
-  if (const Status usable = CheckOutputFolder(flags.output); !usable) {
-    return Fail(usable.error());
-  }
-  const auto intrinsics = ReadIntrinsics(flags);
-  if (!intrinsics) return Fail(intrinsics.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeSolveOptions(flags.solve));
+  LOWLAP_ASSIGN_OR_RETURN(const auto scale,
+                          MakeScaleOptions(flags.solve.scale));
+  LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
+  LOWLAP_ASSIGN_OR_RETURN(const auto intrinsics, ReadIntrinsics(flags));
   std::vector<std::string> notes;
-  auto scene =
-      SceneFromImages(flags.images, *intrinsics, flags.exclude, &notes);
-  if (!scene) return Fail(scene.error());
+  LOWLAP_ASSIGN_OR_RETURN(auto scene, SceneFromImages(flags.images, intrinsics,
+                                                      flags.exclude, &notes));
   for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
-  const auto truth = LoadGroundTruth(flags.solve.ground_truth, *scene);
-  if (!truth) return Fail(truth.error());
+  LOWLAP_RETURN_IF_ERROR(LoadGroundTruth(flags.solve.ground_truth, scene));
 
   if (flags.intrinsics.empty() && !flags.focal_px &&
       flags.solve.refine_intrinsics.empty()) {
@@ -135,7 +129,7 @@ int Run(const RunFlags& flags) {
   front_end.relative_poses.pair.use_points = IsNamed("points", flags.two_view);
   front_end.relative_poses.pair.use_lines = IsNamed("lines", flags.two_view);
   const bool needs_lines = front_end.relative_poses.pair.use_lines ||
-                           scale->Asks("lines") || scale->Asks("coplanar");
+                           scale.Asks("lines") || scale.Asks("coplanar");
   front_end.features.detect_lines = needs_lines;
   front_end.matching.match_lines = needs_lines;
 
@@ -144,27 +138,27 @@ int Run(const RunFlags& flags) {
   summary.command = "run";
   std::map<ViewId, Error> failed;
   auto pairs =
-      Measure(flags, front_end, *options, context, &stages, &*scene, &failed);
+      Measure(flags, front_end, options, context, &stages, &scene, &failed);
   if (!pairs) {
     if (IsInterrupted() && !flags.no_cache) {
       context.Log(LogLevel::kInfo, "what was measured is kept in " +
                                        front_end.cache_folder +
                                        "; the same command goes on from there");
     }
-    return Fail(pairs.error());
+    return tl::unexpected<Error>(pairs.error());
   }
   summary.unrelated = FindUnrelatedViews(*pairs, failed);
   for (const UnrelatedView& view : summary.unrelated) {
     context.Log(LogLevel::kWarning,
-                scene->views.at(view.view).filename +
+                scene.views.at(view.view).filename +
                     " has no relative pose: " + view.reason);
   }
-  if (scene->relative_poses.empty()) {
-    return Fail({ErrorCode::kInsufficientData, ExplainNoPose(*pairs),
-                 flags.images, ""});
+  if (scene.relative_poses.empty()) {
+    return MakeError(ErrorCode::kInsufficientData, ExplainNoPose(*pairs),
+                     flags.images);
   }
   summary.pairs = std::move(*pairs);
-  return SolveAndWrite(std::move(*scene), flags.solve, std::move(summary),
+  return SolveAndWrite(std::move(scene), flags.solve, std::move(summary),
                        &stages, context, flags.images, flags.output);
 }
 
@@ -221,8 +215,7 @@ void AddRun(CLI::App* program, Action* action) {
   AddSolveFlags(command, &flags->solve);
   AddStrictFlag(command, &flags->solve.strict);
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command,
-             [flags, action] { *action = [flags] { return Run(*flags); }; });
+  RunWhenChosen(command, flags, Run, action);
 }
 
 }  // namespace lowlap::cli

@@ -11,6 +11,7 @@
 #include "cli/solve_flags.h"
 #include "cli/truth.h"
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/pipeline/internal/output/ratio_table.h"
 #include "lowlap/pipeline/internal/output/summary_json.h"
@@ -107,38 +108,35 @@ void PrintTable(const std::vector<ScaleRatio>& ratios) {
   }
 }
 
-int Scales(const Flags& flags) {
+Result<int> Scales(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
-  const auto options = MakeScaleOptions(flags.scale);
-  if (!options) return Fail(options.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeScaleOptions(flags.scale));
   StageLog stages;
-  auto loaded = LoadMeasuredScene(flags.input, context, &stages);
-  if (!loaded) return Fail(loaded.error());
-  const auto truth = LoadGroundTruth(flags.ground_truth, loaded->scene);
-  if (!truth) return Fail(truth.error());
-  const auto ratios = EstimateScaleRatios(loaded->scene, *options, context);
-  if (!ratios) return Fail(ratios.error());
+  LOWLAP_ASSIGN_OR_RETURN(auto loaded,
+                          LoadMeasuredScene(flags.input, context, &stages));
+  LOWLAP_ASSIGN_OR_RETURN(const auto truth,
+                          LoadGroundTruth(flags.ground_truth, loaded.scene));
+  LOWLAP_ASSIGN_OR_RETURN(const auto ratios,
+                          EstimateScaleRatios(loaded.scene, options, context));
   FileSet files;
-  Status written;
   if (!flags.json.empty()) {
-    written = files.Add(flags.json, ToJson(*ratios) + "\n");
+    LOWLAP_RETURN_IF_ERROR(files.Add(flags.json, ToJson(ratios) + "\n"));
   }
-  if (written && !flags.profile.empty()) {
-    const auto profiles = ProfileScaleRatios(
-        loaded->scene, FindTriplets(ViewGraph(loaded->scene)),
-        MakeScaleEstimator(*options)->kinds(), context);
-    if (!profiles) return Fail(profiles.error());
-    written = files.Add(flags.profile, ProfileCsv(*profiles));
+  if (!flags.profile.empty()) {
+    LOWLAP_ASSIGN_OR_RETURN(
+        const auto profiles,
+        ProfileScaleRatios(loaded.scene, FindTriplets(ViewGraph(loaded.scene)),
+                           MakeScaleEstimator(options)->kinds(), context));
+    LOWLAP_RETURN_IF_ERROR(files.Add(flags.profile, ProfileCsv(profiles)));
   }
-  if (written) written = files.Commit();
-  if (!written) return Fail(written.error());
-  PrintTable(*ratios);
-  if (*truth) {
-    loaded->scene.scale_ratios = *ratios;
+  LOWLAP_RETURN_IF_ERROR(files.Commit());
+  PrintTable(ratios);
+  if (truth) {
+    loaded.scene.scale_ratios = ratios;
     std::printf("\n%s\n",
-                ToText(EvaluateRelativePoses(loaded->scene, **truth)).c_str());
+                ToText(EvaluateRelativePoses(loaded.scene, *truth)).c_str());
     std::printf("\n%s\n",
-                ToText(EvaluateScaleRatios(loaded->scene, **truth)).c_str());
+                ToText(EvaluateScaleRatios(loaded.scene, *truth)).c_str());
   }
   return 0;
 }
@@ -160,8 +158,7 @@ void AddScales(CLI::App* program, Action* action) {
   AddOption(command, "--gt", flags->ground_truth,
             "True cameras to compare with (folder or scene file)");
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command,
-             [flags, action] { *action = [flags] { return Scales(*flags); }; });
+  RunWhenChosen(command, flags, Scales, action);
 }
 
 }  // namespace lowlap::cli

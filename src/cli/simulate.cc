@@ -3,6 +3,7 @@
 
 #include "cli/command.h"
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -17,36 +18,29 @@ struct Flags {
   std::string truth;
 };
 
-int RunSimulation(Flags flags) {
+Result<int> RunSimulation(const Flags& flags) {
   const auto kind = SyntheticKindFromName(flags.kind);
   if (!kind) {
-    return Fail({ErrorCode::kInvalidArgument,
-                 "unknown kind of scene '" + flags.kind +
-                     "'; known: room, corridor, ring, planar, collinear, "
-                     "pure_rotation, twins",
-                 {},
-                 {}});
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "unknown kind of scene '" + flags.kind +
+                         "'; known: room, corridor, ring, planar, collinear, "
+                         "pure_rotation, twins");
   }
-  flags.options.kind = *kind;
-  flags.options.seed = flags.common.seed;
-  const auto synthetic = Simulate(flags.options);
-  if (!synthetic) return Fail(synthetic.error());
+  SyntheticOptions options = flags.options;
+  options.kind = *kind;
+  options.seed = flags.common.seed;
+  LOWLAP_ASSIGN_OR_RETURN(const auto synthetic, Simulate(options));
   FileSet files;
-  const auto added = WriteScene(synthetic->scene, flags.output, {}, &files);
-  if (!added) return Fail(added.error());
+  LOWLAP_RETURN_IF_ERROR(WriteScene(synthetic.scene, flags.output, {}, &files));
   if (!flags.truth.empty()) {
-    const auto truth_added =
-        WriteScene(TrueSolution(*synthetic), flags.truth, {}, &files);
-    if (!truth_added) return Fail(truth_added.error());
+    LOWLAP_RETURN_IF_ERROR(
+        WriteScene(TrueSolution(synthetic), flags.truth, {}, &files));
   }
-  if (const Status written = files.Commit(); !written) {
-    return Fail(written.error());
-  }
-  std::printf("%zu views, %zu pairs, %zu point tracks, %zu line tracks\n",
-              synthetic->scene.views.size(),
-              synthetic->scene.relative_poses.size(),
-              synthetic->scene.point_tracks.size(),
-              synthetic->scene.line_tracks.size());
+  LOWLAP_RETURN_IF_ERROR(files.Commit());
+  std::printf(
+      "%zu views, %zu pairs, %zu point tracks, %zu line tracks\n",
+      synthetic.scene.views.size(), synthetic.scene.relative_poses.size(),
+      synthetic.scene.point_tracks.size(), synthetic.scene.line_tracks.size());
   return 0;
 }
 
@@ -100,9 +94,7 @@ void AddSimulate(CLI::App* program, Action* action) {
   AddFlag(command, "--look-outwards", o.look_outwards,
           "Rooms: look at the wall behind the camera's back");
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command, [flags, action] {
-    *action = [flags] { return RunSimulation(*flags); };
-  });
+  RunWhenChosen(command, flags, RunSimulation, action);
 }
 
 }  // namespace lowlap::cli

@@ -5,6 +5,7 @@
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 
 namespace lowlap::cli {
@@ -17,25 +18,20 @@ struct Flags {
   SolveFlags solve;
 };
 
-int Solve(const Flags& flags) {
+Result<int> Solve(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
-  if (const auto options = MakeSolveOptions(flags.solve); !options) {
-    return Fail(options.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(MakeSolveOptions(flags.solve));
   // A folder that cannot be written is found before the work.
-  if (const Status usable = CheckOutputFolder(flags.output); !usable) {
-    return Fail(usable.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
   StageLog stages;
   RunSummary summary;
   summary.command = "solve";
-  auto loaded = LoadMeasuredScene(flags.input, context, &stages);
-  if (!loaded) return Fail(loaded.error());
-  summary.pairs = std::move(loaded->pairs);
-  RestoreGivenIntrinsics(&loaded->scene);
-  return SolveAndWrite(std::move(loaded->scene), flags.solve,
-                       std::move(summary), &stages, context, flags.input.scene,
-                       flags.output);
+  LOWLAP_ASSIGN_OR_RETURN(auto loaded,
+                          LoadMeasuredScene(flags.input, context, &stages));
+  summary.pairs = std::move(loaded.pairs);
+  RestoreGivenIntrinsics(&loaded.scene);
+  return SolveAndWrite(std::move(loaded.scene), flags.solve, std::move(summary),
+                       &stages, context, flags.input.scene, flags.output);
 }
 
 }  // namespace
@@ -53,8 +49,7 @@ void AddSolve(CLI::App* program, Action* action) {
   AddSolveFlags(command, &flags->solve);
   AddStrictFlag(command, &flags->solve.strict);
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command,
-             [flags, action] { *action = [flags] { return Solve(*flags); }; });
+  RunWhenChosen(command, flags, Solve, action);
 }
 
 }  // namespace lowlap::cli

@@ -11,6 +11,7 @@
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
+#include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 
@@ -93,10 +94,10 @@ void AddScaleFlags(CLI::App* command, ScaleFlags* flags) {
             flags->asked.emplace(entry.name, true).first->second,
             "Whether " + entry.feature + " includes " + entry.help);
   }
-  std::string known;
-  for (const std::string& word : registry.Features()) {
-    known += (known.empty() ? "" : ", ") + word + " (" + help_of[word] + ")";
-  }
+  const std::string known =
+      Joined(registry.Features(), ", ", [&](const std::string& word) {
+        return word + " (" + help_of[word] + ")";
+      });
   AddOption(command, "--features", flags->features,
             "Kinds that determine the scale ratios, separated by "
             "commas: " +
@@ -284,40 +285,36 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
   return options;
 }
 
-int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
-                  StageLog* stages, const RunContext& context,
-                  const std::string& input, const std::string& output) {
-  auto options = MakeSolveOptions(flags);
-  if (!options) return Fail(options.error());
-  const auto truth = LoadGroundTruth(flags.ground_truth, scene);
-  if (!truth) return Fail(truth.error());
-  if (const Status set =
-          SetRefinement(flags.refine_intrinsics, &scene, &options->adjustment);
-      !set) {
-    return Fail(set.error());
-  }
+Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
+                          RunSummary summary, StageLog* stages,
+                          const RunContext& context, const std::string& input,
+                          const std::string& output) {
+  LOWLAP_ASSIGN_OR_RETURN(auto options, MakeSolveOptions(flags));
+  LOWLAP_ASSIGN_OR_RETURN(const auto truth,
+                          LoadGroundTruth(flags.ground_truth, scene));
+  LOWLAP_RETURN_IF_ERROR(
+      SetRefinement(flags.refine_intrinsics, &scene, &options.adjustment));
 
-  auto result = SolveScene(&scene, *options, context, stages);
+  auto result = SolveScene(&scene, options, context, stages);
   if (!result) {
     if (result.error().file.empty()) result.error().file = input;
-    return Fail(result.error());
+    return tl::unexpected<Error>(result.error());
   }
-  if (*truth) {
+  if (truth) {
     if (result->adjustment) {
       summary.evaluation_before_adjustment =
-          EvaluatePoses(scene.views, result->poses_before_adjustment, **truth);
+          EvaluatePoses(scene.views, result->poses_before_adjustment, *truth);
     }
-    summary.evaluation = EvaluatePoses(scene, **truth);
+    summary.evaluation = EvaluatePoses(scene, *truth);
   }
   summary.solve = std::move(*result);
   summary.stages = stages->stages();
-  if (IsInterrupted()) return Fail({ErrorCode::kCancelled, {}, {}, {}});
-  const Status written = WriteOutputs(scene, summary, output);
-  if (!written) return Fail(written.error());
+  if (IsInterrupted()) return MakeError(ErrorCode::kCancelled, {});
+  LOWLAP_RETURN_IF_ERROR(WriteOutputs(scene, summary, output));
 
   PrintPoses(summary.solve->poses, scene);
   if (summary.solve->adjustment) {
-    PrintCalibration(scene, options->adjustment, *summary.solve->adjustment);
+    PrintCalibration(scene, options.adjustment, *summary.solve->adjustment);
   }
   if (summary.evaluation_before_adjustment &&
       summary.evaluation_before_adjustment->scope == EvaluationScope::kFull) {

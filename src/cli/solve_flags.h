@@ -76,8 +76,9 @@ void AddStrictFlag(CLI::App* command, bool* strict);
 /// wants to know, and returns the exit code: with `strict` 2 if a camera is
 /// doubtful or not placed. `input` is what the scene came
 /// from, for messages.
-int SolveAndWrite(Scene scene, const SolveFlags& flags, RunSummary summary,
-                  StageLog* stages, const RunContext& context,
-                  const std::string& input, const std::string& output);
+Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
+                          RunSummary summary, StageLog* stages,
+                          const RunContext& context, const std::string& input,
+                          const std::string& output);
 
 }  // namespace lowlap::cli

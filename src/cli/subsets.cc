@@ -82,18 +82,16 @@ void PrintSilentFailures(const std::vector<SubsetOutcome>& outcomes,
   }
 }
 
-int Finish(const std::vector<SubsetOutcome>& all,
-           const std::vector<SubsetOutcome>& outcomes, const Scene& scene,
-           const Flags& flags) {
+Result<int> Finish(const std::vector<SubsetOutcome>& all,
+                   const std::vector<SubsetOutcome>& outcomes,
+                   const Scene& scene, const Flags& flags) {
   const SubsetSummary summary = SummarizeSubsets(outcomes, flags.bounds);
-  const auto plot = DrawSubsets(outcomes);
-  if (!plot) return Fail(plot.error());
-  const Status written =
+  LOWLAP_ASSIGN_OR_RETURN(const auto plot, DrawSubsets(outcomes));
+  LOWLAP_RETURN_IF_ERROR(
       WriteTextFiles({{"results.csv", ToCsv(all, scene)},
                       {"summary.json", ToJson(summary, flags.bounds)},
-                      {"results.svg", *plot}},
-                     flags.output);
-  if (!written) return Fail(written.error());
+                      {"results.svg", plot}},
+                     flags.output));
   PrintSilentFailures(outcomes, scene, flags.bounds);
   std::printf("%s", ToText(summary, flags.bounds).c_str());
   std::printf("written to %s: results.csv summary.json results.svg\n",
@@ -140,74 +138,60 @@ void EstimateTimeLeft(RunContext* context) {
       };
 }
 
-int Subsets(const Flags& flags) {
+Result<int> Subsets(const Flags& flags) {
   RunContext context = MakeContext(flags.common);
   EstimateTimeLeft(&context);
   if (flags.jobs > 0) context.num_threads = flags.jobs;
-  auto options = MakeSolveOptions(flags.solve);
-  if (!options) return Fail(options.error());
-  if (const Status valid = flags.bounds.Validate(); !valid) {
-    return Fail(valid.error());
-  }
+  LOWLAP_ASSIGN_OR_RETURN(auto options, MakeSolveOptions(flags.solve));
+  LOWLAP_RETURN_IF_ERROR(flags.bounds.Validate());
   // A folder that cannot be written is found before the work.
-  if (const Status usable = CheckOutputFolder(flags.output); !usable) {
-    return Fail(usable.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
   StageLog stages;
-  auto loaded = LoadMeasuredScene(flags.input, context, &stages);
-  if (!loaded) return Fail(loaded.error());
-  Scene scene = std::move(loaded->scene);
+  LOWLAP_ASSIGN_OR_RETURN(auto loaded,
+                          LoadMeasuredScene(flags.input, context, &stages));
+  Scene scene = std::move(loaded.scene);
   DropSolution(&scene);
   if (flags.max_point_matches > 0) {
-    if (const Status status =
-            LimitPointMatches(flags.max_point_matches, &scene);
-        !status) {
-      return Fail(status.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(LimitPointMatches(flags.max_point_matches, &scene));
   }
-  const auto truth = LoadGroundTruth(flags.solve.ground_truth, scene);
-  if (!truth) return Fail(truth.error());
-  if (const Status set = SetRefinement(flags.solve.refine_intrinsics, &scene,
-                                       &options->adjustment);
-      !set) {
-    return Fail(set.error());
-  }
-  const auto chosen =
-      ChooseSubsets(scene, flags.drop, flags.sample, flags.common.seed);
-  if (!chosen) return Fail(chosen.error());
-  const auto settings = SettingsText(flags, scene, **truth);
-  if (!settings) return Fail(settings.error());
-  if (const Status made = PrepareOutputFolder(flags.output); !made) {
-    return Fail(made.error());
-  }
+  LOWLAP_ASSIGN_OR_RETURN(const auto truth,
+                          LoadGroundTruth(flags.solve.ground_truth, scene));
+  LOWLAP_RETURN_IF_ERROR(SetRefinement(flags.solve.refine_intrinsics, &scene,
+                                       &options.adjustment));
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto chosen,
+      ChooseSubsets(scene, flags.drop, flags.sample, flags.common.seed));
+  LOWLAP_ASSIGN_OR_RETURN(const auto settings,
+                          SettingsText(flags, scene, *truth));
+  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(flags.output));
   std::map<std::vector<ViewId>, SubsetOutcome> outcomes;
   const auto log = ResultLog::Open(
       (std::filesystem::path(flags.output) / "results.jsonl").string(),
-      *settings, [&](const std::string& record) {
+      settings, [&](const std::string& record) {
         auto outcome = SubsetFromJsonLine(record);
         if (outcome) outcomes[outcome->dropped] = std::move(*outcome);
         return outcome.has_value();
       });
-  if (!log) return Fail(log.error());
+  if (!log) return tl::unexpected<Error>(log.error());
   std::vector<std::vector<ViewId>> missing;
-  for (const std::vector<ViewId>& dropped : *chosen) {
+  for (const std::vector<ViewId>& dropped : chosen) {
     if (outcomes.count(dropped) == 0) missing.push_back(dropped);
   }
-  if (missing.size() < chosen->size()) {
+  if (missing.size() < chosen.size()) {
     context.Log(LogLevel::kInfo,
-                std::to_string(chosen->size() - missing.size()) +
+                std::to_string(chosen.size() - missing.size()) +
                     " subsets are in results.jsonl already");
   }
-  const Status done = RunSubsets(scene, **truth, missing, *options, context,
+  const Status done = RunSubsets(scene, *truth, missing, options, context,
                                  [&](const SubsetOutcome& outcome) {
                                    outcomes[outcome.dropped] = outcome;
                                    return log->Append(ToJsonLine(outcome));
                                  });
-  if (!done) return Fail(done.error());
+  if (!done) return tl::unexpected<Error>(done.error());
   // In the order of the subsets, whatever order they were finished in.
   std::vector<SubsetOutcome> all, asked_for;
   for (const auto& entry : outcomes) all.push_back(entry.second);
-  for (const std::vector<ViewId>& dropped : *chosen) {
+  for (const std::vector<ViewId>& dropped : chosen) {
     asked_for.push_back(outcomes.at(dropped));
   }
   return Finish(all, asked_for, scene, flags);
@@ -255,9 +239,7 @@ void AddSubsets(CLI::App* program, Action* action) {
   AddSolveFlags(command, &flags->solve);
   FindOption(command, "--gt").Required();
   AddCommonFlags(command, &flags->common);
-  WhenChosen(command, [flags, action] {
-    *action = [flags] { return Subsets(*flags); };
-  });
+  RunWhenChosen(command, flags, Subsets, action);
 }
 
 }  // namespace lowlap::cli

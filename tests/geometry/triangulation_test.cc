@@ -24,7 +24,7 @@ std::vector<RigidTransform> RandomCameras(Random& random, int count) {
   return cams_from_world;
 }
 
-TEST(RayDepths, AreTheDepths) {
+TEST(RayTriangulator, FindsTheDepths) {
   Random random(1);
   for (int n = 0; n < 100; ++n) {
     const RigidTransform cam2_from_cam1 = RandomTransform(random);
@@ -32,18 +32,19 @@ TEST(RayDepths, AreTheDepths) {
     const Vec3 x2 = cam2_from_cam1 * x1;
     // Bearings of any length; points behind a camera have negative depth.
     const double s1 = random.Uniform(0.1, 3), s2 = random.Uniform(-3, -0.1);
-    const auto depths = RayDepths(cam2_from_cam1, x1 / s1, x2 / s2);
+    const auto depths =
+        RayTriangulator(cam2_from_cam1).Depths(x1 / s1, x2 / s2);
     ASSERT_TRUE(depths);
     EXPECT_THAT(*depths, VectorNear(Vec2(s1, s2), 1e-6));
   }
 }
 
-TEST(RayDepths, MinimiseTheDistanceOfSkewRays) {
+TEST(RayTriangulator, MinimisesTheDistanceOfSkewRays) {
   Random random(2);
   for (int n = 0; n < 50; ++n) {
     const RigidTransform cam2_from_cam1 = RandomTransform(random);
     const Vec3 b1 = RandomVector(random), b2 = RandomVector(random);
-    const auto depths = RayDepths(cam2_from_cam1, b1, b2);
+    const auto depths = RayTriangulator(cam2_from_cam1).Depths(b1, b2);
     ASSERT_TRUE(depths);
     const auto distance = [&](const Vec2& d) {
       return (cam2_from_cam1 * Vec3(d(0) * b1) - d(1) * b2).norm();
@@ -56,11 +57,11 @@ TEST(RayDepths, MinimiseTheDistanceOfSkewRays) {
   }
 }
 
-TEST(RayDepths, ParallelRaysHaveNone) {
-  const RigidTransform cam2_from_cam1{Mat3::Identity(), Vec3(1, 0, 0)};
-  EXPECT_FALSE(RayDepths(cam2_from_cam1, Vec3(0, 0, 1), Vec3(0, 0, 1)));
-  EXPECT_FALSE(RayDepths(cam2_from_cam1, Vec3(0, 0, 1), Vec3(0, 0, -2)));
-  EXPECT_FALSE(RayDepths(cam2_from_cam1, Vec3(0, 0, 0), Vec3(0, 0, 1)));
+TEST(RayTriangulator, ParallelRaysHaveNoDepths) {
+  const RayTriangulator rays({Mat3::Identity(), Vec3(1, 0, 0)});
+  EXPECT_FALSE(rays.Depths(Vec3(0, 0, 1), Vec3(0, 0, 1)));
+  EXPECT_FALSE(rays.Depths(Vec3(0, 0, 1), Vec3(0, 0, -2)));
+  EXPECT_FALSE(rays.Depths(Vec3(0, 0, 0), Vec3(0, 0, 1)));
 }
 
 TEST(TriangulateMidpoint, IsExactWithoutNoise) {

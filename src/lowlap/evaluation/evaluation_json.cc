@@ -7,14 +7,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json ToJsonValue(const ErrorStatistics& statistics) {
-  return {{"count", statistics.count},
-          {"mean", statistics.mean},
-          {"median", statistics.median},
-          {"max", statistics.max},
-          {"rmse", statistics.rmse}};
-}
-
 const char* ScopeName(EvaluationScope scope) {
   switch (scope) {
     case EvaluationScope::kNothing:
@@ -52,12 +44,12 @@ std::string ToJson(const PoseEvaluation& evaluation) {
                {"num_solved", evaluation.num_solved},
                {"unsolved", evaluation.unsolved}};
   if (evaluation.scope == EvaluationScope::kFull) {
-    json["position"] = ToJsonValue(evaluation.position);
+    json["position"] = evaluation.position;
     json["scale"] = evaluation.truth_from_solution.scale;
     json["frame_disagreement_deg"] = evaluation.frame_disagreement_deg;
   }
   if (evaluation.scope != EvaluationScope::kNothing) {
-    json["rotation_deg"] = ToJsonValue(evaluation.rotation_deg);
+    json["rotation_deg"] = evaluation.rotation_deg;
   }
   json["views"] = std::move(views);
   return Dump(json);

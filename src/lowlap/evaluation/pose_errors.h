@@ -39,6 +39,16 @@ struct ErrorStatistics {
   double median = 0;  // mean of the middle two of an even number
   double max = 0;
   double rmse = 0;
+
+  /// For nlohmann::json.
+  template <class Json>
+  friend void to_json(Json& json, const ErrorStatistics& errors) {
+    json = {{"count", errors.count},
+            {"mean", errors.mean},
+            {"median", errors.median},
+            {"max", errors.max},
+            {"rmse", errors.rmse}};
+  }
 };
 
 ErrorStatistics Summarize(std::vector<double> errors);

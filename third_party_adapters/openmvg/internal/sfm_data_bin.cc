@@ -9,7 +9,6 @@
 
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/scene/validation.h"
 #include "third_party_adapters/openmvg/internal/archive_reader.h"
 #include "third_party_adapters/openmvg/internal/polymorphic.h"
 
@@ -229,14 +228,7 @@ Result<Scene> ParseSfmDataBin(std::string_view bytes, const std::string& file) {
 
 Result<Scene> ReadSfmDataBin(const std::string& path) {
   LOWLAP_ASSIGN_OR_RETURN(const std::string bytes, ReadWholeFile(path));
-  Result<Scene> scene = ParseSfmDataBin(bytes, path);
-  if (!scene) return scene;
-  if (const Status status = ValidateScene(*scene); !status) {
-    Error error = status.error();
-    error.file = path;
-    return tl::unexpected<Error>(std::move(error));
-  }
-  return scene;
+  return CaughtScene([&] { return SfmDataReader(bytes, path).Read(); }, path);
 }
 
 }  // namespace lowlap::openmvg

@@ -1,6 +1,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/view_json.h"
 #include "lowlap/evaluation/internal/line_match_errors.h"
 
 namespace lowlap {
@@ -57,7 +58,7 @@ std::string ToText(const LineMatchEvaluation& evaluation) {
 std::string ToJson(const LineMatchEvaluation& evaluation) {
   Json pairs = Json::array();
   for (const PairLineMatches& pair : evaluation.pairs) {
-    Json value = {{"views", {pair.views.first, pair.views.second}},
+    Json value = {{"views", pair.views},
                   {"has_relative_pose", pair.has_relative_pose}};
     value.update(ToJsonValue(pair.counts));
     pairs.push_back(value);

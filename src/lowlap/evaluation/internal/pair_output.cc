@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/view_json.h"
 #include "lowlap/evaluation/internal/pair_errors.h"
 
 namespace lowlap {
@@ -69,7 +70,7 @@ std::string ToText(const PairEvaluation& evaluation) {
 std::string ToJson(const PairEvaluation& evaluation) {
   Json pairs = Json::array();
   for (const PairError& pair : evaluation.pairs) {
-    Json entry = {{"views", {pair.views.first, pair.views.second}},
+    Json entry = {{"views", pair.views},
                   {"consecutive", pair.consecutive},
                   {"has_pose", pair.has_pose},
                   {"failed", pair.failed}};

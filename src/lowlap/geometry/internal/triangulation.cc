@@ -2,11 +2,6 @@
 
 namespace lowlap {
 
-std::optional<Vec2> RayDepths(const RigidTransform& cam2_from_cam1,
-                              const Vec3& bearing1, const Vec3& bearing2) {
-  return RayTriangulator(cam2_from_cam1).Depths(bearing1, bearing2);
-}
-
 std::optional<Vec3> TriangulateMidpoint(const RigidTransform& cam2_from_cam1,
                                         const Vec3& bearing1,
                                         const Vec3& bearing2) {

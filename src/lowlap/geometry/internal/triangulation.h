@@ -41,10 +41,6 @@ class RayTriangulator {
   Mat3 cam1_from_cam2_rotation_;
 };
 
-/// RayTriangulator::Depths of one point.
-std::optional<Vec2> RayDepths(const RigidTransform& cam2_from_cam1,
-                              const Vec3& bearing1, const Vec3& bearing2);
-
 /// The point in camera 1's frame midway between the two viewing rays; nullopt
 /// if the rays are parallel or meet behind a camera.
 std::optional<Vec3> TriangulateMidpoint(const RigidTransform& cam2_from_cam1,

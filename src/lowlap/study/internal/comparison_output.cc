@@ -38,11 +38,10 @@ Json QualityJson(const SolutionQuality& quality) {
   Json json;
   if (quality.errors) json["evaluation"] = Json::parse(ToJson(*quality.errors));
   if (quality.difference) {
-    json["difference_to_reference_in_mean_baselines"] =
-        ToStudyJson(*quality.difference);
+    json["difference_to_reference_in_mean_baselines"] = *quality.difference;
   }
-  json["direction_error_deg"] = ToStudyJson(consistency.direction_deg);
-  json["abs_log_ratio_error"] = ToStudyJson(consistency.abs_log_ratio);
+  json["direction_error_deg"] = consistency.direction_deg;
+  json["abs_log_ratio_error"] = consistency.abs_log_ratio;
   json["points"] = consistency.num_points;
   json["reprojection_rmse_px"] = consistency.reprojection_rmse_px;
   return json;

@@ -4,14 +4,6 @@
 
 namespace lowlap {
 
-StudyJson ToStudyJson(const ErrorStatistics& errors) {
-  return {{"count", errors.count},
-          {"mean", errors.mean},
-          {"median", errors.median},
-          {"max", errors.max},
-          {"rmse", errors.rmse}};
-}
-
 StudyJson ToStudyJson(const std::vector<StageCost>& costs) {
   StudyJson json = StudyJson::object();
   for (const StageCost& cost : costs) {

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
-#include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/pipeline/stage_log.h"
 #include "lowlap/report/internal/svg_plot.h"
 #include "lowlap/report/internal/table_text.h"
@@ -17,7 +16,6 @@ namespace lowlap {
 
 using StudyJson = nlohmann::ordered_json;
 
-StudyJson ToStudyJson(const ErrorStatistics& errors);
 /// An object by stage.
 StudyJson ToStudyJson(const std::vector<StageCost>& costs);
 /// File names may hold any bytes; what is not UTF-8 is replaced.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/median.h"
 #include "lowlap/report/internal/svg_plot.h"
 #include "lowlap/report/internal/table_text.h"
@@ -22,13 +23,19 @@ bool HasErrors(const SubsetOutcome& outcome) {
   return outcome.worst_view != kInvalidId;
 }
 
-std::string Joined(const std::vector<std::string>& words, char separator) {
-  std::string text;
-  for (const std::string& word : words) {
-    if (!text.empty()) text += separator;
-    text += word;
-  }
-  return text;
+// What a line of the log holds.
+template <class Outcome, class Visit>
+void VisitMembers(Outcome& outcome, const Visit& visit) {
+  visit("dropped", outcome.dropped);
+  visit("views", outcome.num_views);
+  visit("placed", outcome.num_placed);
+  visit("mean_error", outcome.mean_error);
+  visit("max_error", outcome.max_error);
+  visit("worst_view", outcome.worst_view);
+  visit("mean_error_before_adjustment", outcome.mean_error_before_adjustment);
+  visit("doubts", outcome.doubts);
+  visit("failure", outcome.failure);
+  visit("seconds", outcome.seconds);
 }
 
 // (error, share of all outcomes up to it), a step for each value.
@@ -109,38 +116,30 @@ std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
                    "failure",
                    "seconds"};
   for (const SubsetOutcome& outcome : outcomes) {
-    std::vector<std::string> dropped;
-    for (const ViewId view : outcome.dropped) {
-      dropped.push_back(std::to_string(view.value()));
-    }
+    const std::string dropped = Joined(outcome.dropped, "+", [](ViewId view) {
+      return std::to_string(view.value());
+    });
     const bool known = HasErrors(outcome);
     const auto error = [&](double value) {
       return known ? Format("%.6f", value) : std::string();
     };
     table.rows.push_back(
-        {Joined(dropped, '+'), std::to_string(outcome.num_views),
+        {dropped, std::to_string(outcome.num_views),
          std::to_string(outcome.num_placed), error(outcome.mean_error),
          error(outcome.max_error),
          known ? scene.views.at(outcome.worst_view).filename : "",
          error(outcome.mean_error_before_adjustment),
-         outcome.doubts.empty() ? "0" : "1", Joined(outcome.doubts, ';'),
+         outcome.doubts.empty() ? "0" : "1", Joined(outcome.doubts, ";"),
          outcome.failure, Format("%.2f", outcome.seconds)});
   }
   return ToCsv(table);
 }
 
 std::string ToJsonLine(const SubsetOutcome& outcome) {
-  const Json json = {
-      {"dropped", outcome.dropped},
-      {"views", outcome.num_views},
-      {"placed", outcome.num_placed},
-      {"mean_error", outcome.mean_error},
-      {"max_error", outcome.max_error},
-      {"worst_view", outcome.worst_view},
-      {"mean_error_before_adjustment", outcome.mean_error_before_adjustment},
-      {"doubts", outcome.doubts},
-      {"failure", outcome.failure},
-      {"seconds", outcome.seconds}};
+  Json json;
+  VisitMembers(outcome, [&](const char* name, const auto& member) {
+    json[name] = member;
+  });
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -148,17 +147,9 @@ std::optional<SubsetOutcome> SubsetFromJsonLine(const std::string& line) {
   try {
     const Json json = Json::parse(line);
     SubsetOutcome outcome;
-    json.at("dropped").get_to(outcome.dropped);
-    json.at("views").get_to(outcome.num_views);
-    json.at("placed").get_to(outcome.num_placed);
-    json.at("mean_error").get_to(outcome.mean_error);
-    json.at("max_error").get_to(outcome.max_error);
-    json.at("worst_view").get_to(outcome.worst_view);
-    json.at("mean_error_before_adjustment")
-        .get_to(outcome.mean_error_before_adjustment);
-    json.at("doubts").get_to(outcome.doubts);
-    json.at("failure").get_to(outcome.failure);
-    json.at("seconds").get_to(outcome.seconds);
+    VisitMembers(outcome, [&](const char* name, auto& member) {
+      json.at(name).get_to(member);
+    });
     return outcome;
   } catch (const Json::exception&) {
     return std::nullopt;

@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/joined.h"
+#include "lowlap/core/internal/view_json.h"
 #include "lowlap/pipeline/internal/output/summary_json.h"
 
 namespace lowlap {
@@ -28,11 +30,7 @@ class DiagnosisWriter {
   }
 
   std::string Names(const std::vector<ViewId>& views) const {
-    std::string text;
-    for (const ViewId view : views) {
-      text += (text.empty() ? "" : ", ") + Name(view);
-    }
-    return text;
+    return Joined(views, ", ", [this](ViewId view) { return Name(view); });
   }
 
   std::string Ratio(std::size_t index) const {
@@ -222,11 +220,10 @@ std::string ToJson(const Diagnosis& diagnosis, const Scene& scene) {
   const DiagnosisWriter writer(diagnosis, scene);
   const auto triplet = [&](std::size_t r) {
     const ScaleRatio& ratio = scene.scale_ratios[r];
-    return Json{
-        {"views", {ratio.views.first, ratio.views.middle, ratio.views.last}},
-        {"inliers", ratio.NumInliers()},
-        {"log_ratio_stddev", ratio.log_ratio_stddev},
-        {"log10_nfa", ratio.log10_nfa}};
+    return Json{{"views", ratio.views},
+                {"inliers", ratio.NumInliers()},
+                {"log_ratio_stddev", ratio.log_ratio_stddev},
+                {"log10_nfa", ratio.log10_nfa}};
   };
   const auto triplets = [&](const std::vector<std::size_t>& ratios) {
     Json list = Json::array();

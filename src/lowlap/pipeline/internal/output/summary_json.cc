@@ -1,20 +1,16 @@
 #include "lowlap/pipeline/internal/output/summary_json.h"
 
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/core/internal/view_json.h"
 
 namespace lowlap {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json ViewList(const std::vector<ViewId>& views) { return Json(views); }
-
-Json PairJson(const ViewPair& views) {
-  return Json::array({views.first, views.second});
-}
 
 Json KindJson(const KindSupport& kind) {
   return {{"candidates", kind.candidates},
@@ -26,7 +22,7 @@ Json KindJson(const KindSupport& kind) {
 
 Json RatioJson(const ScaleRatio& ratio) {
   Json json = {
-      {"views", {ratio.views.first, ratio.views.middle, ratio.views.last}},
+      {"views", ratio.views},
       {"verdict", RatioVerdictName(ratio.verdict)},
       {"log_ratio", ratio.log_ratio},
       {"ratio", std::exp(ratio.log_ratio)},
@@ -92,49 +88,31 @@ Json PreferencesJson(const AdjustmentSummary& adjustment) {
 void AddDoubts(const PoseSummary& summary, Json* poses) {
   Json loops = Json::array(), contested = Json::array();
   for (const LoopClosing& loop : summary.loops) {
-    Json edges = Json::array();
-    for (const ViewPair& edge : loop.edges) edges.push_back(PairJson(edge));
-    Json entry = {{"edges", std::move(edges)},
+    Json entry = {{"edges", loop.edges},
                   {"closing_deg", loop.closing_deg},
                   {"expected_deg", loop.expected_deg}};
-    if (loop.left_out) entry["left_out"] = PairJson(*loop.left_out);
+    if (loop.left_out) entry["left_out"] = *loop.left_out;
     loops.push_back(std::move(entry));
   }
   for (const ContestedLink& link : summary.contested) {
-    Json contradictions = Json::array();
-    for (const ViewPair& edge : link.contradictions) {
-      contradictions.push_back(PairJson(edge));
-    }
-    contested.push_back({{"edge", PairJson(link.edge)},
-                         {"contradictions", std::move(contradictions)},
-                         {"views", ViewList(link.views)}});
-  }
-  Json unchecked = Json::array();
-  for (const ViewPair& edge : summary.unchecked) {
-    unchecked.push_back(PairJson(edge));
+    contested.push_back({{"edge", link.edge},
+                         {"contradictions", link.contradictions},
+                         {"views", link.views}});
   }
   (*poses)["doubtful"] = summary.IsDoubtful();
   (*poses)["open_loops"] = std::move(loops);
   (*poses)["contested_links"] = std::move(contested);
-  (*poses)["unchecked_edges"] = std::move(unchecked);
-  Json weak = Json::array();
-  for (const ViewTriplet& views : summary.weak_ratios) {
-    weak.push_back({views.first, views.middle, views.last});
-  }
-  (*poses)["weak_ratios"] = std::move(weak);
+  (*poses)["unchecked_edges"] = summary.unchecked;
+  (*poses)["weak_ratios"] = summary.weak_ratios;
   Json doubts = Json::array();
   for (const ReliabilityWarning& doubt : summary.reliability_warnings) {
-    Json entry = {{"views", ViewList(doubt.views)},
+    Json entry = {{"views", doubt.views},
                   {"reason", WarningReasonName(doubt.reason)}};
     if (doubt.reason == WarningReason::kLostFeatures) {
       entry["fitting_share"] = doubt.share;
     }
-    for (const ViewPair& edge : doubt.against) {
-      entry["contradicted_by"].push_back(PairJson(edge));
-    }
-    for (const ViewTriplet& views : doubt.ratios) {
-      entry["ratios"].push_back({views.first, views.middle, views.last});
-    }
+    if (!doubt.against.empty()) entry["contradicted_by"] = doubt.against;
+    if (!doubt.ratios.empty()) entry["ratios"] = doubt.ratios;
     doubts.push_back(std::move(entry));
   }
   (*poses)["doubtful_views"] = std::move(doubts);
@@ -142,21 +120,11 @@ void AddDoubts(const PoseSummary& summary, Json* poses) {
 
 // Pairs whose matches allow several motions.
 Json MotionsJson(const std::vector<HypothesisDecision>& motions) {
-  int num_by_cycles = 0, num_by_triplets = 0, num_undecided = 0;
+  std::map<HypothesisGrounds, int> count;
   Json decisions = Json::array();
   for (const HypothesisDecision& decision : motions) {
-    switch (decision.grounds) {
-      case HypothesisGrounds::kCycles:
-        ++num_by_cycles;
-        break;
-      case HypothesisGrounds::kTriplets:
-        ++num_by_triplets;
-        break;
-      case HypothesisGrounds::kNone:
-        ++num_undecided;
-        break;
-    }
-    Json entry = {{"views", PairJson(decision.views)},
+    ++count[decision.grounds];
+    Json entry = {{"views", decision.views},
                   {"decided_by", HypothesisGroundsName(decision.grounds)},
                   {"replaced", decision.replaced}};
     if (decision.grounds != HypothesisGrounds::kNone) {
@@ -165,9 +133,9 @@ Json MotionsJson(const std::vector<HypothesisDecision>& motions) {
     decisions.push_back(std::move(entry));
   }
   return {{"pairs", motions.size()},
-          {"decided_by_cycles", num_by_cycles},
-          {"decided_by_triplets", num_by_triplets},
-          {"undecided", num_undecided},
+          {"decided_by_cycles", count[HypothesisGrounds::kCycles]},
+          {"decided_by_triplets", count[HypothesisGrounds::kTriplets]},
+          {"undecided", count[HypothesisGrounds::kNone]},
           {"decisions", std::move(decisions)}};
 }
 
@@ -182,15 +150,12 @@ Json SolveJson(const SolveResult& solve) {
   Json& poses = json["poses"];
   poses["views"] = solve.poses.num_views;
   poses["placed"] = solve.poses.num_placed;
-  poses["unplaced"] = ViewList(solve.poses.unplaced);
-  poses["components"] = Json::array();
-  for (const auto& component : solve.poses.components) {
-    poses["components"].push_back(ViewList(component));
-  }
+  poses["unplaced"] = solve.poses.unplaced;
+  poses["components"] = solve.poses.components;
   poses["outlier_edges"] = Json::array();
   for (const OutlierEdge& edge : solve.poses.outlier_edges) {
     poses["outlier_edges"].push_back(
-        {{"views", PairJson(edge.views)},
+        {{"views", edge.views},
          {"reason", OutlierReasonName(edge.reason)},
          {"error_deg", edge.error_deg}});
   }
@@ -227,7 +192,7 @@ std::string ToJson(const RunSummary& summary, const Scene& scene) {
   json["views"] = scene.views.size();
   json["pairs"] = Json::array();
   for (const PairReport& pair : summary.pairs) {
-    Json entry = {{"views", PairJson(pair.views)},
+    Json entry = {{"views", pair.views},
                   {"accepted", pair.accepted},
                   {"point_matches", pair.num_point_matches},
                   {"point_inliers", pair.num_point_inliers},
@@ -276,9 +241,7 @@ std::string ToJson(const RigidityReport& report) {
   json["isolated_views"] = report.isolated_views;
   json["groups"] = Json::array();
   for (const RigidGroup& group : report.groups) {
-    Json edges = Json::array();
-    for (const ViewPair& edge : group.edges) edges.push_back(PairJson(edge));
-    json["groups"].push_back({{"views", group.views}, {"edges", edges}});
+    json["groups"].push_back({{"views", group.views}, {"edges", group.edges}});
   }
   json["hinges"] = Json::array();
   for (const ArticulationView& hinge : report.articulation_views) {

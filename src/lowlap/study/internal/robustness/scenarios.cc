@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/core/internal/joined.h"
+
 namespace lowlap {
 namespace {
 
@@ -182,9 +184,7 @@ std::vector<std::string> RobustnessScenarioNames() {
 
 Result<std::vector<RobustnessScenario>> MakeRobustnessScenarios(
     const std::string& name, bool quick) {
-  std::string known;
   for (const Definition& definition : Definitions()) {
-    known += (known.empty() ? "" : ", ") + std::string(definition.name);
     if (name != definition.name) continue;
     std::vector<SyntheticKind> worlds = {definition.world};
     if (definition.in_every_world && !quick) {
@@ -214,7 +214,8 @@ Result<std::vector<RobustnessScenario>> MakeRobustnessScenarios(
     return scenarios;
   }
   return MakeError(ErrorCode::kInvalidArgument,
-                   "unknown scenario '" + name + "'; known: " + known);
+                   "unknown scenario '" + name +
+                       "'; known: " + Joined(RobustnessScenarioNames(), ", "));
 }
 
 }  // namespace lowlap

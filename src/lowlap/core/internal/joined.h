@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace lowlap {
+
+/// The texts of the items, with the separator between them.
+template <class Items, class TextOf>
+std::string Joined(const Items& items, const char* separator,
+                   const TextOf& text_of) {
+  std::string text;
+  for (const auto& item : items) {
+    if (!text.empty()) text += separator;
+    text += text_of(item);
+  }
+  return text;
+}
+inline std::string Joined(const std::vector<std::string>& words,
+                          const char* separator) {
+  return Joined(words, separator, [](const std::string& word) { return word; });
+}
+
+}  // namespace lowlap
