@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli_fixture.h"
+#include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/io/internal/json/scene_json.h"
 #include "lowlap/io/internal/scene_binary.h"
 #include "support/data_folder.h"
@@ -289,7 +290,8 @@ TEST_F(Cli, IntrinsicsOfASceneFileAndRefinement) {
     intrinsic.fx_px *= 1.02;
     intrinsic.fy_px *= 1.02;
   }
-  ASSERT_TRUE(WriteSceneBinary(*scene, Path("wrong.lowlap")));
+  ASSERT_TRUE(WriteFileAtomically(Path("wrong.lowlap"),
+                                  FormatSceneBinary(*scene).value()));
   // A calibration is held, and what the images say of it is said: in the
   // console, the summary and the report.
   const Outcome fixed =

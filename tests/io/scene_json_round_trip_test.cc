@@ -10,6 +10,7 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/io/internal/json/scene_json.h"
 #include "lowlap/io/internal/scene_binary.h"
+#include "lowlap/io/scene_format.h"
 #include "scene/example_scenes.h"
 #include "support/matchers.h"
 
@@ -134,15 +135,25 @@ TEST(SceneFiles, RealsSurviveTheTextToTheLastBit) {
       0);
 }
 
+// The text form, or the binary one.
+Status Write(const char* extension, const Scene& scene,
+             const std::string& path) {
+  const SceneFormats formats = OwnSceneFormats();
+  FileSet files;
+  const auto notes = (*FindSceneFormat(formats, std::string("a") + extension))
+                         ->write(scene, path, &files);
+  return notes ? files.Commit() : tl::unexpected<Error>(notes.error());
+}
+
 TEST(SceneFiles, InvalidScenesAreNotWritten) {
   Scene scene = FullScene();
   scene.poses[100].rotation.setZero();
   const std::string folder = ::testing::TempDir();
-  for (const auto write : {WriteSceneJson, WriteSceneBinary}) {
+  for (const char* extension : {".json", ".lowlap"}) {
     const std::string path = folder + "/lowlap_io_invalid_scene";
-    const Status status = write(scene, path);
-    EXPECT_THAT(status, IsError(ErrorCode::kInvalidScene,
-                                path + ": $.extrinsics[key=100].rotation"));
+    EXPECT_THAT(Write(extension, scene, path),
+                IsError(ErrorCode::kInvalidScene,
+                        path + ": $.extrinsics[key=100].rotation"));
     EXPECT_FALSE(std::filesystem::exists(path));
   }
 }
@@ -152,8 +163,8 @@ TEST(SceneFiles, FilesSurviveAndErrorsNameTheFile) {
   const std::string folder = ::testing::TempDir();
   const std::string json = folder + "/lowlap_io_test.json";
   const std::string binary = folder + "/lowlap_io_test.lowlap";
-  ASSERT_THAT(WriteSceneJson(scene, json), IsOk());
-  ASSERT_THAT(WriteSceneBinary(scene, binary), IsOk());
+  ASSERT_THAT(Write(".json", scene, json), IsOk());
+  ASSERT_THAT(Write(".lowlap", scene, binary), IsOk());
   EXPECT_EQ(*ReadSceneJson(json), scene);
   EXPECT_EQ(*ReadSceneBinary(binary), scene);
   // Each form read as the other.
@@ -165,7 +176,7 @@ TEST(SceneFiles, FilesSurviveAndErrorsNameTheFile) {
   EXPECT_THAT(ReadSceneJson(json), IsError(ErrorCode::kNotFound, json));
   EXPECT_THAT(ReadSceneBinary(binary), IsError(ErrorCode::kNotFound, binary));
   EXPECT_THAT(ReadSceneJson(folder), IsError(ErrorCode::kIo, folder));
-  EXPECT_THAT(WriteSceneJson(scene, folder + "/no/such/folder/a.json"),
+  EXPECT_THAT(Write(".json", scene, folder + "/no/such/folder/a.json"),
               IsError(ErrorCode::kIo, "no/such/folder"));
 }
 

@@ -8,12 +8,10 @@
 
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/io/internal/binary_record.h"
 #include "lowlap/io/internal/byte_archive.h"
-#include "lowlap/io/internal/old_scale_ratios.h"
-#include "lowlap/io/internal/scale_ratio_records.h"
 #include "lowlap/io/internal/scene_records.h"
 #include "lowlap/io/internal/scene_version.h"
-#include "lowlap/io/internal/transfer.h"
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
@@ -41,37 +39,80 @@ std::uint32_t Crc32(std::string_view bytes) {
       ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
-template <class Archive, class SceneType>
-void TransferSection(std::string_view tag, Archive& archive, SceneType& scene) {
+constexpr auto kVisitView = [](auto& record, auto& view) {
+  record.Item(view.local_path);
+  record.Item(view.filename);
+  record.Item(view.width_px);
+  record.Item(view.height_px);
+  record.Item(view.intrinsic_id);
+  record.Item(view.pose_id);
+  record.Optional("center_prior", view.center_prior, [](auto& of, auto& prior) {
+    of.Item(prior.weight);
+    of.Item(prior.center_in_world);
+  });
+};
+
+constexpr auto kVisitPose = [](auto& record, auto& pose) {
+  record.Item(pose.rotation);
+  record.Item(pose.center);
+};
+
+constexpr auto kVisitLandmark = [](auto& record, auto& landmark) {
+  record.Item(landmark.position);
+  record.List("observations", landmark.observations,
+              [](auto& of, auto& observation) {
+                of.Item(observation.view);
+                of.Item(observation.feature);
+                of.Item(observation.pixel_px);
+              });
+};
+
+template <class Bytes, class SceneType>
+void TransferSection(std::string_view tag, Bytes& bytes, SceneType& scene) {
+  BinaryRecord record(bytes);
   if (tag == "ROOT") {
-    archive.Text(scene.root_path);
+    record.Item(scene.root_path);
   } else if (tag == "VIEW") {
-    TransferMap(archive, scene.views, kTransferView);
+    record.MapById(scene.views, kVisitView);
   } else if (tag == "INTR") {
-    TransferMap(archive, scene.intrinsics, kTransferIntrinsic);
+    record.MapById(scene.intrinsics, kVisitIntrinsic);
   } else if (tag == "POSE") {
-    TransferMap(archive, scene.poses, kTransferPose);
+    record.MapById(scene.poses, kVisitPose);
   } else if (tag == "STRU") {
-    TransferMap(archive, scene.structure, kTransferLandmark);
+    record.MapById(scene.structure, kVisitLandmark);
   } else if (tag == "CTRL") {
-    TransferMap(archive, scene.control_points, kTransferLandmark);
+    record.MapById(scene.control_points, kVisitLandmark);
   } else if (tag == "FEAT") {
-    TransferMap(archive, scene.features, kTransferFeatures);
+    record.MapById(scene.features, kVisitFeatures);
   } else if (tag == "RELP") {
-    TransferRelativePoses(archive, scene.relative_poses);
+    record.MapByViews(scene.relative_poses, kVisitRelativePose);
   } else if (tag == "PTRK") {
-    TransferMap(archive, scene.point_tracks, kTransferTrack);
+    record.MapById(scene.point_tracks, kVisitTrack);
   } else if (tag == "LTRK") {
-    TransferMap(archive, scene.line_tracks, kTransferTrack);
+    record.MapById(scene.line_tracks, kVisitTrack);
   } else if (tag == "RATI") {
-    TransferVector(archive, scene.scale_ratios, kScaleRatioMinBytes,
-                   kTransferScaleRatio);
+    record.List("scale_ratios", scene.scale_ratios, kVisitScaleRatio);
   } else if (tag == "LINE") {
-    TransferMap(archive, scene.line_structure, kTransferLine);
+    record.MapById(scene.line_structure, kVisitLine);
   } else if (tag == "COPL") {
-    TransferVector(archive, scene.coplanar_pairs, 8, kTransferMatch);
+    record.Flat("coplanar_pairs", scene.coplanar_pairs, kVisitPair);
   } else if (tag == "GIVN") {
-    TransferMap(archive, scene.given_intrinsics, kTransferIntrinsic);
+    record.MapById(scene.given_intrinsics, kVisitIntrinsic);
+  }
+}
+
+// The section "RATD" of version 3: the number of scale ratios again, then the
+// second mode and the shares of information of each.
+void ReadOldRatioDetails(ByteReader& bytes, std::vector<ScaleRatio>& ratios) {
+  if (bytes.Length(ratios.size(), 1 + 3 * 8) != ratios.size()) {
+    bytes.Fail("there are not as many details as scale ratios");
+  }
+  BinaryRecord record(bytes);
+  for (ScaleRatio& ratio : ratios) {
+    record.Optional("second_mode", ratio.second_mode, kVisitRatioMode);
+    for (KindSupport& support : ratio.kinds) {
+      record.Item(support.information_share);
+    }
   }
 }
 
@@ -80,7 +121,8 @@ void ReadPayload(std::string_view tag, std::uint32_t version,
   if (tag == "RATD") {
     ReadOldRatioDetails(section, scene.scale_ratios);
   } else if (tag == "RATI" && version < kFirstVersionWithKinds) {
-    ReadOldScaleRatios(section, scene.scale_ratios);
+    BinaryRecord(section).List("scale_ratios", scene.scale_ratios,
+                               kVisitOldScaleRatio);
   } else {
     TransferSection(tag, section, scene);
   }
@@ -172,15 +214,6 @@ Result<std::string> FormatSceneBinary(const Scene& scene) {
     bytes += payload;
   }
   return bytes;
-}
-
-Status WriteSceneBinary(const Scene& scene, const std::string& path) {
-  Result<std::string> bytes = FormatSceneBinary(scene);
-  if (!bytes) {
-    bytes.error().file = path;
-    return tl::unexpected<Error>(std::move(bytes).error());
-  }
-  return WriteFileAtomically(path, *bytes);
 }
 
 }  // namespace lowlap

@@ -25,9 +25,7 @@ Result<Scene> ReadSceneBinary(const std::string& path);
 Result<Scene> ParseSceneBinary(const std::string& bytes,
                                const std::string& file = {});
 
-/// Writes atomically. A scene that ValidateScene refuses is not written.
-Status WriteSceneBinary(const Scene& scene, const std::string& path);
-
+/// Error: kInvalidScene, of ValidateScene.
 Result<std::string> FormatSceneBinary(const Scene& scene);
 
 }  // namespace lowlap

@@ -1,131 +1,149 @@
 #pragma once
 
-#include "lowlap/io/internal/transfer.h"
+#include "lowlap/io/internal/record_traits.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
 
-// The bytes of every record of the binary form (sfm_data/FORMAT.md). They are
-// function objects, to be handed to the templates of transfer.h for writing and
-// for reading.
+// The records of sfm_data/FORMAT.md that both forms have, each described once:
+// a visitor hands its members in their order to a BinaryRecord, or to the
+// records of json_record.h, for writing (from const data) or for reading.
 
-inline constexpr auto kTransferView = [](auto& archive, auto& view) {
-  archive.Text(view.local_path);
-  archive.Text(view.filename);
-  archive.Count(view.width_px);
-  archive.Count(view.height_px);
-  archive.Integer(view.intrinsic_id);
-  archive.Integer(view.pose_id);
-  TransferOptional(archive, view.center_prior, [](auto& a, auto& prior) {
-    a.Reals(prior.weight.data(), 3);
-    a.Reals(prior.center_in_world.data(), 3);
+inline constexpr auto kVisitPair = [](auto& record, auto& pair) {
+  record.Item(pair.first);
+  record.Item(pair.second);
+};
+
+inline constexpr auto kVisitIntrinsic = [](auto& record, auto& intrinsic) {
+  record.Member("model", intrinsic.model);
+  record.Member("width", intrinsic.width_px);
+  record.Member("height", intrinsic.height_px);
+  record.Member("fx", intrinsic.fx_px);
+  record.Member("fy", intrinsic.fy_px);
+  record.Member("principal_point", intrinsic.principal_point_px);
+  record.Member("distortion", intrinsic.distortion);
+};
+
+inline constexpr auto kVisitFeatures = [](auto& record, auto& features) {
+  record.Flat("points", features.points_px, VisitItem());
+  record.Flat("point_covariances", features.point_covariances, VisitItem(),
+              Presence::kMayBeMissing);
+  record.Flat("segments", features.segments, [](auto& flat, auto& segment) {
+    flat.Item(segment.start_px);
+    flat.Item(segment.end_px);
+    flat.Item(segment.stddev_px);
   });
 };
 
-inline constexpr auto kTransferIntrinsic = [](auto& archive, auto& intrinsic) {
-  TransferEnum(archive, intrinsic.model, CameraModel::kSpherical);
-  archive.Count(intrinsic.width_px);
-  archive.Count(intrinsic.height_px);
-  archive.Real(intrinsic.fx_px);
-  archive.Real(intrinsic.fy_px);
-  archive.Reals(intrinsic.principal_point_px.data(), 2);
-  TransferVector(archive, intrinsic.distortion, sizeof(double),
-                 [](auto& a, auto& coefficient) { a.Real(coefficient); });
+inline constexpr auto kVisitAlternative = [](auto& record, auto& motion) {
+  record.Member("rotation", motion.rotation);
+  record.Member("direction", motion.direction);
+  record.Member("log10_nfa", motion.log10_nfa);
+  record.Optional("covariance", motion.covariance);
 };
 
-inline constexpr auto kTransferPose = [](auto& archive, auto& pose) {
-  TransferMatrix(archive, pose.rotation);
-  archive.Reals(pose.center.data(), 3);
+inline constexpr auto kVisitRelativePose = [](auto& record, auto& edge) {
+  constexpr bool kIsText = std::decay_t<decltype(record)>::kIsText;
+  record.Member("views", edge.views);
+  record.Member("rotation", edge.rotation);
+  record.Member("direction", edge.direction);
+  record.Member("log10_nfa", edge.log10_nfa);
+  if (kIsText) record.Optional("covariance", edge.covariance);
+  record.Member("point_threshold_px", edge.point_threshold_px);
+  if (!kIsText) record.Optional("covariance", edge.covariance);
+  record.Flat("point_inliers", edge.point_inliers, kVisitPair);
+  record.Flat("line_inliers", edge.line_inliers, kVisitPair);
+  record.List("alternatives", edge.alternatives, kVisitAlternative,
+              Presence::kMayBeMissing);
 };
 
-inline constexpr auto kTransferLandmark = [](auto& archive, auto& landmark) {
-  archive.Reals(landmark.position.data(), 3);
-  TransferVector(archive, landmark.observations, 24,
-                 [](auto& a, auto& observation) {
-                   a.Integer(observation.view);
-                   a.Integer(observation.feature);
-                   a.Reals(observation.pixel_px.data(), 2);
-                 });
-};
-
-inline constexpr auto kTransferFeatures = [](auto& archive, auto& features) {
-  TransferVector(archive, features.points_px, 16,
-                 [](auto& a, auto& point) { a.Reals(point.data(), 2); });
-  TransferVector(archive, features.point_covariances, 24,
-                 [](auto& a, auto& shape) { a.Reals(shape.data(), 3); });
-  TransferVector(archive, features.segments, 40, [](auto& a, auto& segment) {
-    a.Reals(segment.start_px.data(), 2);
-    a.Reals(segment.end_px.data(), 2);
-    a.Real(segment.stddev_px);
+inline constexpr auto kVisitTrack = [](auto& record, auto& track) {
+  record.Flat("observations", track, [](auto& flat, auto& ref) {
+    flat.Item(ref.view);
+    flat.Item(ref.feature);
   });
 };
 
-inline constexpr auto kTransferMatch = [](auto& archive, auto& match) {
-  archive.Integer(match.first);
-  archive.Integer(match.second);
+inline constexpr auto kVisitLine = [](auto& record, auto& landmark) {
+  record.Member("direction", landmark.line.direction);
+  record.Member("moment", landmark.line.moment);
+  record.Member("start", landmark.start);
+  record.Member("end", landmark.end);
+  kVisitTrack(record, landmark.observations);
 };
 
-inline constexpr std::size_t kRelativePoseMinBytes = 8 + 14 * 8 + 1 + 3 * 8;
-inline constexpr std::size_t kAlternativeMinBytes = 13 * 8 + 1;
-
-inline constexpr auto kTransferCovariance = [](auto& archive,
-                                               auto& covariance) {
-  TransferMatrix(archive, covariance);
+inline constexpr auto kVisitRatioMode = [](auto& record, auto& mode) {
+  record.Member("log_ratio", mode.log_ratio);
+  record.Member("log10_nfa", mode.log10_nfa);
 };
 
-inline constexpr auto kTransferAlternative = [](auto& archive, auto& motion) {
-  TransferMatrix(archive, motion.rotation);
-  archive.Reals(motion.direction.data(), 3);
-  archive.Real(motion.log10_nfa);
-  TransferOptional(archive, motion.covariance, kTransferCovariance);
+inline constexpr auto kVisitCoplanarInlier = [](auto& record, auto& inlier) {
+  record.Item(inlier.line_in_first);
+  record.Item(inlier.line_in_last);
 };
 
-inline constexpr auto kTransferRelativePose = [](auto& archive, auto& edge) {
-  archive.Integer(edge.views.first);
-  archive.Integer(edge.views.second);
-  TransferMatrix(archive, edge.rotation);
-  archive.Reals(edge.direction.data(), 3);
-  archive.Real(edge.log10_nfa);
-  archive.Real(edge.point_threshold_px);
-  TransferOptional(archive, edge.covariance, kTransferCovariance);
-  TransferVector(archive, edge.point_inliers, 8, kTransferMatch);
-  TransferVector(archive, edge.line_inliers, 8, kTransferMatch);
-  TransferVector(archive, edge.alternatives, kAlternativeMinBytes,
-                 kTransferAlternative);
+inline constexpr auto kVisitKindCounts = [](auto& record, auto& support) {
+  record.Member("candidates", support.candidates);
+  record.Member("inliers", support.inliers);
+  record.Member("log10_nfa", support.log10_nfa);
+  record.Member("threshold_px", support.threshold_px);
 };
 
-/// The number of relative poses, then each; their pairs of views ascend.
-template <class Archive, class Map>
-void TransferRelativePoses(Archive& archive, Map& map) {
-  std::size_t size = archive.Length(map.size(), kRelativePoseMinBytes);
-  if constexpr (Archive::kReads) {
-    for (; size > 0; --size) {
-      RelativePose edge;
-      kTransferRelativePose(archive, edge);
-      if (!map.empty() && !(map.rbegin()->first < edge.views)) {
-        archive.Fail("pairs of views must ascend");
-      }
-      const ViewPair views = edge.views;
-      map.emplace_hint(map.end(), views, std::move(edge));
-    }
-  } else {
-    for (auto& [views, edge] : map) kTransferRelativePose(archive, edge);
+// What all versions begin with, and end with.
+inline constexpr auto kVisitRatioHead = [](auto& record, auto& ratio) {
+  record.Member("views", ratio.views);
+  record.Member("verdict", ratio.verdict);
+  record.Member("log_ratio", ratio.log_ratio);
+  record.Member("log_ratio_stddev", ratio.log_ratio_stddev);
+  record.Member("log10_nfa", ratio.log10_nfa);
+};
+inline constexpr auto kVisitRatioTail = [](auto& record, auto& ratio) {
+  record.Member("num_rejected_negative", ratio.num_rejected_negative);
+  record.Flat("coplanar_inliers", ratio.coplanar_inliers, kVisitCoplanarInlier);
+};
+
+inline constexpr auto kVisitScaleRatio = [](auto& record, auto& ratio) {
+  kVisitRatioHead(record, ratio);
+  record.Optional("second_mode", ratio.second_mode, kVisitRatioMode);
+  record.List("kinds", ratio.kinds, [](auto& kind, auto& support) {
+    kind.Member("kind", support.kind);
+    kVisitKindCounts(kind, support);
+    kind.Member("information_share", support.information_share,
+                Presence::kMayBeMissing);
+    kind.Member("min_agreeing", support.min_agreeing);
+  });
+  kVisitRatioTail(record, ratio);
+};
+
+/// For reading only: before version 4 there were three fixed kinds of evidence,
+/// and second modes and shares had a section of their own in the binary form.
+inline constexpr auto kVisitOldScaleRatio = [](auto& record,
+                                               ScaleRatio& ratio) {
+  constexpr bool kIsText = std::decay_t<decltype(record)>::kIsText;
+  struct OldKind {
+    const char* name;
+    int min_agreeing;
+  };
+  kVisitRatioHead(record, ratio);
+  if constexpr (kIsText) {
+    record.Optional("second_mode", ratio.second_mode, kVisitRatioMode);
   }
-}
-
-inline constexpr auto kTransferTrack = [](auto& archive, auto& track) {
-  TransferVector(archive, track, 8, [](auto& a, auto& ref) {
-    a.Integer(ref.view);
-    a.Integer(ref.feature);
-  });
-};
-
-inline constexpr auto kTransferLine = [](auto& archive, auto& landmark) {
-  archive.Reals(landmark.line.direction.data(), 3);
-  archive.Reals(landmark.line.moment.data(), 3);
-  archive.Reals(landmark.start.data(), 3);
-  archive.Reals(landmark.end.data(), 3);
-  kTransferTrack(archive, landmark.observations);
+  for (const OldKind& old :
+       {OldKind{"points", 2}, OldKind{"lines", 2}, OldKind{"coplanar", 3}}) {
+    KindSupport& support = ratio.kinds.emplace_back();
+    support.kind = old.name;
+    support.min_agreeing = old.min_agreeing;
+    if constexpr (kIsText) {
+      record.Object(old.name, support, [](auto& kind, auto& counts) {
+        kVisitKindCounts(kind, counts);
+        kind.Member("information_share", counts.information_share,
+                    Presence::kMayBeMissing);
+      });
+    } else {
+      kVisitKindCounts(record, support);
+    }
+  }
+  kVisitRatioTail(record, ratio);
 };
 
 }  // namespace lowlap

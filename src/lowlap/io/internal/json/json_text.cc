@@ -44,6 +44,14 @@ void AppendValue(std::string_view utf8, std::string& text) {
   text += '"';
 }
 
+void AppendValue(const ViewPair& views, std::string& text) {
+  AppendValue(std::vector<ViewId>{views.first, views.second}, text);
+}
+
+void AppendValue(const ViewTriplet& views, std::string& text) {
+  AppendValue(std::vector<ViewId>{views.first, views.middle, views.last}, text);
+}
+
 void AppendComma(std::string& text) {
   const char last = text.empty() ? '[' : text.back();
   if (last != '[' && last != '{') text += ", ";

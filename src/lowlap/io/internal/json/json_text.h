@@ -18,6 +18,9 @@ void AppendValue(std::uint32_t value, std::string& text);
 void AppendValue(int value, std::string& text);  // not negative
 void AppendValue(std::string_view utf8, std::string& text);
 
+void AppendValue(const ViewPair& views, std::string& text);
+void AppendValue(const ViewTriplet& views, std::string& text);
+
 template <class Tag>
 void AppendValue(Id<Tag> id, std::string& text) {
   AppendValue(id.value(), text);

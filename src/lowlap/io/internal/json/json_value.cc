@@ -42,7 +42,7 @@ JsonValue JsonValue::At(std::string_view name) const {
   return *member;
 }
 
-void JsonValue::AllowOnly(std::initializer_list<std::string_view> names) const {
+void JsonValue::AllowOnly(const std::vector<std::string_view>& names) const {
   RequireObject();
   for (std::uint32_t child = index_ + 1; child < node().end;
        child = tree_->Next(child)) {

@@ -1,10 +1,10 @@
 #pragma once
 
 #include <cstdint>
-#include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "lowlap/core/result.h"
 #include "lowlap/geometry/types.h"
@@ -27,7 +27,7 @@ class JsonValue {
   JsonValue At(std::string_view name) const;
   std::optional<JsonValue> Find(std::string_view name) const;
   /// Fails on a member that is not listed.
-  void AllowOnly(std::initializer_list<std::string_view> names) const;
+  void AllowOnly(const std::vector<std::string_view>& names) const;
 
   std::uint32_t Id() const;  // 0 ... 2^32 - 1
   int Count() const;         // 0 ... 2^31 - 1

@@ -37,13 +37,4 @@ Result<std::string> FormatSceneJson(const Scene& scene) {
   return text;
 }
 
-Status WriteSceneJson(const Scene& scene, const std::string& path) {
-  Result<std::string> text = FormatSceneJson(scene);
-  if (!text) {
-    text.error().file = path;
-    return tl::unexpected<Error>(std::move(text).error());
-  }
-  return WriteFileAtomically(path, *text);
-}
-
 }  // namespace lowlap

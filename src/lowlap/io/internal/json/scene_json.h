@@ -27,9 +27,7 @@ Result<Scene> ReadSceneJson(const std::string& path);
 Result<Scene> ParseSceneJson(const std::string& text,
                              const std::string& file = {});
 
-/// Writes atomically. A scene that ValidateScene refuses is not written.
-Status WriteSceneJson(const Scene& scene, const std::string& path);
-
+/// Error: kInvalidScene, of ValidateScene.
 Result<std::string> FormatSceneJson(const Scene& scene);
 
 }  // namespace lowlap
