@@ -72,7 +72,7 @@ TEST(NoiseTest, PairGapsAreInPixelsOfSegmentNoise) {
     const test::TestScene test = MakeTestScene(options);
     const CameraSet cameras(test.scene);
     std::vector<LineTrackState> lines = LoadLines(test.scene, cameras, false);
-    LineTriangulationLimits limits;
+    TriangulationLimits limits;
     limits.threshold_px = 3;
     limits.noise_px = 0.5;
     limits.max_relative_depth_stddev = 0.05;
@@ -80,7 +80,7 @@ TEST(NoiseTest, PairGapsAreInPixelsOfSegmentNoise) {
     int count = 0, wrong_count = 0, wrong_large = 0;
     std::vector<std::pair<int, LineEstimate>> estimates;
     for (LineTrackState& line : lines) {
-      TriangulateLineTrack(cameras, limits, &line);
+      Triangulate(cameras, limits, &line);
       if (!line.IsLandmark()) continue;
       const auto estimate = EstimateFromSegments(cameras, line);
       ASSERT_TRUE(estimate.has_value());

@@ -1,42 +1,41 @@
 #include "lowlap/adjustment/adjustment_options.h"
 
 #include <cmath>
-#include <string>
-#include <utility>
+
+#include "lowlap/core/internal/requirement.h"
 
 namespace lowlap {
 
 Status AdjustmentOptions::Validate() const {
-  const auto invalid = [](const std::string& message) {
-    return MakeError(ErrorCode::kInvalidArgument, message);
-  };
-  if (!use_points && !use_lines) {
-    return invalid("points or lines must be used in the adjustment");
+  if (Status status = Require(
+          {{use_points || use_lines,
+            "points or lines must be used in the adjustment"},
+           {max_iterations >= 1, "max_iterations must be positive"},
+           {max_pairs_per_line >= 1, "max_pairs_per_line must be positive"},
+           {max_outlier_rounds >= 0, "max_outlier_rounds must not be negative"},
+           {min_threshold_px > 0 && std::isfinite(max_threshold_px) &&
+                max_threshold_px > min_threshold_px,
+            "need 0 < min_threshold_px < max_threshold_px"}});
+      !status) {
+    return status;
   }
-  if (max_iterations < 1) return invalid("max_iterations must be positive");
-  if (max_pairs_per_line < 1) {
-    return invalid("max_pairs_per_line must be positive");
-  }
-  if (max_outlier_rounds < 0) {
-    return invalid("max_outlier_rounds must not be negative");
-  }
-  for (const auto& [value, name] :
-       {std::pair(outlier_round_tolerance, "outlier_round_tolerance"),
-        std::pair(max_relative_depth_stddev, "max_relative_depth_stddev"),
-        std::pair(max_relative_line_depth_stddev,
-                  "max_relative_line_depth_stddev"),
-        std::pair(min_two_view_line_overlap, "min_two_view_line_overlap"),
-        std::pair(principal_point_stddev, "principal_point_stddev"),
-        std::pair(function_tolerance, "function_tolerance")}) {
-    if (!(value >= 0) || !std::isfinite(value)) {
-      return invalid(std::string(name) + " must be finite and not negative");
-    }
-  }
-  if (!(min_threshold_px > 0) || !std::isfinite(max_threshold_px) ||
-      !(max_threshold_px > min_threshold_px)) {
-    return invalid("need 0 < min_threshold_px < max_threshold_px");
-  }
-  return {};
+  return RequireNotNegative(
+      {{outlier_round_tolerance, "outlier_round_tolerance"},
+       {max_relative_depth_stddev, "max_relative_depth_stddev"},
+       {max_relative_line_depth_stddev, "max_relative_line_depth_stddev"},
+       {min_two_view_line_overlap, "min_two_view_line_overlap"},
+       {principal_point_stddev, "principal_point_stddev"},
+       {function_tolerance, "function_tolerance"}});
+}
+
+Status StructureOptions::Validate() const {
+  return RequireNotNegative(
+      {{max_point_error_px, "max_point_error_px"},
+       {max_line_error_px, "max_line_error_px"},
+       {max_relative_depth_stddev, "max_relative_depth_stddev"},
+       {max_relative_line_depth_stddev, "max_relative_line_depth_stddev"},
+       {min_two_view_line_overlap, "min_two_view_line_overlap"},
+       {min_coplanar_angle_deg, "min_coplanar_angle_deg"}});
 }
 
 }  // namespace lowlap

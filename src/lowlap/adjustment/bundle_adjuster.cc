@@ -1,10 +1,9 @@
 #include "lowlap/adjustment/bundle_adjuster.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
-#include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <utility>
@@ -27,16 +26,14 @@ constexpr double kRoughTolerance = 1e-5;
 constexpr int kRoundsWithNewPairs = 3;
 constexpr double kFirstTolerance = 1e-3;
 
-struct KindRmse {
-  double points_px = 0;
-  double lines_px = 0;
-  double coplanar_px = 0;
-};
+// Root mean square error of points, lines and coplanar pairs, in pixels.
+using KindRmse = std::array<double, 3>;
 
 class Mean {
  public:
-  void Add(double squared) {
-    sum_ += squared;
+  void Add(double error) {
+    if (!std::isfinite(error)) return;
+    sum_ += error * error;
     ++count_;
   }
   double Root() const { return count_ > 0 ? std::sqrt(sum_ / count_) : 0; }
@@ -46,48 +43,56 @@ class Mean {
   double count_ = 0;
 };
 
+template <class Track>
+double Rmse(const CameraSet& cameras, const std::vector<Track>& tracks) {
+  Mean mean;
+  for (const Track& track : tracks) {
+    if (!track.IsLandmark()) continue;
+    for (const auto& candidate : track.candidates) {
+      if (candidate.used) mean.Add(ErrorPx(cameras, track, candidate));
+    }
+  }
+  return mean.Root();
+}
+
 // Of the candidates in use.
 KindRmse ComputeRmse(const CameraSet& cameras, const StructureState& state,
                      AdjustedCoplanarResidual residual) {
-  Mean points, lines, coplanar;
-  for (const PointTrackState& track : state.points) {
-    if (!track.IsLandmark()) continue;
-    for (const PointCandidate& candidate : track.candidates) {
-      if (!candidate.used) continue;
-      const double error = PointErrorPx(cameras, candidate, track.position);
-      if (std::isfinite(error)) points.Add(error * error);
-    }
-  }
-  for (const LineTrackState& track : state.lines) {
-    if (!track.IsLandmark()) continue;
-    for (const LineCandidate& candidate : track.candidates) {
-      if (!candidate.used) continue;
-      const double error =
-          LineErrorPx(cameras, candidate, track.point, track.direction);
-      if (std::isfinite(error)) lines.Add(error * error);
-    }
-  }
+  Mean coplanar;
   for (const PairState& pair : state.pairs) {
-    if (!pair.used || !state.lines[pair.first].IsLandmark() ||
-        !state.lines[pair.second].IsLandmark()) {
-      continue;
-    }
-    const double error = PairErrorPx(cameras, state, pair, residual);
-    if (std::isfinite(error)) coplanar.Add(error * error);
+    if (!pair.used || !state.HasLines(pair)) continue;
+    coplanar.Add(PairErrorPx(cameras, state, pair, residual));
   }
-  return {points.Root(), lines.Root(), coplanar.Root()};
+  return {Rmse(cameras, state.points), Rmse(cameras, state.lines),
+          coplanar.Root()};
 }
 
 template <class Track>
 void CountObservations(const std::vector<Track>& tracks,
                        KindAdjustment* summary) {
   for (const Track& track : tracks) {
-    const std::size_t used =
-        track.IsLandmark() ? static_cast<std::size_t>(track.UsedCount()) : 0;
+    const std::size_t used = track.IsLandmark() ? track.UsedCount() : 0;
     if (track.IsLandmark()) ++summary->landmarks;
     summary->observations_used += used;
     summary->observations_dropped += track.candidates.size() - used;
   }
+}
+
+void CountPairs(const std::vector<PairState>& pairs, std::size_t input_pairs,
+                KindAdjustment* summary) {
+  std::set<int> linked;
+  for (const PairState& pair : pairs) {
+    if (!pair.used) {
+      summary->observations_surplus += pair.consistent ? 1 : 0;
+      continue;
+    }
+    ++summary->observations_used;
+    linked.insert(pair.first);
+    linked.insert(pair.second);
+  }
+  summary->landmarks = linked.size();
+  summary->observations_dropped =
+      input_pairs - summary->observations_used - summary->observations_surplus;
 }
 
 std::size_t CountObservationsWithoutCamera(const Scene& scene,
@@ -103,95 +108,47 @@ std::size_t CountObservationsWithoutCamera(const Scene& scene,
   return count;
 }
 
-void WriteStructure(const CameraSet& cameras, const StructureState& state,
-                    Scene* scene, AdjustmentSummary* summary) {
-  std::map<PointTrackId, Landmark> structure;
-  for (const PointTrackState& track : state.points) {
-    const bool before = scene->structure.count(track.id) > 0;
+template <class Track, class Landmarks>
+void WriteLandmarks(const CameraSet& cameras, const std::vector<Track>& tracks,
+                    Landmarks* landmarks, AdjustmentSummary* summary) {
+  Landmarks written;
+  for (const Track& track : tracks) {
+    const bool before = landmarks->count(track.id) > 0;
     if (track.IsLandmark()) {
-      structure.emplace(track.id, ToLandmark(cameras, track));
+      written.emplace(track.id, ToLandmark(cameras, track));
       summary->landmarks_added += before ? 0 : 1;
     } else {
       summary->landmarks_removed += before ? 1 : 0;
     }
   }
-  std::map<LineTrackId, LineLandmark> line_structure;
-  for (const LineTrackState& track : state.lines) {
-    const bool before = scene->line_structure.count(track.id) > 0;
-    if (track.IsLandmark()) {
-      line_structure.emplace(track.id, ToLandmark(cameras, track));
-      summary->landmarks_added += before ? 0 : 1;
-    } else {
-      summary->landmarks_removed += before ? 1 : 0;
-    }
-  }
-  std::vector<CoplanarPair> pairs;
-  for (const PairState& pair : state.pairs) {
-    if (pair.consistent && state.lines[pair.first].IsLandmark() &&
-        state.lines[pair.second].IsLandmark()) {
-      pairs.push_back(
-          {state.lines[pair.first].id, state.lines[pair.second].id});
-    }
-  }
-  scene->structure = std::move(structure);
-  scene->line_structure = std::move(line_structure);
-  scene->coplanar_pairs = std::move(pairs);
+  *landmarks = std::move(written);
 }
 
-void FillKinds(const NoiseLevels& noise, const KindRmse& initial,
-               const KindRmse& final, const StructureState& state,
-               std::size_t input_pairs, AdjustmentSummary* summary) {
-  const auto fill = [](double initial_px, double final_px,
-                       const NoiseScale& scale, KindAdjustment* kind) {
-    kind->initial_rmse_px = initial_px;
-    kind->final_rmse_px = final_px;
-    kind->stddev_px = scale.stddev_px;
-    kind->threshold_px = scale.threshold_px;
-  };
-  fill(initial.points_px, final.points_px, noise.points, &summary->points);
-  fill(initial.lines_px, final.lines_px, noise.lines, &summary->lines);
-  fill(initial.coplanar_px, final.coplanar_px, noise.coplanar,
-       &summary->coplanar);
-  CountObservations(state.points, &summary->points);
-  CountObservations(state.lines, &summary->lines);
-  std::set<int> linked;
-  for (const PairState& pair : state.pairs) {
-    if (!pair.used) {
-      summary->coplanar.observations_surplus += pair.consistent ? 1 : 0;
-      continue;
-    }
-    ++summary->coplanar.observations_used;
-    linked.insert(pair.first);
-    linked.insert(pair.second);
-  }
-  summary->coplanar.landmarks = linked.size();
-  summary->coplanar.observations_dropped =
-      input_pairs - summary->coplanar.observations_used -
-      summary->coplanar.observations_surplus;
-}
-
-// The solves and rounds; what is left to do is to count and to write.
 class Adjuster {
  public:
-  Adjuster(const Scene& scene, const AdjustmentOptions& options,
-           const RunContext& context, CameraSet* cameras, StructureState* state,
-           AdjustmentSummary* summary)
-      : scene_(scene),
-        options_(options),
-        context_(context),
-        cameras_(cameras),
-        state_(state),
-        summary_(summary) {}
+  Adjuster(const AdjustmentOptions& options, const RunContext& context,
+           const Scene& scene)
+      : options_(options), context_(context), scene_(scene), cameras_(scene) {
+    state_.points = LoadPoints(scene, cameras_);
+    state_.lines = LoadLines(scene, cameras_, options.MovesIntrinsics());
+    state_.pairs = LoadPairs(scene, state_.lines);
+    if (options.use_relative_poses) {
+      state_.priors = LoadRelativePosePriors(scene, cameras_);
+    }
+    summary_.observations_without_camera =
+        CountObservationsWithoutCamera(scene, cameras_);
+  }
 
+  // The solves and rounds.
   Status Run() {
     // Before the observations are settled, a rough optimum will do.
     const double rough = std::max(options_.function_tolerance, kRoughTolerance);
     EstimateNoise();
     if (options_.use_lines && options_.use_coplanar) {
-      SelectPairs(options_, *cameras_, noise_.coplanar.threshold_px, true,
-                  state_);
+      SelectPairs(options_, cameras_, noise_.coplanar.threshold_px, true,
+                  &state_);
     }
-    initial_ = ComputeRmse(*cameras_, *state_, options_.coplanar_residual);
+    initial_ = ComputeRmse(cameras_, state_, options_.coplanar_residual);
     if (options_.fixed_rotations_first) {
       LOWLAP_RETURN_IF_ERROR(
           Solve("fixed rotations", true, std::max(rough, kFirstTolerance)));
@@ -203,24 +160,81 @@ class Adjuster {
                               Update(round <= kRoundsWithNewPairs));
       at_rest = changed <= options_.outlier_round_tolerance;
       if (at_rest) break;
-      summary_->outlier_rounds = round;
-      LOWLAP_RETURN_IF_ERROR(
-          Solve("round " + std::to_string(round), false, rough));
+      summary_.outlier_rounds = round;
+      if (Status status = Solve("round " + std::to_string(round), false, rough);
+          !status) {
+        return status;
+      }
     }
-    LOWLAP_RETURN_IF_ERROR(
-        Solve(kFinalStage, false, options_.function_tolerance));
-    LOWLAP_RETURN_IF_ERROR(
-        FollowPoses(options_, noise_.lines, context_, *cameras_, state_));
-    summary_->converged = at_rest && summary_->solves.back().converged;
-    for (LineTrackState& line : state_->lines) {
-      if (line.IsLandmark()) UpdateLineExtent(*cameras_, &line);
+    if (Status status = Solve(kFinalStage, false, options_.function_tolerance);
+        !status) {
+      return status;
+    }
+    if (Status status =
+            FollowPoses(options_, noise_.lines, context_, cameras_, &state_);
+        !status) {
+      return status;
+    }
+    summary_.converged = at_rest && summary_.solves.back().converged;
+    for (LineTrackState& line : state_.lines) {
+      if (line.IsLandmark()) UpdateLineExtent(cameras_, &line);
     }
     return {};
   }
 
-  const NoiseLevels& noise() const { return noise_; }
-  const KindRmse& initial() const { return initial_; }
-  const SolveOutcome& last() const { return last_; }
+  // What came of them; the scene is not changed yet.
+  Result<AdjustmentSummary> Summarise() {
+    const KindRmse final =
+        ComputeRmse(cameras_, state_, options_.coplanar_residual);
+    const NoiseScale* const noises[] = {&noise_.points, &noise_.lines,
+                                        &noise_.coplanar};
+    KindAdjustment* const kinds[] = {&summary_.points, &summary_.lines,
+                                     &summary_.coplanar};
+    for (std::size_t k = 0; k < final.size(); ++k) {
+      kinds[k]->initial_rmse_px = initial_[k];
+      kinds[k]->final_rmse_px = final[k];
+      kinds[k]->stddev_px = noises[k]->stddev_px;
+      kinds[k]->threshold_px = noises[k]->threshold_px;
+    }
+    CountObservations(state_.points, &summary_.points);
+    CountObservations(state_.lines, &summary_.lines);
+    CountPairs(state_.pairs, scene_.coplanar_pairs.size(), &summary_.coplanar);
+    summary_.initial_cost = summary_.solves.front().initial_cost;
+    summary_.final_cost = summary_.solves.back().final_cost;
+    summary_.components = last_.components;
+    summary_.center_covariances = last_.center_covariances;
+    std::set<PoseId> adjusted;
+    for (std::size_t n = 0; n < cameras_.poses.size(); ++n) {
+      if (last_.pose_observed[n]) adjusted.insert(cameras_.poses[n].id);
+    }
+    summary_.poses_adjusted = adjusted.size();
+    for (const auto& [id, pose] : scene_.poses) {
+      if (adjusted.count(id) == 0) {
+        summary_.poses_without_observations.push_back(id);
+      }
+    }
+    if (options_.test_calibration) {
+      if (!context_.Progress("adjustment: calibration", 0, 1)) {
+        return MakeError(ErrorCode::kCancelled, "stopped on request");
+      }
+      summary_.calibration_preferences =
+          FindCalibrationPreferences(options_, noise_, cameras_, state_);
+    }
+    return summary_;
+  }
+
+  void WriteTo(Scene* scene, AdjustmentSummary* summary) const {
+    cameras_.WriteTo(scene);
+    WriteLandmarks(cameras_, state_.points, &scene->structure, summary);
+    WriteLandmarks(cameras_, state_.lines, &scene->line_structure, summary);
+    scene->coplanar_pairs.clear();
+    for (const PairState& pair : state_.pairs) {
+      if (pair.consistent && state_.HasLines(pair)) {
+        scene->coplanar_pairs.push_back(
+            {state_.lines[pair.first].id, state_.lines[pair.second].id});
+      }
+    }
+  }
 
  private:
   Status Solve(const std::string& stage, bool fixed_rotations,
@@ -228,50 +242,55 @@ class Adjuster {
     const SolveRequest request{
         stage, fixed_rotations, function_tolerance, noise_,
         stage == kFinalStage && options_.compute_center_covariances};
-    LOWLAP_ASSIGN_OR_RETURN(
-        last_, SolveOnce(options_, request, context_, cameras_, state_));
+    Result<SolveOutcome> outcome =
+        SolveOnce(options_, request, context_, &cameras_, &state_);
+    if (!outcome) return tl::unexpected<Error>(outcome.error());
+    last_ = std::move(*outcome);
     const SolveReport& report = last_.report;
     context_.Log(LogLevel::kInfo,
                  "adjustment: " + stage + ": cost " +
                      std::to_string(report.initial_cost) + " -> " +
                      std::to_string(report.final_cost) + " in " +
                      std::to_string(report.iterations) + " iterations");
-    summary_->solves.push_back(report);
-    summary_->iterations += report.iterations;
+    summary_.solves.push_back(report);
+    summary_.iterations += report.iterations;
     return {};
   }
 
   // The shapes first: they say in which units the errors of points are.
   void EstimateNoise() {
-    summary_->point_shape_exponent =
-        EstimateShapeExponent(*cameras_, state_->points);
-    WhitenPoints(summary_->point_shape_exponent, &state_->points);
-    noise_ = EstimateAllNoise(*cameras_, *state_, options_);
+    summary_.point_shape_exponent =
+        EstimateShapeExponent(cameras_, state_.points);
+    WhitenPoints(summary_.point_shape_exponent, &state_.points);
+    noise_ = EstimateAllNoise(cameras_, state_, options_);
   }
 
   // The share of the observations whose use changed.
   Result<double> Update(bool take_new_pairs) {
     // Segments are undistorted with the intrinsics of the last solve.
-    if (options_.MovesIntrinsics()) RefreshRays(scene_, *cameras_, state_);
-    LOWLAP_RETURN_IF_ERROR(
-        FollowPoses(options_, noise_.lines, context_, *cameras_, state_));
+    if (options_.MovesIntrinsics()) RefreshRays(scene_, cameras_, &state_);
+    if (Status status =
+            FollowPoses(options_, noise_.lines, context_, cameras_, &state_);
+        !status) {
+      return tl::unexpected<Error>(status.error());
+    }
     EstimateNoise();
-    LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes,
-                            UpdateObservations(options_, noise_, take_new_pairs,
-                                               context_, *cameras_, state_));
-    return changes.total > 0 ? static_cast<double>(changes.changed) /
-                                   static_cast<double>(changes.total)
-                             : 0.0;
+    const Result<ObservationChanges> changes = UpdateObservations(
+        options_, noise_, take_new_pairs, context_, cameras_, &state_);
+    if (!changes) return tl::unexpected<Error>(changes.error());
+    return changes->total > 0 ? static_cast<double>(changes->changed) /
+                                    static_cast<double>(changes->total)
+                              : 0.0;
   }
 
-  const Scene& scene_;
   const AdjustmentOptions& options_;
   const RunContext& context_;
-  CameraSet* cameras_;
-  StructureState* state_;
-  AdjustmentSummary* summary_;
+  const Scene& scene_;
+  CameraSet cameras_;
+  StructureState state_;
+  AdjustmentSummary summary_;
   NoiseLevels noise_;
-  KindRmse initial_;
+  KindRmse initial_{};
   SolveOutcome last_;
 };
 
@@ -294,48 +313,13 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
     }
   }
 
-  AdjustmentSummary summary;
-  CameraSet cameras(*scene);
-  StructureState state;
-  state.points = LoadPoints(*scene, cameras);
-  state.lines = LoadLines(*scene, cameras, options.MovesIntrinsics());
-  state.pairs = LoadPairs(*scene, state.lines);
-  if (options.use_relative_poses) {
-    state.priors = LoadRelativePosePriors(*scene, cameras);
-  }
-  summary.observations_without_camera =
-      CountObservationsWithoutCamera(*scene, cameras);
-
-  Adjuster adjuster(*scene, options, context, &cameras, &state, &summary);
-  LOWLAP_RETURN_IF_ERROR(adjuster.Run());
-
-  FillKinds(adjuster.noise(), adjuster.initial(),
-            ComputeRmse(cameras, state, options.coplanar_residual), state,
-            scene->coplanar_pairs.size(), &summary);
-  summary.initial_cost = summary.solves.front().initial_cost;
-  summary.final_cost = summary.solves.back().final_cost;
-  summary.components = adjuster.last().components;
-  summary.center_covariances = adjuster.last().center_covariances;
-  std::set<PoseId> adjusted;
-  for (std::size_t n = 0; n < cameras.poses.size(); ++n) {
-    if (adjuster.last().pose_observed[n]) adjusted.insert(cameras.poses[n].id);
-  }
-  summary.poses_adjusted = adjusted.size();
-  if (options.test_calibration) {
-    if (!context.Progress("adjustment: calibration", 0, 1)) {
-      return MakeError(ErrorCode::kCancelled, "stopped on request");
-    }
-    summary.calibration_preferences =
-        FindCalibrationPreferences(options, adjuster.noise(), cameras, state);
-  }
-  for (const auto& [id, pose] : scene->poses) {
-    if (adjusted.count(id) == 0) {
-      summary.poses_without_observations.push_back(id);
-    }
-  }
-  cameras.WriteTo(scene);
-  WriteStructure(cameras, state, scene, &summary);
-  summary.seconds =
+  Adjuster adjuster(options, context, *scene);
+  status = adjuster.Run();
+  if (!status) return tl::unexpected<Error>(status.error());
+  Result<AdjustmentSummary> summary = adjuster.Summarise();
+  if (!summary) return summary;
+  adjuster.WriteTo(scene, &*summary);
+  summary->seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count();
   return summary;

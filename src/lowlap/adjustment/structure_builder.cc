@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/internal/structure/coplanar_pairs.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
 #include "lowlap/core/internal/median.h"
 #include "lowlap/core/internal/propagate.h"
@@ -38,25 +37,20 @@ double ImageNoisePx(double verification_threshold_px) {
              : kDefaultNoisePx;
 }
 
-template <class TrackState>
-void Summarise(const std::vector<TrackState>& tracks, const CameraSet& cameras,
+template <class Track>
+void Summarise(const std::vector<Track>& tracks, const CameraSet& cameras,
                TriangulationSummary* summary) {
   summary->tracks = tracks.size();
-  for (const TrackState& track : tracks) {
+  for (const Track& track : tracks) {
     summary->observations += track.candidates.size();
     switch (track.status) {
-      case LandmarkStatus::kLandmark: {
+      case LandmarkStatus::kLandmark:
         ++summary->landmarks;
-        std::set<int> poses;
-        for (const auto& candidate : track.candidates) {
-          if (candidate.used) poses.insert(cameras.views[candidate.view].pose);
-        }
-        if (poses.size() == 2) ++summary->two_view_landmarks;
-        const std::size_t used = track.UsedCount();
-        summary->observations_used += used;
-        summary->observations_dropped += track.candidates.size() - used;
+        if (track.PoseCount(cameras) == 2) ++summary->two_view_landmarks;
+        summary->observations_used += track.UsedCount();
+        summary->observations_dropped +=
+            track.candidates.size() - track.UsedCount();
         break;
-      }
       case LandmarkStatus::kTooFewViews:
         ++summary->too_few_views;
         break;
@@ -76,70 +70,106 @@ void Summarise(const std::vector<TrackState>& tracks, const CameraSet& cameras,
   }
 }
 
-Status BuildPoints(const CameraSet& cameras, const StructureOptions& options,
-                   double verification_px, const RunContext& context,
-                   std::vector<PointTrackState>* points, double* threshold_px) {
-  const std::vector<std::size_t> all = AllOf(points->size());
-  PointTriangulationLimits limits;
-  limits.noise_px = ImageNoisePx(verification_px);
-  limits.max_relative_depth_stddev = options.max_relative_depth_stddev;
-  if (options.max_point_error_px > 0) {
-    limits.threshold_px = options.max_point_error_px;
+// `max_error_px` as in the options.
+template <class Track, class Landmarks>
+Status BuildLandmarks(const CameraSet& cameras, const StructureOptions& options,
+                      double max_error_px, double verification_px,
+                      const RunContext& context, std::vector<Track> tracks,
+                      Landmarks* landmarks, TriangulationSummary* summary) {
+  const double noise_px = ImageNoisePx(verification_px);
+  TriangulationLimits limits =
+      LimitsOf<Track>(options, NoiseScale{noise_px, kInfinity});
+  if (max_error_px > 0) {
+    limits.threshold_px = max_error_px;
   } else {
     // From all observations of every track, whatever its errors, one sees how
     // far the poses let true observations stray.
-    LOWLAP_RETURN_IF_ERROR(
-        TriangulatePoints(cameras, limits, context, all, points));
+    if (Status status = TriangulateAll(cameras, limits, context, &tracks);
+        !status) {
+      return status;
+    }
     NoiseBounds bounds;
-    bounds.fallback = {limits.noise_px, 3 * limits.noise_px};
-    const NoiseScale noise = EstimatePointNoise(cameras, *points, bounds);
-    limits.threshold_px = std::max(noise.threshold_px, verification_px);
+    bounds.fallback = {noise_px, 3 * noise_px};
+    limits.threshold_px = std::max(
+        EstimateNoise(cameras, tracks, bounds).threshold_px, verification_px);
   }
-  *threshold_px = limits.threshold_px;
-  return TriangulatePoints(cameras, limits, context, all, points);
-}
-
-Status BuildLines(const CameraSet& cameras, const StructureOptions& options,
-                  double verification_px, const RunContext& context,
-                  std::vector<LineTrackState>* lines, double* threshold_px) {
-  const std::vector<std::size_t> all = AllOf(lines->size());
-  LineTriangulationLimits limits;
-  limits.noise_px = ImageNoisePx(verification_px);
-  limits.max_relative_depth_stddev = options.max_relative_line_depth_stddev;
-  limits.min_two_view_overlap = options.min_two_view_line_overlap;
-  if (options.max_line_error_px > 0) {
-    limits.threshold_px = options.max_line_error_px;
-  } else {
-    LOWLAP_RETURN_IF_ERROR(
-        TriangulateLines(cameras, limits, context, all, lines));
-    NoiseBounds bounds;
-    bounds.fallback = {limits.noise_px, 3 * limits.noise_px};
-    const NoiseScale noise = EstimateLineNoise(cameras, *lines, bounds);
-    limits.threshold_px = std::max(noise.threshold_px, verification_px);
+  summary->threshold_px = limits.threshold_px;
+  if (Status status = TriangulateAll(cameras, limits, context, &tracks);
+      !status) {
+    return status;
   }
-  *threshold_px = limits.threshold_px;
-  return TriangulateLines(cameras, limits, context, all, lines);
-}
-
-}  // namespace
-
-Status StructureOptions::Validate() const {
-  const auto invalid = [](const std::string& name) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     name + " must be finite and not negative");
-  };
-  for (const auto& [value, name] :
-       {std::pair(max_point_error_px, "max_point_error_px"),
-        std::pair(max_line_error_px, "max_line_error_px"),
-        std::pair(max_relative_depth_stddev, "max_relative_depth_stddev"),
-        std::pair(max_relative_line_depth_stddev,
-                  "max_relative_line_depth_stddev"),
-        std::pair(min_two_view_line_overlap, "min_two_view_line_overlap"),
-        std::pair(min_coplanar_angle_deg, "min_coplanar_angle_deg")}) {
-    if (!(value >= 0) || !std::isfinite(value)) return invalid(name);
+  Summarise(tracks, cameras, summary);
+  for (const Track& track : tracks) {
+    if (track.IsLandmark()) {
+      landmarks->emplace(track.id, ToLandmark(cameras, track));
+    }
   }
   return {};
 }
+
+// Lines by the segments that observe them. A segment belongs to more than one
+// only if tracks overlap.
+using LinesBySegment = std::map<FeatureRef, std::vector<LineTrackId>>;
+
+bool SeenIn(const LineLandmark& line, ViewId view) {
+  return std::any_of(line.observations.begin(), line.observations.end(),
+                     [&](const FeatureRef& ref) { return ref.view == view; });
+}
+
+// The line of a segment that the other view of its match sees too.
+LineTrackId FindLine(const LinesBySegment& by_segment,
+                     const std::map<LineTrackId, LineLandmark>& lines,
+                     const FeatureRef& segment, ViewId other) {
+  const auto found = by_segment.find(segment);
+  if (found == by_segment.end()) return kInvalidId;
+  for (const LineTrackId id : found->second) {
+    if (SeenIn(lines.at(id), other)) return id;
+  }
+  return kInvalidId;
+}
+
+// The coplanar inliers of the meaningful ratios as pairs of line landmarks:
+// each line is the one that holds the inlier's segment of the middle view.
+// Unique and ordered; counts what is left out in `summary`.
+std::vector<CoplanarPair> CollectCoplanarPairs(
+    const std::vector<ScaleRatio>& ratios,
+    const std::map<LineTrackId, LineLandmark>& lines, double min_angle_rad,
+    StructureSummary* summary) {
+  LinesBySegment by_segment;
+  for (const auto& [id, line] : lines) {
+    for (const FeatureRef& ref : line.observations) {
+      by_segment[ref].push_back(id);
+    }
+  }
+  std::set<CoplanarPair> pairs;
+  for (const ScaleRatio& ratio : ratios) {
+    if (ratio.verdict != RatioVerdict::kMeaningful) continue;
+    const auto& [first, middle, last] = ratio.views;
+    for (const CoplanarInlier& inlier : ratio.coplanar_inliers) {
+      ++summary->coplanar_inliers;
+      LineTrackId a =
+          FindLine(by_segment, lines, {middle, inlier.line_in_first}, first);
+      LineTrackId b =
+          FindLine(by_segment, lines, {middle, inlier.line_in_last}, last);
+      if (a == kInvalidId || b == kInvalidId) {
+        ++summary->coplanar_without_lines;
+        continue;
+      }
+      const double sine =
+          lines.at(a).line.direction.cross(lines.at(b).line.direction).norm();
+      if (a == b || sine < std::sin(min_angle_rad)) {
+        ++summary->coplanar_parallel;
+        continue;
+      }
+      if (a > b) std::swap(a, b);
+      if (!pairs.insert({a, b}).second) ++summary->coplanar_duplicates;
+    }
+  }
+  summary->coplanar_pairs = pairs.size();
+  return {pairs.begin(), pairs.end()};
+}
+
+}  // namespace
 
 Result<StructureSummary> BuildStructure(Scene* scene,
                                         const StructureOptions& options,
@@ -162,30 +192,23 @@ Result<StructureSummary> BuildStructure(Scene* scene,
     return MakeError(ErrorCode::kCancelled, "stopped on request");
   }
   if (options.use_points) {
-    std::vector<PointTrackState> points = LoadPoints(*scene, cameras);
-    LOWLAP_RETURN_IF_ERROR(BuildPoints(cameras, options, verification_px,
-                                       context, &points,
-                                       &summary.points.threshold_px));
-    Summarise(points, cameras, &summary.points);
-    for (const PointTrackState& track : points) {
-      if (track.IsLandmark()) {
-        structure.emplace(track.id, ToLandmark(cameras, track));
-      }
+    if (Status status = BuildLandmarks(
+            cameras, options, options.max_point_error_px, verification_px,
+            context, LoadPoints(*scene, cameras), &structure, &summary.points);
+        !status) {
+      return tl::unexpected<Error>(status.error());
     }
   }
   if (!context.Progress("structure", 1, 2)) {
     return MakeError(ErrorCode::kCancelled, "stopped on request");
   }
   if (options.use_lines) {
-    std::vector<LineTrackState> lines = LoadLines(*scene, cameras, false);
-    LOWLAP_RETURN_IF_ERROR(BuildLines(cameras, options, verification_px,
-                                      context, &lines,
-                                      &summary.lines.threshold_px));
-    Summarise(lines, cameras, &summary.lines);
-    for (const LineTrackState& track : lines) {
-      if (track.IsLandmark()) {
-        line_structure.emplace(track.id, ToLandmark(cameras, track));
-      }
+    if (Status status = BuildLandmarks(
+            cameras, options, options.max_line_error_px, verification_px,
+            context, LoadLines(*scene, cameras, false), &line_structure,
+            &summary.lines);
+        !status) {
+      return tl::unexpected<Error>(status.error());
     }
     if (options.use_coplanar) {
       coplanar_pairs = CollectCoplanarPairs(

@@ -97,14 +97,7 @@ std::vector<Group> MakeGroups(const AdjustmentOptions& options,
 
 MatX Block(const MatX& matrix, const std::vector<int>& rows,
            const std::vector<int>& cols) {
-  MatX block(rows.size(), cols.size());
-  for (std::size_t row = 0; row < rows.size(); ++row) {
-    for (std::size_t col = 0; col < cols.size(); ++col) {
-      block(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(col)) =
-          matrix(rows[row], cols[col]);
-    }
-  }
-  return block;
+  return matrix(rows, cols);
 }
 
 // a^T b. A function of its own, as every form of a product takes the compiler a
@@ -323,12 +316,9 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
       Columns(candidates, [](const Candidate& c) { return c.chosen; });
   if (chosen.empty()) return {};
   VecX change = VecX::Zero(count);
-  const VecX step = -TransposedProduct(
+  change(chosen) = -TransposedProduct(
       PseudoInverse(Block(score->information, chosen, chosen)),
       Block(score->u, chosen, {0}));
-  for (std::size_t n = 0; n < chosen.size(); ++n) {
-    change(chosen[n]) = step(static_cast<Eigen::Index>(n));
-  }
   std::vector<CalibrationPreference> preferences;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     CalibrationPreference preference;

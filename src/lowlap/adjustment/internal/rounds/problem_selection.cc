@@ -17,21 +17,28 @@ int FirstPose(const CameraSet& cameras, const Track& track) {
   return -1;
 }
 
-// The similarity component_from_world: y = rotation (x - origin) / unit.
-struct Frame {
-  Eigen::Quaterniond rotation;
-  Vec3 origin;
-  double unit;
-
-  Vec3 Enter(const Vec3& x) const { return rotation * (x - origin) / unit; }
-  Vec3 Leave(const Vec3& y) const {
-    return unit * (rotation.conjugate() * y) + origin;
+// By the similarity  x -> place(x),  whose rotation is `turn`.
+template <class Place>
+void MoveComponent(const Component& component, const Eigen::Quaterniond& turn,
+                   const Place& place, CameraSet* cameras,
+                   StructureState* state) {
+  for (const int n : component.poses) {
+    PoseState& pose = cameras->poses[n];
+    pose.cam_from_world = (pose.cam_from_world * turn.conjugate()).normalized();
+    pose.center = place(pose.center);
   }
-};
+  for (const int n : component.points) {
+    state->points[n].position = place(state->points[n].position);
+  }
+  for (const int n : component.lines) {
+    LineTrackState& line = state->lines[n];
+    line.point = place(line.point);
+    line.direction = (turn * line.direction).normalized();
+  }
+}
 
-Frame FrameOf(const Component& component, const PoseState& reference) {
-  return {reference.cam_from_world, reference.center,
-          component.baseline > 0 ? component.baseline : 1};
+double UnitOf(const Component& component) {
+  return component.baseline > 0 ? component.baseline : 1;
 }
 
 }  // namespace
@@ -60,10 +67,7 @@ ProblemSelection SelectForSolve(const CameraSet& cameras,
   if (options.use_coplanar) {
     for (std::size_t n = 0; n < state.pairs.size(); ++n) {
       const PairState& pair = state.pairs[n];
-      if (!pair.used || !state.lines[pair.first].IsLandmark() ||
-          !state.lines[pair.second].IsLandmark()) {
-        continue;
-      }
+      if (!pair.used || !state.HasLines(pair)) continue;
       selection.pairs.push_back(static_cast<int>(n));
       ++selection.pair_degree[pair.first];
       ++selection.pair_degree[pair.second];
@@ -147,41 +151,26 @@ std::vector<Component> FindComponents(const CameraSet& cameras,
 void EnterComponentFrame(const Component& component, CameraSet* cameras,
                          StructureState* state, PoseState* saved_reference) {
   *saved_reference = cameras->poses[component.reference];
-  const Frame frame = FrameOf(component, *saved_reference);
-  const Eigen::Quaterniond world_from_frame = frame.rotation.conjugate();
-  for (const int n : component.poses) {
-    PoseState& pose = cameras->poses[n];
-    pose.cam_from_world = (pose.cam_from_world * world_from_frame).normalized();
-    pose.center = frame.Enter(pose.center);
-  }
-  for (const int n : component.points) {
-    state->points[n].position = frame.Enter(state->points[n].position);
-  }
-  for (const int n : component.lines) {
-    LineTrackState& line = state->lines[n];
-    line.point = frame.Enter(line.point);
-    line.direction = (frame.rotation * line.direction).normalized();
-  }
+  const Eigen::Quaterniond& turn = saved_reference->cam_from_world;
+  MoveComponent(
+      component, turn,
+      [&](const Vec3& x) -> Vec3 {
+        return turn * (x - saved_reference->center) / UnitOf(component);
+      },
+      cameras, state);
 }
 
 void LeaveComponentFrame(const Component& component,
                          const PoseState& saved_reference, CameraSet* cameras,
                          StructureState* state) {
-  const Frame frame = FrameOf(component, saved_reference);
-  for (const int n : component.poses) {
-    PoseState& pose = cameras->poses[n];
-    pose.cam_from_world = (pose.cam_from_world * frame.rotation).normalized();
-    pose.center = frame.Leave(pose.center);
-  }
+  const Eigen::Quaterniond turn = saved_reference.cam_from_world.conjugate();
+  MoveComponent(
+      component, turn,
+      [&](const Vec3& y) -> Vec3 {
+        return UnitOf(component) * (turn * y) + saved_reference.center;
+      },
+      cameras, state);
   cameras->poses[component.reference] = saved_reference;
-  for (const int n : component.points) {
-    state->points[n].position = frame.Leave(state->points[n].position);
-  }
-  for (const int n : component.lines) {
-    LineTrackState& line = state->lines[n];
-    line.point = frame.Leave(line.point);
-    line.direction = (frame.rotation.conjugate() * line.direction).normalized();
-  }
 }
 
 }  // namespace lowlap

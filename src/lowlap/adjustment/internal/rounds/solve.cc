@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/adjustment/internal/rounds/center_covariance.h"
+#include "lowlap/adjustment/internal/rounds/linearised_problem.h"
 #include "lowlap/adjustment/internal/rounds/problem_builder.h"
 #include "lowlap/adjustment/internal/rounds/quiet_logging.h"
 
@@ -85,6 +85,53 @@ bool AllFinite(const CameraSet& cameras, const StructureState& state,
     }
   }
   return true;
+}
+
+// From the tangent space of the block to its three numbers.
+Eigen::MatrixXd TangentToAmbient(const ceres::Problem& problem, double* block) {
+  const ceres::Manifold* manifold = problem.GetManifold(block);
+  if (manifold == nullptr) return Mat3::Identity();
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
+      jacobian(3, manifold->TangentSize());
+  manifold->PlusJacobian(block, jacobian.data());
+  return jacobian;
+}
+
+// Covariances of the camera centres in world units, from the Hessian J^T J of
+// the problem at its present values with points and lines marginalised:
+//   S = H_cc - H_cl H_ll^-1 H_lc,  cov = S^-1
+// (the pseudo-inverse, should a camera be underdetermined). J is that of the
+// weighted and robustified residuals, so that the noise levels are in it. The
+// components are in their frames; `saved_references` are the reference poses in
+// world, which are absent from the result.
+std::map<PoseId, Mat3> CenterCovariances(
+    const std::vector<Component>& components,
+    const std::vector<PoseState>& saved_references, const CameraSet& cameras,
+    ProblemBuilder* builder) {
+  const ceres::Problem& problem = builder->problem();
+  const LinearisedProblem linearised(builder);
+  if (linearised.kept_size == 0) return {};
+  const Eigen::MatrixXd covariance =
+      PseudoInverse(Eigen::MatrixXd(linearised.schur_complement));
+  std::map<PoseId, Mat3> result;
+  for (std::size_t n = 0; n < components.size(); ++n) {
+    const Component& component = components[n];
+    const double unit = component.baseline > 0 ? component.baseline : 1;
+    const Mat3 world_from_frame =
+        saved_references[n].cam_from_world.toRotationMatrix().transpose();
+    for (const int pose : component.poses) {
+      double* center = builder->CenterBlock(pose);
+      const int column = linearised.KeptColumn(center);
+      if (column < 0) continue;
+      const int size = problem.ParameterBlockTangentSize(center);
+      const Eigen::MatrixXd to_world =
+          unit * world_from_frame * TangentToAmbient(problem, center);
+      result[cameras.poses[pose].id] =
+          to_world * covariance.block(column, column, size, size) *
+          to_world.transpose();
+    }
+  }
+  return result;
 }
 
 }  // namespace

@@ -1,13 +1,9 @@
 #include "lowlap/adjustment/internal/structure/line_track.h"
 
 #include <Eigen/Dense>
-#include <algorithm>
 #include <cmath>
-#include <set>
-#include <utility>
+#include <map>
 
-#include "lowlap/adjustment/internal/structure/line_refinement.h"
-#include "lowlap/adjustment/internal/structure/pair_sampling.h"
 #include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
@@ -27,57 +23,17 @@ struct Interval {
   bool IsEmpty() const { return !(low < high); }
 };
 
-// Where on the line the viewing ray of an end point passes, from `point`;
-// nullopt for a ray along the line. `depth` is that along the ray.
-std::optional<double> Lift(const RigidTransform& cam_from_world,
-                           const Vec3& ray_in_cam, const Vec3& point,
-                           const Vec3& direction, double min_sine,
-                           double* depth) {
-  const Vec3 ray = (cam_from_world.rotation.transpose() * ray_in_cam);
-  const Vec3 unit_ray = ray.normalized();
-  const Vec3 n = unit_ray.cross(direction);
-  const double n2 = n.squaredNorm();
-  if (!(n2 > min_sine * min_sine)) return std::nullopt;
-  const Vec3 arm = point - cam_from_world.Center();
-  // Closest points of center + z ray and point + s direction.
-  *depth = arm.cross(direction).dot(n) / n2;
-  return arm.cross(unit_ray).dot(n) / n2;
-}
-
-struct LineAgreement {
-  std::vector<char> used;
-  int count = 0;
-  double squares = 0;
-
-  bool BetterThan(const LineAgreement& other) const {
-    return count != other.count ? count > other.count : squares < other.squares;
-  }
+struct SpaceLine {
+  Vec3 point;
+  Vec3 direction;
 };
 
-LineAgreement AgreeOnLine(const CameraSet& cameras, const LineTrackState& track,
-                          const Vec3& point, const Vec3& direction,
-                          double threshold_px) {
-  LineAgreement agreement;
-  agreement.used.assign(track.candidates.size(), 0);
-  for (std::size_t n = 0; n < track.candidates.size(); ++n) {
-    const double error =
-        LineErrorPx(cameras, track.candidates[n], point, direction);
-    if (!(error <= threshold_px) || error == kInfinity) continue;
-    agreement.used[n] = 1;
-    ++agreement.count;
-    agreement.squares += error * error;
-  }
-  return agreement;
-}
-
-int CountPoses(const CameraSet& cameras, const LineTrackState& track,
-               const std::vector<char>& used) {
-  std::set<int> poses;
-  for (std::size_t n = 0; n < used.size(); ++n) {
-    if (used[n]) poses.insert(cameras.views[track.candidates[n].view].pose);
-  }
-  return static_cast<int>(poses.size());
-}
+// A segment in a posed camera.
+struct LineMeasurement {
+  RigidTransform cam_from_world;
+  const SegmentRays* rays = nullptr;
+  double weight = 1;
+};
 
 std::vector<LineMeasurement> Measurements(const CameraSet& cameras,
                                           const LineTrackState& track,
@@ -92,24 +48,160 @@ std::vector<LineMeasurement> Measurements(const CameraSet& cameras,
   return measurements;
 }
 
-// The line of two interpretation planes, with `point` amid the first segment.
-bool LineFromPair(const CameraSet& cameras, const LineCandidate& a,
-                  const LineCandidate& b, Vec3* point, Vec3* direction) {
-  const RigidTransform a_from_world = cameras.PoseOf(a.view).CamFromWorld();
-  const RigidTransform b_from_world = cameras.PoseOf(b.view).CamFromWorld();
-  const std::optional<PluckerLine> line =
-      LineFromTwoViews(b_from_world * a_from_world.Inverse(), a.rays.normal,
-                       b.rays.normal, 1e-6);
-  if (!line) return false;
-  const RigidTransform world_from_a = a_from_world.Inverse();
-  const Vec3 middle =
-      a.rays.ends[0].ray.normalized() + a.rays.ends[1].ray.normalized();
-  const std::optional<Vec3> in_a = ClosestPointToRay(*line, middle, 1e-6);
-  if (!in_a) return false;
-  *point = world_from_a * *in_a;
-  *direction = world_from_a.rotation * line->direction;
-  return point->allFinite() && direction->allFinite();
+// Half the sum of squared end point distances (px^2), with J^T J and J^T r by
+// the unknowns of LineEstimate.
+struct LineNormalEquations {
+  Eigen::Matrix4d hessian = Eigen::Matrix4d::Zero();
+  Vec4 gradient = Vec4::Zero();
+  double cost = 0;
+
+  LineNormalEquations(const std::vector<LineMeasurement>& measurements,
+                      const SpaceLine& line) {
+    const Eigen::Matrix<double, 3, 2> basis = TangentBasis(line.direction);
+    for (const LineMeasurement& measurement : measurements) {
+      const Mat3& rotation = measurement.cam_from_world.rotation;
+      const Vec3 arm = line.point - measurement.cam_from_world.Center();
+      const Vec3 normal = rotation * arm.cross(line.direction);
+      Eigen::Matrix<double, 3, 4> by_unknowns;
+      by_unknowns.leftCols<2>() =
+          -rotation * CrossMatrix(line.direction) * basis;
+      by_unknowns.rightCols<2>() = rotation * CrossMatrix(arm) * basis;
+      for (const EndPointRay& end : measurement.rays->ends) {
+        Eigen::RowVector3d by_normal;
+        const double residual =
+            measurement.weight * EndPointDistancePx(end, normal, &by_normal);
+        const Eigen::RowVector4d row =
+            measurement.weight * by_normal * by_unknowns;
+        hessian += row.transpose() * row;
+        gradient += row.transpose() * residual;
+        cost += 0.5 * residual * residual;
+      }
+    }
+  }
+};
+
+// Levenberg-Marquardt; never makes the sum larger.
+SpaceLine RefineLine(const std::vector<LineMeasurement>& measurements,
+                     SpaceLine line) {
+  constexpr int kIterations = 20;
+  double damping = 1e-6;
+  LineNormalEquations equations(measurements, line);
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    Eigen::Matrix4d damped = equations.hessian;
+    damped.diagonal() *= 1 + damping;
+    const Vec4 step = -damped.ldlt().solve(equations.gradient);
+    if (!step.allFinite()) break;
+    const Eigen::Matrix<double, 3, 2> basis = TangentBasis(line.direction);
+    const SpaceLine next_line{
+        line.point + basis * step.head<2>(),
+        (line.direction + basis * step.tail<2>()).normalized()};
+    const LineNormalEquations next(measurements, next_line);
+    if (!(next.cost <= equations.cost)) {
+      damping *= 10;
+      if (damping > 1e6) break;
+      continue;
+    }
+    const bool settled = equations.cost - next.cost <= 1e-12 * equations.cost;
+    line = next_line;
+    equations = next;
+    damping *= 0.1;
+    if (settled) break;
+  }
+  return line;
 }
+
+// Where on the line the viewing ray of an end point passes, from the line's
+// point; nullopt for a ray along the line. `depth` is that along the ray.
+std::optional<double> Lift(const RigidTransform& cam_from_world,
+                           const Vec3& ray_in_cam, const SpaceLine& line,
+                           double min_sine, double* depth) {
+  const Vec3 ray = (cam_from_world.rotation.transpose() * ray_in_cam);
+  const Vec3 unit_ray = ray.normalized();
+  const Vec3 n = unit_ray.cross(line.direction);
+  const double n2 = n.squaredNorm();
+  if (!(n2 > min_sine * min_sine)) return std::nullopt;
+  const Vec3 arm = line.point - cam_from_world.Center();
+  // Closest points of center + z ray and point + s direction.
+  *depth = arm.cross(line.direction).dot(n) / n2;
+  return arm.cross(unit_ray).dot(n) / n2;
+}
+
+double SegmentErrorPx(const CameraSet& cameras, const LineCandidate& candidate,
+                      const SpaceLine& line) {
+  const RigidTransform cam_from_world =
+      cameras.PoseOf(candidate.view).CamFromWorld();
+  const Vec3 normal =
+      cam_from_world.rotation *
+      (line.point - cam_from_world.Center()).cross(line.direction);
+  double squares = 0;
+  for (const EndPointRay& end : candidate.rays.ends) {
+    const double distance = EndPointDistancePx(end, normal, nullptr);
+    squares += distance * distance;
+    double depth = 1;
+    Lift(cam_from_world, end.ray, line, 1e-6, &depth);
+    if (!(depth > 0)) return kInfinity;
+  }
+  const double error = candidate.weight * std::sqrt(0.5 * squares);
+  return std::isfinite(error) ? error : kInfinity;
+}
+
+// For FitLandmark.
+class LineModel {
+ public:
+  using Place = SpaceLine;
+  static constexpr bool kAllEndSearch = false;
+
+  LineModel(const CameraSet& cameras, const LineTrackState& track)
+      : cameras_(cameras), track_(track) {}
+
+  std::size_t size() const { return track_.candidates.size(); }
+  // Whether a pair of segments determines no line.
+  bool is_degenerate() const { return is_degenerate_; }
+
+  double ErrorPx(std::size_t n, const SpaceLine& line) const {
+    return SegmentErrorPx(cameras_, track_.candidates[n], line);
+  }
+
+  // The line of two interpretation planes, with its point amid the first
+  // segment.
+  std::optional<SpaceLine> FromPair(std::size_t first, std::size_t second) {
+    const LineCandidate& a = track_.candidates[first];
+    const LineCandidate& b = track_.candidates[second];
+    if (cameras_.views[a.view].pose == cameras_.views[b.view].pose) {
+      return std::nullopt;
+    }
+    const RigidTransform world_from_a =
+        cameras_.PoseOf(a.view).CamFromWorld().Inverse();
+    const std::optional<PluckerLine> line =
+        LineFromTwoViews(cameras_.PoseOf(b.view).CamFromWorld() * world_from_a,
+                         a.rays.normal, b.rays.normal, 1e-6);
+    if (line) {
+      const std::optional<Vec3> in_a = ClosestPointToRay(
+          *line,
+          a.rays.ends[0].ray.normalized() + a.rays.ends[1].ray.normalized(),
+          1e-6);
+      if (in_a) {
+        const SpaceLine in_world{world_from_a * *in_a,
+                                 world_from_a.rotation * line->direction};
+        if (in_world.point.allFinite() && in_world.direction.allFinite()) {
+          return in_world;
+        }
+      }
+    }
+    is_degenerate_ = true;
+    return std::nullopt;
+  }
+
+  std::optional<SpaceLine> Refine(const std::vector<char>& used,
+                                  const SpaceLine& line) const {
+    return RefineLine(Measurements(cameras_, track_, used), line);
+  }
+
+ private:
+  const CameraSet& cameras_;
+  const LineTrackState& track_;
+  bool is_degenerate_ = false;
+};
 
 // Share of the shorter of the two extents (one per pose) that both cover.
 double TwoViewOverlap(const CameraSet& cameras, const LineTrackState& track) {
@@ -121,7 +213,7 @@ double TwoViewOverlap(const CameraSet& cameras, const LineTrackState& track) {
       double depth;
       const std::optional<double> at =
           Lift(cameras.PoseOf(candidate.view).CamFromWorld(), end.ray,
-               track.point, track.direction, 1e-6, &depth);
+               {track.point, track.direction}, 1e-6, &depth);
       if (at) extent.Include(*at);
     }
   }
@@ -133,11 +225,9 @@ double TwoViewOverlap(const CameraSet& cameras, const LineTrackState& track) {
 }
 
 std::optional<Eigen::Matrix4d> UnitCovariance(
-    const std::vector<LineMeasurement>& measurements, const Vec3& point,
-    const Vec3& direction) {
-  Eigen::Matrix4d hessian;
-  LineNormalEquations(measurements, point, direction, &hessian, nullptr);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(hessian);
+    const std::vector<LineMeasurement>& measurements, const SpaceLine& line) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(
+      LineNormalEquations(measurements, line).hessian);
   if (!(eigen.eigenvalues()(0) > 1e-15 * eigen.eigenvalues()(3))) {
     return std::nullopt;
   }
@@ -151,7 +241,7 @@ std::optional<Eigen::Matrix4d> UnitCovariance(
 double RelativeLineStddev(const std::vector<LineMeasurement>& measurements,
                           const LineTrackState& track, double noise_px) {
   const std::optional<Eigen::Matrix4d> covariance =
-      UnitCovariance(measurements, track.point, track.direction);
+      UnitCovariance(measurements, {track.point, track.direction});
   if (!covariance) return kInfinity;
   double worst = 0;
   for (const double at : {track.low, track.high}) {
@@ -174,55 +264,21 @@ double RelativeLineStddev(const std::vector<LineMeasurement>& measurements,
 
 }  // namespace
 
-int LineTrackState::UsedCount() const {
-  return static_cast<int>(
-      std::count_if(candidates.begin(), candidates.end(),
-                    [](const LineCandidate& c) { return c.used; }));
-}
-
-int LineTrackState::PoseCount(const CameraSet& cameras) const {
-  std::vector<char> used;
-  for (const LineCandidate& candidate : candidates) {
-    used.push_back(candidate.used);
-  }
-  return CountPoses(cameras, *this, used);
-}
-
-double LineErrorPx(const CameraSet& cameras, const LineCandidate& candidate,
-                   const Vec3& point, const Vec3& direction) {
-  const RigidTransform cam_from_world =
-      cameras.PoseOf(candidate.view).CamFromWorld();
-  const Vec3 normal = cam_from_world.rotation *
-                      (point - cam_from_world.Center()).cross(direction);
-  double squares = 0;
-  for (const EndPointRay& end : candidate.rays.ends) {
-    const double distance = EndPointDistancePx(end, normal, nullptr);
-    squares += distance * distance;
-    double depth = 1;
-    Lift(cam_from_world, end.ray, point, direction, 1e-6, &depth);
-    if (!(depth > 0)) return kInfinity;
-  }
-  const double error = candidate.weight * std::sqrt(0.5 * squares);
-  return std::isfinite(error) ? error : kInfinity;
+double ErrorPx(const CameraSet& cameras, const LineTrackState& track,
+               const LineCandidate& candidate) {
+  return SegmentErrorPx(cameras, candidate, {track.point, track.direction});
 }
 
 std::optional<LineEstimate> EstimateFromSegments(const CameraSet& cameras,
                                                  const LineTrackState& track) {
-  std::vector<char> used;
-  for (const LineCandidate& candidate : track.candidates) {
-    used.push_back(candidate.used);
-  }
   const std::vector<LineMeasurement> measurements =
-      Measurements(cameras, track, used);
-  LineEstimate estimate;
-  estimate.point = track.point;
-  estimate.direction = track.direction;
-  RefineLine(measurements, &estimate.point, &estimate.direction);
+      Measurements(cameras, track, track.Used());
+  const SpaceLine line =
+      RefineLine(measurements, {track.point, track.direction});
   const std::optional<Eigen::Matrix4d> covariance =
-      UnitCovariance(measurements, estimate.point, estimate.direction);
+      UnitCovariance(measurements, line);
   if (!covariance) return std::nullopt;
-  estimate.unit_covariance = *covariance;
-  return estimate;
+  return LineEstimate{line.point, line.direction, *covariance};
 }
 
 void UpdateLineExtent(const CameraSet& cameras, LineTrackState* track) {
@@ -235,7 +291,7 @@ void UpdateLineExtent(const CameraSet& cameras, LineTrackState* track) {
         double depth;
         const std::optional<double> at =
             Lift(cameras.PoseOf(candidate.view).CamFromWorld(), end.ray,
-                 track->point, track->direction, min_sine, &depth);
+                 {track->point, track->direction}, min_sine, &depth);
         if (at && depth > 0) extent.Include(*at);
       }
     }
@@ -248,80 +304,35 @@ void UpdateLineExtent(const CameraSet& cameras, LineTrackState* track) {
   track->high = extent.high - middle;
 }
 
-void TriangulateLineTrack(const CameraSet& cameras,
-                          const LineTriangulationLimits& limits,
-                          LineTrackState* track) {
-  std::vector<LineCandidate>& candidates = track->candidates;
-  for (LineCandidate& candidate : candidates) candidate.used = false;
-  if (CountPoses(cameras, *track, std::vector<char>(candidates.size(), 1)) <
-      2) {
-    track->status = LandmarkStatus::kTooFewViews;
-    return;
+void Triangulate(const CameraSet& cameras, const TriangulationLimits& limits,
+                 LineTrackState* track) {
+  track->Use(std::vector<char>(track->candidates.size(), 1));
+  if (track->PoseCount(cameras) < 2) {
+    return track->Abandon(LandmarkStatus::kTooFewViews);
   }
-
-  Vec3 point, direction;
-  LineAgreement best;
-  bool degenerate = false;
-  for (const auto& [a, b] : SamplePairs(candidates.size(), track->id.value())) {
-    const LineCandidate &first = candidates[a], &second = candidates[b];
-    if (cameras.views[first.view].pose == cameras.views[second.view].pose) {
-      continue;
-    }
-    Vec3 pair_point, pair_direction;
-    if (!LineFromPair(cameras, first, second, &pair_point, &pair_direction)) {
-      degenerate = true;
-      continue;
-    }
-    LineAgreement agreement = AgreeOnLine(cameras, *track, pair_point,
-                                          pair_direction, limits.threshold_px);
-    if (agreement.count < 2 || !agreement.BetterThan(best)) continue;
-    best = std::move(agreement);
-    point = pair_point;
-    direction = pair_direction;
+  LineModel model(cameras, *track);
+  Agreement agreement;
+  const std::optional<SpaceLine> line =
+      FitLandmark(track->id.value(), limits.threshold_px, &model, &agreement);
+  if (!line) {
+    return track->Abandon(model.is_degenerate() ? LandmarkStatus::kUncertain
+                          : model.size() > 2    ? LandmarkStatus::kInconsistent
+                                             : LandmarkStatus::kBehindCamera);
   }
-  if (best.count < 2) {
-    track->status = degenerate              ? LandmarkStatus::kUncertain
-                    : candidates.size() > 2 ? LandmarkStatus::kInconsistent
-                                            : LandmarkStatus::kBehindCamera;
-    return;
-  }
-  constexpr int kRounds = 3;
-  for (int round = 0; round < kRounds; ++round) {
-    Vec3 refined_point = point, refined_direction = direction;
-    RefineLine(Measurements(cameras, *track, best.used), &refined_point,
-               &refined_direction);
-    LineAgreement next = AgreeOnLine(cameras, *track, refined_point,
-                                     refined_direction, limits.threshold_px);
-    if (next.count < 2 || best.BetterThan(next)) break;
-    const bool settled = next.used == best.used;
-    point = refined_point;
-    direction = refined_direction;
-    best = std::move(next);
-    if (settled) break;
-  }
-
-  const int pose_count = CountPoses(cameras, *track, best.used);
-  if (pose_count < 2) {
-    track->status = LandmarkStatus::kInconsistent;
-    return;
-  }
-  track->point = point;
-  track->direction = direction;
-  for (std::size_t n = 0; n < candidates.size(); ++n) {
-    candidates[n].used = best.used[n] != 0;
-  }
+  track->Use(agreement.used);
+  const std::size_t pose_count = track->PoseCount(cameras);
+  if (pose_count < 2) return track->Abandon(LandmarkStatus::kInconsistent);
+  track->point = line->point;
+  track->direction = line->direction;
   UpdateLineExtent(cameras, track);
   track->status = LandmarkStatus::kLandmark;
-  if (!(RelativeLineStddev(Measurements(cameras, *track, best.used), *track,
-                           limits.noise_px) <=
+  if (!(RelativeLineStddev(Measurements(cameras, *track, agreement.used),
+                           *track, limits.noise_px) <=
         limits.max_relative_depth_stddev)) {
-    track->status = LandmarkStatus::kUncertain;
+    track->Abandon(LandmarkStatus::kUncertain);
   } else if (pose_count == 2 && !(TwoViewOverlap(cameras, *track) >=
                                   limits.min_two_view_overlap)) {
-    track->status = LandmarkStatus::kImplausible;
-  }
-  if (!track->IsLandmark()) {
-    for (LineCandidate& candidate : candidates) candidate.used = false;
+    track->Abandon(LandmarkStatus::kImplausible);
   }
 }
 

@@ -3,28 +3,19 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "lowlap/adjustment/internal/structure/point_track.h"
 
 namespace lowlap {
 namespace {
 
-constexpr int kMinPoses = 3;
+constexpr std::size_t kMinPoses = 3;
 // Of ln r^2 for a Gaussian error r: pi^2 / 2.
 constexpr double kLogSquareVariance = 4.93;
 // What is believed before any error is seen.
 constexpr double kPriorMean = 0.5;
 constexpr double kPriorVariance = 0.25;
 constexpr double kLeastErrorPx = 1e-3;
-
-int CountPoses(const CameraSet& cameras, const PointTrackState& track) {
-  std::set<int> poses;
-  for (const PointCandidate& candidate : track.candidates) {
-    if (candidate.used) poses.insert(cameras.views[candidate.view].pose);
-  }
-  return static_cast<int>(poses.size());
-}
 
 }  // namespace
 
@@ -50,7 +41,7 @@ double EstimateShapeExponent(const CameraSet& cameras,
                              const std::vector<PointTrackState>& points) {
   double count = 0, sum_x = 0, sum_y = 0, sum_xx = 0, sum_xy = 0;
   for (const PointTrackState& track : points) {
-    if (!track.IsLandmark() || CountPoses(cameras, track) < kMinPoses) continue;
+    if (!track.IsLandmark() || track.PoseCount(cameras) < kMinPoses) continue;
     for (const PointCandidate& candidate : track.candidates) {
       if (!candidate.used) continue;
       const std::optional<Vec2> error =

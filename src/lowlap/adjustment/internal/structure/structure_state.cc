@@ -3,12 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
 #include "lowlap/core/internal/median.h"
-#include "lowlap/core/internal/parallel.h"
 #include "lowlap/robust/internal/median_deviation.h"
 
 namespace lowlap {
@@ -60,12 +58,8 @@ PointTrackState LoadPoint(const Scene& scene, const CameraSet& cameras,
                        const Vec2& pixel_px, bool used) {
     const int view = cameras.Find(id_view);
     if (view < 0) return;
-    PointCandidate& candidate = by_view[id_view];
-    candidate.view = view;
-    candidate.feature = feature;
-    candidate.pixel_px = pixel_px;
-    candidate.used = used;
-    candidate.shape = ShapeOf(scene, id_view, feature);
+    by_view[id_view] = {
+        {view, feature, used}, pixel_px, ShapeOf(scene, id_view, feature)};
   };
   const auto track = scene.point_tracks.find(id);
   if (track != scene.point_tracks.end()) {
@@ -84,7 +78,7 @@ PointTrackState LoadPoint(const Scene& scene, const CameraSet& cameras,
   for (const auto& [view, candidate] : by_view) {
     state.candidates.push_back(candidate);
   }
-  if (state.HasTwoPoses(cameras)) state.status = LandmarkStatus::kLandmark;
+  if (state.PoseCount(cameras) >= 2) state.status = LandmarkStatus::kLandmark;
   return state;
 }
 
@@ -112,39 +106,53 @@ LineTrackState LoadLine(const Scene& scene, const CameraSet& cameras,
     const int view = cameras.Find(ref.view);
     const LineSegment* segment = FindSegment(scene, ref);
     if (view < 0 || segment == nullptr) continue;
-    std::optional<SegmentRays> rays = MakeSegmentRays(
+    const std::optional<SegmentRays> rays = MakeSegmentRays(
         *segment, cameras.IntrinsicOf(view), with_intrinsic_derivatives);
     if (!rays) continue;
+    LineCandidate candidate{{view, ref.feature, used}, *rays};
     constexpr double kMaxWeight = 4;  // detectors do not know their noise well
-    const double weight =
-        segment->stddev_px > 0
-            ? std::clamp(reference_stddev_px / segment->stddev_px,
-                         1 / kMaxWeight, kMaxWeight)
-            : 1;
-    state.candidates.push_back({view, ref.feature, *rays, weight, used});
+    if (segment->stddev_px > 0) {
+      candidate.weight = std::clamp(reference_stddev_px / segment->stddev_px,
+                                    1 / kMaxWeight, kMaxWeight);
+    }
+    state.candidates.push_back(candidate);
   }
   if (state.PoseCount(cameras) >= 2) state.status = LandmarkStatus::kLandmark;
   return state;
 }
 
-// sqrt(m / (m - f)), or 0 without redundancy.
-double RedundancyFactor(int measurements, int unknowns) {
-  const int redundancy = measurements - unknowns;
-  return redundancy > 0
-             ? std::sqrt(static_cast<double>(measurements) / redundancy)
-             : 0;
+template <class Track>
+std::vector<double> ErrorsPx(const CameraSet& cameras,
+                             const std::vector<Track>& tracks) {
+  std::vector<double> errors_px;
+  for (const Track& track : tracks) {
+    const int measurements = 2 * static_cast<int>(track.UsedCount());
+    const int redundancy = measurements - Track::kUnknowns;
+    if (!track.IsLandmark() || redundancy <= 0) continue;
+    const double factor =
+        std::sqrt(static_cast<double>(measurements) / redundancy);
+    for (const auto& candidate : track.candidates) {
+      errors_px.push_back(factor * ErrorPx(cameras, track, candidate));
+    }
+  }
+  return errors_px;
+}
+
+// Of all tracks and all landmarks.
+template <class Tracks, class Landmarks>
+auto AllIds(const Tracks& tracks, const Landmarks& landmarks) {
+  std::set<typename Tracks::key_type> ids;
+  for (const auto& [id, track] : tracks) ids.insert(id);
+  for (const auto& [id, landmark] : landmarks) ids.insert(id);
+  return ids;
 }
 
 }  // namespace
 
 std::vector<PointTrackState> LoadPoints(const Scene& scene,
                                         const CameraSet& cameras) {
-  std::set<PointTrackId> ids;
-  for (const auto& [id, track] : scene.point_tracks) ids.insert(id);
-  for (const auto& [id, landmark] : scene.structure) ids.insert(id);
   std::vector<PointTrackState> points;
-  points.reserve(ids.size());
-  for (const PointTrackId id : ids) {
+  for (const PointTrackId id : AllIds(scene.point_tracks, scene.structure)) {
     points.push_back(LoadPoint(scene, cameras, id));
   }
   return points;
@@ -153,13 +161,9 @@ std::vector<PointTrackState> LoadPoints(const Scene& scene,
 std::vector<LineTrackState> LoadLines(const Scene& scene,
                                       const CameraSet& cameras,
                                       bool with_intrinsic_derivatives) {
-  std::set<LineTrackId> ids;
-  for (const auto& [id, track] : scene.line_tracks) ids.insert(id);
-  for (const auto& [id, line] : scene.line_structure) ids.insert(id);
   const double reference_stddev_px = ReferenceStddevPx(scene);
   std::vector<LineTrackState> lines;
-  lines.reserve(ids.size());
-  for (const LineTrackId id : ids) {
+  for (const LineTrackId id : AllIds(scene.line_tracks, scene.line_structure)) {
     lines.push_back(LoadLine(scene, cameras, id, reference_stddev_px,
                              with_intrinsic_derivatives));
   }
@@ -208,7 +212,8 @@ Landmark ToLandmark(const CameraSet& cameras, const PointTrackState& track) {
 
 LineLandmark ToLandmark(const CameraSet& cameras, const LineTrackState& track) {
   LineLandmark landmark;
-  landmark.line = track.Line();
+  landmark.line =
+      PluckerLine::FromPointAndDirection(track.point, track.direction);
   landmark.start = track.point + track.low * track.direction;
   landmark.end = track.point + track.high * track.direction;
   for (const LineCandidate& candidate : track.candidates) {
@@ -219,78 +224,22 @@ LineLandmark ToLandmark(const CameraSet& cameras, const LineTrackState& track) {
   return landmark;
 }
 
-std::vector<double> PointErrorsPx(const CameraSet& cameras,
-                                  const std::vector<PointTrackState>& points) {
-  std::vector<double> errors_px;
-  for (const PointTrackState& track : points) {
-    if (!track.IsLandmark()) continue;
-    const double factor = RedundancyFactor(2 * track.UsedCount(), 3);
-    if (!(factor > 0)) continue;
-    for (const PointCandidate& candidate : track.candidates) {
-      errors_px.push_back(factor *
-                          PointErrorPx(cameras, candidate, track.position));
-    }
-  }
-  return errors_px;
-}
-
-std::vector<double> LineErrorsPx(const CameraSet& cameras,
-                                 const std::vector<LineTrackState>& lines) {
-  std::vector<double> errors_px;
-  for (const LineTrackState& track : lines) {
-    if (!track.IsLandmark()) continue;
-    const double factor = RedundancyFactor(2 * track.UsedCount(), 4);
-    if (!(factor > 0)) continue;
-    for (const LineCandidate& candidate : track.candidates) {
-      errors_px.push_back(factor * LineErrorPx(cameras, candidate, track.point,
-                                               track.direction));
-    }
-  }
-  return errors_px;
-}
-
-NoiseScale EstimatePointNoise(const CameraSet& cameras,
-                              const std::vector<PointTrackState>& points,
-                              const NoiseBounds& bounds) {
-  return EstimateNoise(PointErrorsPx(cameras, points),
+NoiseScale EstimateNoise(const CameraSet& cameras,
+                         const std::vector<PointTrackState>& points,
+                         const NoiseBounds& bounds) {
+  return EstimateNoise(ErrorsPx(cameras, points),
                        BackgroundLaw::PointToPoint(cameras.MeanImageArea()),
                        kMedianOfNorm<2>, bounds);
 }
 
-NoiseScale EstimateLineNoise(const CameraSet& cameras,
-                             const std::vector<LineTrackState>& lines,
-                             const NoiseBounds& bounds) {
+NoiseScale EstimateNoise(const CameraSet& cameras,
+                         const std::vector<LineTrackState>& lines,
+                         const NoiseBounds& bounds) {
   // The root mean square of two distances, not their length.
-  return EstimateNoise(LineErrorsPx(cameras, lines),
+  return EstimateNoise(ErrorsPx(cameras, lines),
                        BackgroundLaw::PointToLine(cameras.MeanImageArea(),
                                                   cameras.MeanImageDiagonal()),
                        kMedianOfNorm<2> / std::sqrt(2.0), bounds);
-}
-
-std::vector<std::size_t> AllOf(std::size_t count) {
-  std::vector<std::size_t> indices(count);
-  std::iota(indices.begin(), indices.end(), std::size_t{0});
-  return indices;
-}
-
-Status TriangulatePoints(const CameraSet& cameras,
-                         const PointTriangulationLimits& limits,
-                         const RunContext& context,
-                         const std::vector<std::size_t>& which,
-                         std::vector<PointTrackState>* points) {
-  return ParallelFor(context, {}, which.size(), [&](std::size_t n) {
-    TriangulatePointTrack(cameras, limits, &(*points)[which[n]]);
-  });
-}
-
-Status TriangulateLines(const CameraSet& cameras,
-                        const LineTriangulationLimits& limits,
-                        const RunContext& context,
-                        const std::vector<std::size_t>& which,
-                        std::vector<LineTrackState>* lines) {
-  return ParallelFor(context, {}, which.size(), [&](std::size_t n) {
-    TriangulateLineTrack(cameras, limits, &(*lines)[which[n]]);
-  });
 }
 
 }  // namespace lowlap

@@ -1,12 +1,13 @@
 #pragma once
 
+#include <type_traits>
 #include <vector>
 
-#include "lowlap/adjustment/internal/camera_set.h"
 #include "lowlap/adjustment/internal/costs/relative_pose_prior.h"
 #include "lowlap/adjustment/internal/structure/line_track.h"
 #include "lowlap/adjustment/internal/structure/noise_scale.h"
 #include "lowlap/adjustment/internal/structure/point_track.h"
+#include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 
@@ -27,6 +28,11 @@ struct StructureState {
   std::vector<LineTrackState> lines;    // by id
   std::vector<PairState> pairs;
   std::vector<RelativePosePrior> priors;
+
+  /// Whether both lines of the pair are landmarks.
+  bool HasLines(const PairState& pair) const {
+    return lines[pair.first].IsLandmark() && lines[pair.second].IsLandmark();
+  }
 };
 
 struct NoiseLevels {
@@ -60,36 +66,39 @@ void RefreshRays(const Scene& scene, const CameraSet& cameras,
 Landmark ToLandmark(const CameraSet& cameras, const PointTrackState& track);
 LineLandmark ToLandmark(const CameraSet& cameras, const LineTrackState& track);
 
-/// Errors of all candidates of all landmarks, scaled up by sqrt(m / (m - f)),
-/// m the measurements in use and f the unknowns of the landmark: what they
-/// would be if the landmark had not been fitted to them. Landmarks without
-/// redundancy say nothing and are left out.
-std::vector<double> PointErrorsPx(const CameraSet& cameras,
-                                  const std::vector<PointTrackState>& points);
-std::vector<double> LineErrorsPx(const CameraSet& cameras,
-                                 const std::vector<LineTrackState>& lines);
+/// Noise of a kind from the errors of all candidates of all landmarks, scaled
+/// up by sqrt(m / (m - f)), m the measurements in use and f the unknowns of the
+/// landmark: what they would be if the landmark had not been fitted to them.
+/// Landmarks without redundancy say nothing and are left out.
+NoiseScale EstimateNoise(const CameraSet& cameras,
+                         const std::vector<PointTrackState>& points,
+                         const NoiseBounds& bounds);
+NoiseScale EstimateNoise(const CameraSet& cameras,
+                         const std::vector<LineTrackState>& lines,
+                         const NoiseBounds& bounds);
 
-/// Noise of the two kinds from these errors.
-NoiseScale EstimatePointNoise(const CameraSet& cameras,
-                              const std::vector<PointTrackState>& points,
-                              const NoiseBounds& bounds);
-NoiseScale EstimateLineNoise(const CameraSet& cameras,
-                             const std::vector<LineTrackState>& lines,
-                             const NoiseBounds& bounds);
+/// The limits of a kind by StructureOptions or AdjustmentOptions.
+template <class Track, class Options>
+TriangulationLimits LimitsOf(const Options& options, const NoiseScale& noise) {
+  return {noise.threshold_px, noise.stddev_px,
+          std::is_same_v<Track, LineTrackState>
+              ? options.max_relative_line_depth_stddev
+              : options.max_relative_depth_stddev,
+          options.min_two_view_line_overlap};
+}
 
-/// The indices of so many tracks.
-std::vector<std::size_t> AllOf(std::size_t count);
-
-/// Triangulates the tracks with the given indices, on the context's threads.
-Status TriangulatePoints(const CameraSet& cameras,
-                         const PointTriangulationLimits& limits,
-                         const RunContext& context,
-                         const std::vector<std::size_t>& which,
-                         std::vector<PointTrackState>* points);
-Status TriangulateLines(const CameraSet& cameras,
-                        const LineTriangulationLimits& limits,
-                        const RunContext& context,
-                        const std::vector<std::size_t>& which,
-                        std::vector<LineTrackState>* lines);
+/// Triangulates all tracks but those marked in `left_out`, on the context's
+/// threads.
+template <class Track>
+Status TriangulateAll(const CameraSet& cameras,
+                      const TriangulationLimits& limits,
+                      const RunContext& context, std::vector<Track>* tracks,
+                      const std::vector<char>& left_out = {}) {
+  return ParallelFor(context, {}, tracks->size(), [&](std::size_t n) {
+    if (left_out.empty() || !left_out[n]) {
+      Triangulate(cameras, limits, &(*tracks)[n]);
+    }
+  });
+}
 
 }  // namespace lowlap
