@@ -6,7 +6,7 @@
 #include <set>
 
 #include "lowlap/core/internal/parallel.h"
-#include "lowlap/core/internal/propagate.h"
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/matching/internal/points/point_matching.h"
 
 namespace lowlap {
@@ -56,17 +56,13 @@ void AddSpanningForest(const std::vector<Votes>& votes,
 }  // namespace
 
 Status RetrievalOptions::Validate() const {
-  if (sample_points < 2) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "sample_points must be at least 2");
+  if (Status s =
+          Require({{sample_points >= 2, "sample_points must be at least 2"},
+                   {max_partners >= 1, "max_partners must be at least 1"}});
+      !s) {
+    return s;
   }
-  if (max_partners < 1) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_partners must be at least 1");
-  }
-  PointMatchOptions points;
-  points.max_ratio = max_ratio;
-  return points.Validate();
+  return PointMatchOptions{max_ratio}.Validate();
 }
 
 Result<std::vector<ViewPair>> RetrievePairs(

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/core/internal/requirement.h"
+
 namespace lowlap {
 namespace {
 
@@ -182,11 +184,8 @@ bool AreCollinear(const LineSegment& a, const LineSegment& b,
 }  // namespace
 
 Status LineTrackOptions::Validate() const {
-  if (!(max_collinear_distance_px >= 0)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_collinear_distance_px must not be negative");
-  }
-  return {};
+  return Require({{max_collinear_distance_px >= 0,
+                   "max_collinear_distance_px must not be negative"}});
 }
 
 std::map<PointTrackId, Track> BuildPointTracks(const Scene& scene) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <utility>
 
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/matching/internal/lines/hamming.h"
 #include "lowlap/matching/internal/lines/line_rivals.h"
 #include "lowlap/matching/internal/lines/line_transfer.h"
@@ -235,27 +236,16 @@ std::vector<FeatureMatch> Assign(const DescribedLines& first,
 }  // namespace
 
 Status GuidedLineOptions::Validate() const {
-  if (max_distance_bits < 0 || max_distance_bits > 256) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_distance_bits must lie in [0, 256]");
-  }
-  if (!(min_overlap >= 0 && min_overlap <= 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "min_overlap of lines must lie in [0, 1]");
-  }
-  if (!(min_epipolar_angle_deg >= 0 && min_epipolar_angle_deg < 90)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "min_epipolar_angle_deg must lie in [0, 90)");
-  }
-  if (!(epipolar_tolerance_px >= 0)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "epipolar_tolerance_px must not be negative");
-  }
-  if (!(min_score >= 0 && min_score <= 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "min_score of lines must lie in [0, 1]");
-  }
-  return {};
+  return Require({{max_distance_bits >= 0 && max_distance_bits <= 256,
+                   "max_distance_bits must lie in [0, 256]"},
+                  {min_overlap >= 0 && min_overlap <= 1,
+                   "min_overlap of lines must lie in [0, 1]"},
+                  {min_epipolar_angle_deg >= 0 && min_epipolar_angle_deg < 90,
+                   "min_epipolar_angle_deg must lie in [0, 90)"},
+                  {epipolar_tolerance_px >= 0,
+                   "epipolar_tolerance_px must not be negative"},
+                  {min_score >= 0 && min_score <= 1,
+                   "min_score of lines must lie in [0, 1]"}});
 }
 
 std::vector<FeatureMatch> MatchLinesGuided(

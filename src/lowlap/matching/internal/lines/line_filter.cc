@@ -3,20 +3,16 @@
 #include <cmath>
 #include <optional>
 
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/matching/internal/lines/line_transfer.h"
 
 namespace lowlap {
 
 Status LineFilterOptions::Validate() const {
-  if (!(min_overlap >= 0 && min_overlap <= 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "min_overlap of lines must lie in [0, 1]");
-  }
-  if (!(min_epipolar_angle_deg >= 0 && min_epipolar_angle_deg < 90)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "min_epipolar_angle_deg must lie in [0, 90)");
-  }
-  return {};
+  return Require({{min_overlap >= 0 && min_overlap <= 1,
+                   "min_overlap of lines must lie in [0, 1]"},
+                  {min_epipolar_angle_deg >= 0 && min_epipolar_angle_deg < 90,
+                   "min_epipolar_angle_deg must lie in [0, 90)"}});
 }
 
 std::vector<FeatureMatch> FilterLineMatches(

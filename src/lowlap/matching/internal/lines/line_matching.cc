@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/matching/internal/lines/hamming.h"
 #include "lowlap/matching/internal/lines/line_rivals.h"
 #include "lowlap/matching/internal/lines/relaxation.h"
@@ -188,23 +189,13 @@ std::vector<ScoredMatch> Relax(const DescribedLines& first,
 }  // namespace
 
 Status LineMatchOptions::Validate() const {
-  if (max_distance_bits < 0 || max_distance_bits > 256) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_distance_bits must lie in [0, 256]");
-  }
-  if (max_candidates < 1) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_candidates must be at least 1");
-  }
-  if (!(min_score >= 0 && min_score <= 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "min_score of lines must lie in [0, 1]");
-  }
-  if (!(max_length_ratio >= 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_length_ratio must be at least 1");
-  }
-  return {};
+  return Require(
+      {{max_distance_bits >= 0 && max_distance_bits <= 256,
+        "max_distance_bits must lie in [0, 256]"},
+       {max_candidates >= 1, "max_candidates must be at least 1"},
+       {min_score >= 0 && min_score <= 1,
+        "min_score of lines must lie in [0, 1]"},
+       {max_length_ratio >= 1, "max_length_ratio must be at least 1"}});
 }
 
 std::vector<FeatureMatch> MatchLines(const DescribedLines& first,

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/geometry/internal/epipolar.h"
 #include "lowlap/matching/internal/points/nearest_two.h"
 
@@ -242,23 +243,13 @@ std::vector<FeatureMatch> BetterThanChance(
 }  // namespace
 
 Status GuidedPointOptions::Validate() const {
-  if (!(max_ratio > 0 && max_ratio <= 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_ratio of guided points must lie in (0, 1]");
-  }
-  if (chance_points < 1) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "chance_points must be at least 1");
-  }
-  if (!(max_scale_factor >= 1 && std::isfinite(max_scale_factor))) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_scale_factor must be at least 1");
-  }
-  if (!(max_turn_deg > 0 && max_turn_deg <= 180)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_turn_deg must lie in (0, 180]");
-  }
-  return {};
+  return Require({{max_ratio > 0 && max_ratio <= 1,
+                   "max_ratio of guided points must lie in (0, 1]"},
+                  {chance_points >= 1, "chance_points must be at least 1"},
+                  {max_scale_factor >= 1 && std::isfinite(max_scale_factor),
+                   "max_scale_factor must be at least 1"},
+                  {max_turn_deg > 0 && max_turn_deg <= 180,
+                   "max_turn_deg must lie in (0, 180]"}});
 }
 
 std::vector<FeatureMatch> MatchPointsGuided(

@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/core/internal/requirement.h"
+
 namespace lowlap {
 namespace {
 
@@ -195,26 +197,15 @@ std::optional<PointPatch> ExtractPatch(const GrayPyramid& image,
 }
 
 Status PatchAlignmentOptions::Validate() const {
-  if (max_iterations < 1) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_iterations must be at least 1");
-  }
-  if (!(min_step > 0 && std::isfinite(min_step))) {
-    return MakeError(ErrorCode::kInvalidArgument, "min_step must be positive");
-  }
-  if (!(min_correlation >= 0 && min_correlation < 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "min_correlation must lie in [0, 1)");
-  }
-  if (!(keypoint_stddev > 0 && std::isfinite(keypoint_stddev))) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "keypoint_stddev must be positive");
-  }
-  if (!(max_deviation > 0 && std::isfinite(max_deviation))) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_deviation must be positive");
-  }
-  return {};
+  return Require(
+      {{max_iterations >= 1, "max_iterations must be at least 1"},
+       {min_step > 0 && std::isfinite(min_step), "min_step must be positive"},
+       {min_correlation >= 0 && min_correlation < 1,
+        "min_correlation must lie in [0, 1)"},
+       {keypoint_stddev > 0 && std::isfinite(keypoint_stddev),
+        "keypoint_stddev must be positive"},
+       {max_deviation > 0 && std::isfinite(max_deviation),
+        "max_deviation must be positive"}});
 }
 
 std::optional<Vec2> AlignPatch(const PointPatch& patch, const Keypoint& from,

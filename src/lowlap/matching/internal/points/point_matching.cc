@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/matching/internal/points/approximate_nearest_two.h"
 #include "lowlap/matching/internal/points/nearest_two.h"
 
@@ -16,11 +17,8 @@ bool PassesRatio(const NearestTwo& nearest, double max_ratio) {
 }  // namespace
 
 Status PointMatchOptions::Validate() const {
-  if (!(max_ratio > 0 && max_ratio <= 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_ratio of points must lie in (0, 1]");
-  }
-  return {};
+  return Require({{max_ratio > 0 && max_ratio <= 1,
+                   "max_ratio of points must lie in (0, 1]"}});
 }
 
 std::vector<FeatureMatch> MatchPoints(

@@ -6,7 +6,7 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/matching/internal/points/point_matching.h"
+#include "lowlap/core/internal/requirement.h"
 
 namespace lowlap {
 namespace {
@@ -52,29 +52,26 @@ int CountAgreeing(const DetectedFeatures& first, const DetectedFeatures& second,
 }  // namespace
 
 Status RelaxedPointOptions::Validate() const {
-  if (starved_below < 0 || min_agreeing < 1 || neighbors < min_agreeing) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "starved_below must not be negative, min_agreeing at "
-                     "least 1, and neighbors no less than min_agreeing");
+  if (Status s = Require(
+          {{starved_below >= 0 && min_agreeing >= 1 &&
+                neighbors >= min_agreeing,
+            "starved_below must not be negative, min_agreeing at least 1, and "
+            "neighbors no less than min_agreeing"},
+           {max_deviation > 0 && max_deviation < 1,
+            "max_deviation must lie in (0, 1)"}});
+      !s) {
+    return s;
   }
-  if (!(max_deviation > 0 && max_deviation < 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_deviation must lie in (0, 1)");
-  }
-  PointMatchOptions points;
-  points.max_ratio = max_ratio;
-  return points.Validate();
+  return PointMatchOptions{max_ratio}.Validate();
 }
 
 std::vector<FeatureMatch> MatchPointsRelaxed(
     const DetectedFeatures& first, const DetectedFeatures& second,
     const std::vector<FeatureMatch>& matches,
     const RelaxedPointOptions& options) {
-  PointMatchOptions wide;
-  wide.max_ratio = options.max_ratio;
-  wide.matcher = options.matcher;
   const std::vector<FeatureMatch> candidates =
-      MatchPoints(first.point_descriptors, second.point_descriptors, wide);
+      MatchPoints(first.point_descriptors, second.point_descriptors,
+                  {options.max_ratio, options.matcher});
   std::set<FeatureIndex> used1, used2;
   for (const FeatureMatch& match : matches) {
     used1.insert(match.first);
