@@ -4,7 +4,7 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
-#include "lowlap/core/internal/propagate.h"
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/features/internal/lines/edge_fit.h"
 #include "lowlap/features/internal/lines/segment_merging.h"
 #include "lowlap/features/internal/opencv.h"
@@ -123,19 +123,11 @@ std::vector<LineSegment> DetectInMat(const cv::Mat& image,
 }  // namespace
 
 Status LineOptions::Validate() const {
-  if (!(min_length_ratio >= 0 && min_length_ratio < 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "min_length_ratio of lines must lie in [0, 1)");
-  }
-  if (coarsest_side_px < 1) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "coarsest_side_px must be at least 1");
-  }
-  if (max_segments < 1) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_segments must be at least 1");
-  }
-  return {};
+  return Require(
+      {{min_length_ratio >= 0 && min_length_ratio < 1,
+        "min_length_ratio of lines must lie in [0, 1)"},
+       {coarsest_side_px >= 1, "coarsest_side_px must be at least 1"},
+       {max_segments >= 1, "max_segments must be at least 1"}});
 }
 
 Result<std::vector<LineSegment>> DetectLines(const GrayImage& image,

@@ -6,7 +6,7 @@
 #include <opencv2/features2d.hpp>
 #include <tuple>
 
-#include "lowlap/core/internal/propagate.h"
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/features/internal/opencv.h"
 #include "lowlap/features/internal/points/point_localization.h"
 
@@ -87,19 +87,11 @@ PointDescriptor RootSift(const float* sift) {
 }  // namespace
 
 Status PointOptions::Validate() const {
-  if (max_points < 1) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "max_points must be at least 1");
-  }
-  if (!(contrast_threshold >= 0 && contrast_threshold < 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "contrast_threshold must lie in [0, 1)");
-  }
-  if (!(edge_threshold >= 1 && std::isfinite(edge_threshold))) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "edge_threshold must be at least 1");
-  }
-  return {};
+  return Require({{max_points >= 1, "max_points must be at least 1"},
+                  {contrast_threshold >= 0 && contrast_threshold < 1,
+                   "contrast_threshold must lie in [0, 1)"},
+                  {edge_threshold >= 1 && std::isfinite(edge_threshold),
+                   "edge_threshold must be at least 1"}});
 }
 
 Result<PointFeatures> DetectPoints(const GrayImage& image,
