@@ -61,33 +61,6 @@ class CoplanarLines : public ResidualEvidence<Residuals> {
                              image_area_px2_, num_neighbors_);
   }
   int MinAgreeing() const override { return 3; }
-  std::vector<CandidateDetail> Details(
-      const TripletView& triplet,
-      const std::vector<int>& candidates) const override {
-    std::vector<CandidateDetail> details;
-    for (const int n : candidates) {
-      const MatchedLine& a = triplet.lines_ij[pairs_[n].first];
-      const MatchedLine& b = triplet.lines_jk[pairs_[n].second];
-      const CoplanarNoise noise = NoiseOfCoplanarRatio(triplet.geometry, a, b);
-      CandidateDetail& detail = details.emplace_back();
-      detail.place = CrossingInMiddle(a.in_middle.segment, b.in_middle.segment)
-                         .value_or(Vec3(Vec3::Zero()))
-                         .template head<2>();
-      detail.moves = {noise.by_first, noise.by_last};
-    }
-    return details;
-  }
-  std::vector<RatioCandidate> RatiosIn(
-      const TripletView& triplet, const TripletGeometry& geometry,
-      const std::vector<int>& candidates) const override {
-    std::vector<RatioCandidate> ratios;
-    for (const int n : candidates) {
-      ratios.push_back(CoplanarRatio(geometry,
-                                     triplet.lines_ij[pairs_[n].first],
-                                     triplet.lines_jk[pairs_[n].second]));
-    }
-    return ratios;
-  }
   void RecordInliers(const TripletView& triplet,
                      const std::vector<int>& inliers,
                      ScaleRatio* ratio) const override {
@@ -96,6 +69,23 @@ class CoplanarLines : public ResidualEvidence<Residuals> {
           {triplet.lines_ij[pairs_[n].first].segment_in_middle,
            triplet.lines_jk[pairs_[n].second].segment_in_middle});
     }
+  }
+
+ protected:
+  CandidateDetail DetailOf(const TripletView& triplet, int n) const override {
+    const MatchedLine& a = triplet.lines_ij[pairs_[n].first];
+    const MatchedLine& b = triplet.lines_jk[pairs_[n].second];
+    const CoplanarNoise noise = NoiseOfCoplanarRatio(triplet.geometry, a, b);
+    const Vec3 crossing =
+        CrossingInMiddle(a.in_middle.segment, b.in_middle.segment)
+            .value_or(Vec3(Vec3::Zero()));
+    return {crossing.head<2>(), {noise.by_first, noise.by_last}};
+  }
+  RatioCandidate RatioIn(const TripletView& triplet,
+                         const TripletGeometry& geometry,
+                         int n) const override {
+    return CoplanarRatio(geometry, triplet.lines_ij[pairs_[n].first],
+                         triplet.lines_jk[pairs_[n].second]);
   }
 
  private:

@@ -204,23 +204,14 @@ class PlanePoints : public ResidualEvidence<PointResiduals> {
 
   double NumTests() const override { return size(); }
   int MinAgreeing() const override { return 3; }
-  std::vector<CandidateDetail> Details(
-      const TripletView&, const std::vector<int>& candidates) const override {
-    std::vector<CandidateDetail> details;
-    for (const int n : candidates) {
-      details.emplace_back().place = points_[n].point.in_j.head<2>();
-    }
-    return details;
+
+ protected:
+  CandidateDetail DetailOf(const TripletView&, int n) const override {
+    return {points_[n].point.in_j.head<2>(), {}};
   }
-  std::vector<RatioCandidate> RatiosIn(
-      const TripletView&, const TripletGeometry& geometry,
-      const std::vector<int>& candidates) const override {
-    const TripletPointSolver solver(geometry);
-    std::vector<RatioCandidate> ratios;
-    for (const int n : candidates) {
-      ratios.push_back(solver.Ratio(points_[n].point));
-    }
-    return ratios;
+  RatioCandidate RatioIn(const TripletView&, const TripletGeometry& geometry,
+                         int n) const override {
+    return TripletPointSolver(geometry).Ratio(points_[n].point);
   }
 
  private:

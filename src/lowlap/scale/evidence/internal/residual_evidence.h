@@ -6,7 +6,7 @@ namespace lowlap {
 
 /// Evidence whose errors are those of an array of residuals, one for each
 /// candidate. Residuals has ErrorOf, Evaluate, Bound and StationaryPoints, as
-/// in Evidence.
+/// in Evidence. What the refinement asks is answered one by one.
 template <class Residuals>
 class ResidualEvidence : public Evidence {
  public:
@@ -23,8 +23,30 @@ class ResidualEvidence : public Evidence {
   int StationaryPoints(int candidate, double* taus) const final {
     return residuals_.StationaryPoints(candidate, taus);
   }
+  std::vector<CandidateDetail> Details(
+      const TripletView& triplet,
+      const std::vector<int>& candidates) const final {
+    std::vector<CandidateDetail> details;
+    for (const int n : candidates) details.push_back(DetailOf(triplet, n));
+    return details;
+  }
+  std::vector<RatioCandidate> RatiosIn(
+      const TripletView& triplet, const TripletGeometry& geometry,
+      const std::vector<int>& candidates) const final {
+    std::vector<RatioCandidate> ratios;
+    for (const int n : candidates) {
+      ratios.push_back(RatioIn(triplet, geometry, n));
+    }
+    return ratios;
+  }
 
  protected:
+  virtual CandidateDetail DetailOf(const TripletView& triplet,
+                                   int candidate) const = 0;
+  virtual RatioCandidate RatioIn(const TripletView& triplet,
+                                 const TripletGeometry& geometry,
+                                 int candidate) const = 0;
+
   Residuals residuals_;
 };
 

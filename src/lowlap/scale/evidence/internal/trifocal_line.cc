@@ -55,21 +55,29 @@ void PushLineSide(ResidualColumn* column, const Vec3& v, const Vec3& w,
   Push(column[7], w1.y());
 }
 
-auto LineSide(const ResidualColumn* c, float tau, int n) {
-  return ((First(c[0], n) + tau * First(c[1], n)).abs() +
-          (First(c[2], n) + tau * First(c[3], n)).abs()) /
-         ((First(c[4], n) + tau * First(c[5], n)).square() +
-          (First(c[6], n) + tau * First(c[7], n)).square())
-             .sqrt()
-             .cwiseMax(kMinDepth);
-}
-
-float LineSideOf(const ResidualColumn* c, float tau, int n) {
-  const float x = c[4][n] + tau * c[5][n], y = c[6][n] + tau * c[7][n];
-  return (std::abs(c[0][n] + tau * c[1][n]) +
-          std::abs(c[2][n] + tau * c[3][n])) /
-         std::max(kMinDepth, std::sqrt(x * x + y * y));
-}
+// The mean distance of the two end points from a projected line, in one view.
+struct LineSide {
+  static constexpr int kColumns = 8;
+  static auto At(const ResidualColumn* c, float tau, int n) {
+    return 0.5f *
+           ((First(c[0], n) + tau * First(c[1], n)).abs() +
+            (First(c[2], n) + tau * First(c[3], n)).abs()) /
+           ((First(c[4], n) + tau * First(c[5], n)).square() +
+            (First(c[6], n) + tau * First(c[7], n)).square())
+               .sqrt()
+               .cwiseMax(kMinDepth);
+  }
+  static float Of(const ResidualColumn* c, float tau, int n) {
+    return 0.5f *
+           (std::abs(c[0][n] + tau * c[1][n]) +
+            std::abs(c[2][n] + tau * c[3][n])) /
+           Length(c, tau, n);
+  }
+  static float Length(const ResidualColumn* c, float tau, int n) {
+    const float x = c[4][n] + tau * c[5][n], y = c[6][n] + tau * c[7][n];
+    return std::max(kMinDepth, std::sqrt(x * x + y * y));
+  }
+};
 
 // The least and the most of a side of one line in an interval.
 std::pair<float, float> BoundLineSide(const ResidualColumn* c, float low,
@@ -81,31 +89,23 @@ std::pair<float, float> BoundLineSide(const ResidualColumn* c, float low,
     if ((a > 0) == (b > 0)) numerator[0] += std::min(std::abs(a), std::abs(b));
     numerator[1] += std::max(std::abs(a), std::abs(b));
   }
-  const auto length = [&](float tau) {
-    const float x = c[4][n] + tau * c[5][n], y = c[6][n] + tau * c[7][n];
-    return std::max(kMinDepth, std::sqrt(x * x + y * y));
-  };
   const float speed = c[5][n] * c[5][n] + c[7][n] * c[7][n];
   const float least_at =
       speed > 0 ? -(c[4][n] * c[5][n] + c[6][n] * c[7][n]) / speed : low;
+  const auto length = [&](float tau) { return LineSide::Length(c, tau, n); };
   return {numerator[0] / std::max(length(low), length(high)),
           numerator[1] / length(std::clamp(least_at, low, high))};
 }
 
-class LineResiduals {
+// Both sides have two end points that may meet the line at two ratios, so that
+// bounds and stationary points are of its own.
+class LineResiduals : public TwoSidedResiduals<LineSide> {
  public:
   void Add(const TripletGeometry& geometry, const TripletLine& line,
            double log_ratio);
-  int size() const { return static_cast<int>(column_[0].size()); }
-  void Evaluate(double tau, int count, float* errors_px) const;
-  float ErrorOf(double tau, int index) const;
   void Bound(double tau_low, double tau_high, float* least_px,
              float* most_px) const;
   int StationaryPoints(int index, double* taus) const;
-
- private:
-  static constexpr int kSide = 8;
-  ResidualColumn column_[2 * kSide];
 };
 
 void LineResiduals::Add(const TripletGeometry& geometry,
@@ -127,19 +127,6 @@ void LineResiduals::Add(const TripletGeometry& geometry,
                cami.translation.cross(cami.rotation * from_k.direction),
                cami.rotation * from_k.moment, line.in_i.segment,
                geometry.focal_i_px, tau);
-}
-
-void LineResiduals::Evaluate(double tau, int count, float* errors_px) const {
-  const float t = static_cast<float>(tau);
-  Eigen::Map<Eigen::ArrayXf>(errors_px, count) =
-      0.25f *
-      (LineSide(column_, t, count) + LineSide(column_ + kSide, t, count));
-}
-
-float LineResiduals::ErrorOf(double tau, int index) const {
-  const float t = static_cast<float>(tau);
-  return 0.25f * (LineSideOf(column_, t, index) +
-                  LineSideOf(column_ + kSide, t, index));
 }
 
 void LineResiduals::Bound(double tau_low, double tau_high, float* least_px,
@@ -184,26 +171,16 @@ class TrifocalLines : public ResidualEvidence<LineResiduals> {
     return PaperLineTerm(factorials, size(), *counts, image_area_px2_,
                          image_diagonal_px_);
   }
-  std::vector<CandidateDetail> Details(
-      const TripletView& triplet,
-      const std::vector<int>& candidates) const override {
-    std::vector<CandidateDetail> details;
-    for (const int n : candidates) {
-      const NormalizedSegment& segment =
-          triplet.lines[line_of_[n]].in_j.segment;
-      details.emplace_back().place =
-          Vec3(0.5 * (segment.start + segment.end)).head<2>();
-    }
-    return details;
+
+ protected:
+  CandidateDetail DetailOf(const TripletView& triplet, int n) const override {
+    const NormalizedSegment& segment = triplet.lines[line_of_[n]].in_j.segment;
+    return {Vec2(0.5 * (segment.start + segment.end).head<2>()), {}};
   }
-  std::vector<RatioCandidate> RatiosIn(
-      const TripletView& triplet, const TripletGeometry& geometry,
-      const std::vector<int>& candidates) const override {
-    std::vector<RatioCandidate> ratios;
-    for (const int n : candidates) {
-      ratios.push_back(TrifocalLineRatio(geometry, triplet.lines[line_of_[n]]));
-    }
-    return ratios;
+  RatioCandidate RatioIn(const TripletView& triplet,
+                         const TripletGeometry& geometry,
+                         int n) const override {
+    return TrifocalLineRatio(geometry, triplet.lines[line_of_[n]]);
   }
 
  private:

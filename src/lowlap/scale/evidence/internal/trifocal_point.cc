@@ -33,25 +33,15 @@ class TrifocalPoints : public ResidualEvidence<PointResiduals> {
   }
   // The deviations are those of one pixel.
   double PriorCount() const override { return 0.25; }
-  std::vector<CandidateDetail> Details(
-      const TripletView& triplet,
-      const std::vector<int>& candidates) const override {
-    std::vector<CandidateDetail> details;
-    for (const int n : candidates) {
-      details.emplace_back().place =
-          triplet.points[point_of_[n]].in_j.head<2>();
-    }
-    return details;
+
+ protected:
+  CandidateDetail DetailOf(const TripletView& triplet, int n) const override {
+    return {triplet.points[point_of_[n]].in_j.head<2>(), {}};
   }
-  std::vector<RatioCandidate> RatiosIn(
-      const TripletView& triplet, const TripletGeometry& geometry,
-      const std::vector<int>& candidates) const override {
-    const TripletPointSolver solver(geometry);
-    std::vector<RatioCandidate> ratios;
-    for (const int n : candidates) {
-      ratios.push_back(solver.Ratio(triplet.points[point_of_[n]]));
-    }
-    return ratios;
+  RatioCandidate RatioIn(const TripletView& triplet,
+                         const TripletGeometry& geometry,
+                         int n) const override {
+    return TripletPointSolver(geometry).Ratio(triplet.points[point_of_[n]]);
   }
 
  private:
