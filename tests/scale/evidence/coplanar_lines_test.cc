@@ -40,15 +40,10 @@ TEST(CoplanarLines, CountEveryLineOnceInNestedTiers) {
 
 TEST(CoplanarLines, AreInliersAtTheirOwnRatio) {
   const auto triplet = Triplet();
-  for (const auto residual :
-       {CoplanarResidual::kTransfer, CoplanarResidual::kClosest}) {
-    CoplanarLinesOptions options;
-    options.residual = residual;
-    const auto evidence = CoplanarLinesKind(options).Gather(triplet.view);
-    for (int n = 0; n < evidence->size(); ++n) {
-      const double tau = std::exp(evidence->ratios()[n].log_ratio);
-      EXPECT_LT(evidence->ErrorOf(tau, n), 0.01) << n;
-    }
+  const auto evidence = CoplanarLinesKind().Gather(triplet.view);
+  for (int n = 0; n < evidence->size(); ++n) {
+    const double tau = std::exp(evidence->ratios()[n].log_ratio);
+    EXPECT_LT(evidence->ErrorOf(tau, n), 0.01) << n;
   }
 }
 

@@ -41,15 +41,11 @@ SyntheticTripletOptions RandomOptions(std::uint64_t seed) {
   return options;
 }
 
-// Pairs by the residual of the paper, every fourth time.
-RatioSupport Support(const TripletView& view, std::uint64_t seed) {
-  CoplanarLinesOptions pairs;
-  if (seed % 4 == 0) pairs.residual = CoplanarResidual::kClosest;
-  return RatioSupport(
-      GatherEvidence({std::make_shared<TrifocalPointKind>(),
-                      std::make_shared<TrifocalLineKind>(),
-                      std::make_shared<CoplanarLinesKind>(pairs)},
-                     view));
+RatioSupport Support(const TripletView& view) {
+  return RatioSupport(GatherEvidence({std::make_shared<TrifocalPointKind>(),
+                                      std::make_shared<TrifocalLineKind>(),
+                                      std::make_shared<CoplanarLinesKind>()},
+                                     view));
 }
 
 TEST(Evidence, BoundsHoldEveryErrorInTheWindow) {
@@ -57,7 +53,7 @@ TEST(Evidence, BoundsHoldEveryErrorInTheWindow) {
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     const SyntheticTriplet triplet =
         MakeSyntheticTriplet(RandomOptions(seed), seed);
-    const RatioSupport support = Support(triplet.view, seed);
+    const RatioSupport support = Support(triplet.view);
     const double middle = triplet.true_log_ratio + random.Uniform(-1, 1);
     const double half_width = std::pow(10.0, random.Uniform(-4, 0.3));
     KindErrors least_px, most_px;
@@ -88,7 +84,7 @@ TEST(VisitInlierIntervals, AreWhereErrorsAreBelowTheThreshold) {
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
     const SyntheticTriplet triplet =
         MakeSyntheticTriplet(RandomOptions(seed), seed);
-    const RatioSupport support = Support(triplet.view, seed);
+    const RatioSupport support = Support(triplet.view);
     const double low = triplet.true_log_ratio - 0.8;
     const double high = triplet.true_log_ratio + 0.8;
     for (int k = 0; k < support.num_kinds(); ++k) {

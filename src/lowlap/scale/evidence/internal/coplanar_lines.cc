@@ -15,6 +15,8 @@ namespace {
 
 // How far the crossing of a tier may be, in units of the image diagonal.
 constexpr std::array<double, 2> kTierOfDiagonal = {0.01, 0.035};
+// Nearest lines that each line is paired with.
+constexpr int kNumNeighbors = 10;
 constexpr int kNumTiers = static_cast<int>(kTierOfDiagonal.size());
 
 // kNumTiers: too far to be used.
@@ -27,24 +29,23 @@ int TierOfCrossing(double crossing_px, double image_diagonal_px) {
   return tier;
 }
 
-template <class Residuals>
-class CoplanarLines : public ResidualEvidence<Residuals> {
+class CoplanarLines : public ResidualEvidence<TransferResiduals> {
  public:
-  CoplanarLines(const TripletView& triplet, int num_neighbors)
-      : image_area_px2_(triplet.image_area_px2), num_neighbors_(num_neighbors) {
+  explicit CoplanarLines(const TripletView& triplet)
+      : image_area_px2_(triplet.image_area_px2) {
     const CoplanarPairCandidates found = FindCoplanarCandidates(
-        triplet.geometry, triplet.lines_ij, triplet.lines_jk, num_neighbors);
-    this->RejectNegative(found.num_rejected_negative);
-    this->StartPairs(kNumTiers);
+        triplet.geometry, triplet.lines_ij, triplet.lines_jk, kNumNeighbors);
+    RejectNegative(found.num_rejected_negative);
+    StartPairs(kNumTiers);
     for (int tier = 0; tier < kNumTiers; ++tier) {
       for (const CoplanarPairCandidate& pair : found.pairs) {
         if (TierOfCrossing(pair.crossing_px, triplet.image_diagonal_px) !=
             tier) {
           continue;
         }
-        if (!this->AddPair(pair.ratio, tier, {pair.first, pair.last})) continue;
-        this->residuals_.Add(triplet.geometry, triplet.lines_ij[pair.first],
-                             triplet.lines_jk[pair.last], pair.ratio.log_ratio);
+        if (!AddPair(pair.ratio, tier, {pair.first, pair.last})) continue;
+        residuals_.Add(triplet.geometry, triplet.lines_ij[pair.first],
+                       triplet.lines_jk[pair.last], pair.ratio.log_ratio);
         pairs_.emplace_back(pair.first, pair.last);
       }
     }
@@ -56,9 +57,9 @@ class CoplanarLines : public ResidualEvidence<Residuals> {
     for (int step = 0; step < kNumThresholds; ++step) {
       both[step] = counts[0][step] + counts[1][step];
     }
-    const auto& num_units = this->units().tiers.back().num_units;
+    const auto& num_units = units().tiers.back().num_units;
     return PaperCoplanarTerm(factorials, num_units[0] + num_units[1], both,
-                             image_area_px2_, num_neighbors_);
+                             image_area_px2_, kNumNeighbors);
   }
   int MinAgreeing() const override { return 3; }
   void RecordInliers(const TripletView& triplet,
@@ -90,7 +91,6 @@ class CoplanarLines : public ResidualEvidence<Residuals> {
 
  private:
   double image_area_px2_;
-  int num_neighbors_;
   std::vector<std::pair<int, int>> pairs_;  // of lines_ij and lines_jk
 };
 
@@ -98,12 +98,7 @@ class CoplanarLines : public ResidualEvidence<Residuals> {
 
 std::unique_ptr<Evidence> CoplanarLinesKind::Gather(
     const TripletView& triplet) const {
-  if (options_.residual == CoplanarResidual::kClosest) {
-    return std::make_unique<CoplanarLines<ClosestPointResiduals>>(
-        triplet, options_.num_neighbors);
-  }
-  return std::make_unique<CoplanarLines<TransferResiduals>>(
-      triplet, options_.num_neighbors);
+  return std::make_unique<CoplanarLines>(triplet);
 }
 
 }  // namespace lowlap

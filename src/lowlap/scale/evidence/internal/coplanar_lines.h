@@ -7,20 +7,9 @@
 
 namespace lowlap {
 
-/// The error of a coplanar pair; see coplanar_residuals.h.
-enum class CoplanarResidual {
-  kTransfer,  // crossing carried over to the outer views; the default
-  kClosest,   // d_co of the paper, in the middle view; blind to frontal planes
-};
-
-struct CoplanarLinesOptions {
-  CoplanarResidual residual = CoplanarResidual::kTransfer;
-  /// Nearest lines that each line is paired with; at least 1.
-  int num_neighbors = 10;
-};
-
 /// Pairs of a line of (i, j) and a line of (j, k) that may lie in one plane
-/// (CoplanarRatio, FindCoplanarCandidates). Lines count once.
+/// (CoplanarRatio, FindCoplanarCandidates), each line with its 10 nearest;
+/// their errors are TransferResiduals. Lines count once.
 ///
 /// Pairs are tried in nested tiers of proximity: those whose crossing is within
 /// 1 % and within 3.5 % of the image diagonal of both segments. Lines that meet
@@ -31,13 +20,8 @@ struct CoplanarLinesOptions {
 /// wrong too often.
 class CoplanarLinesKind : public EvidenceKind {
  public:
-  explicit CoplanarLinesKind(const CoplanarLinesOptions& options = {})
-      : options_(options) {}
   std::string Name() const override { return "coplanar"; }
   std::unique_ptr<Evidence> Gather(const TripletView& triplet) const override;
-
- private:
-  CoplanarLinesOptions options_;
 };
 
 }  // namespace lowlap
