@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "lowlap/adjustment/internal/rounds/pair_gap.h"
+#include "lowlap/adjustment/internal/rounds/pairs.h"
 #include "lowlap/adjustment/internal/structure/line_track.h"
 #include "lowlap/adjustment/internal/structure/noise_scale.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"

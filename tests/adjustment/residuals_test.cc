@@ -8,7 +8,7 @@
 #include "lowlap/adjustment/internal/costs/coplanar_costs.h"
 #include "lowlap/adjustment/internal/costs/line_reprojection_cost.h"
 #include "lowlap/adjustment/internal/costs/point_reprojection_cost.h"
-#include "lowlap/adjustment/internal/costs/relative_pose_cost.h"
+#include "lowlap/adjustment/internal/costs/relative_pose_prior.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 

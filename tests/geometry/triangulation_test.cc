@@ -24,7 +24,7 @@ std::vector<RigidTransform> RandomCameras(Random& random, int count) {
   return cams_from_world;
 }
 
-TEST(RayTriangulator, FindsTheDepths) {
+TEST(RayTriangulator, AreTheDepths) {
   Random random(1);
   for (int n = 0; n < 100; ++n) {
     const RigidTransform cam2_from_cam1 = RandomTransform(random);
@@ -39,7 +39,7 @@ TEST(RayTriangulator, FindsTheDepths) {
   }
 }
 
-TEST(RayTriangulator, MinimisesTheDistanceOfSkewRays) {
+TEST(RayTriangulator, MinimiseTheDistanceOfSkewRays) {
   Random random(2);
   for (int n = 0; n < 50; ++n) {
     const RigidTransform cam2_from_cam1 = RandomTransform(random);
@@ -57,11 +57,14 @@ TEST(RayTriangulator, MinimisesTheDistanceOfSkewRays) {
   }
 }
 
-TEST(RayTriangulator, ParallelRaysHaveNoDepths) {
-  const RayTriangulator rays({Mat3::Identity(), Vec3(1, 0, 0)});
-  EXPECT_FALSE(rays.Depths(Vec3(0, 0, 1), Vec3(0, 0, 1)));
-  EXPECT_FALSE(rays.Depths(Vec3(0, 0, 1), Vec3(0, 0, -2)));
-  EXPECT_FALSE(rays.Depths(Vec3(0, 0, 0), Vec3(0, 0, 1)));
+TEST(RayTriangulator, ParallelRaysHaveNone) {
+  const RigidTransform cam2_from_cam1{Mat3::Identity(), Vec3(1, 0, 0)};
+  EXPECT_FALSE(
+      RayTriangulator(cam2_from_cam1).Depths(Vec3(0, 0, 1), Vec3(0, 0, 1)));
+  EXPECT_FALSE(
+      RayTriangulator(cam2_from_cam1).Depths(Vec3(0, 0, 1), Vec3(0, 0, -2)));
+  EXPECT_FALSE(
+      RayTriangulator(cam2_from_cam1).Depths(Vec3(0, 0, 0), Vec3(0, 0, 1)));
 }
 
 TEST(TriangulateMidpoint, IsExactWithoutNoise) {

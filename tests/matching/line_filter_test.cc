@@ -1,8 +1,7 @@
-#include "lowlap/matching/internal/lines/line_filter.h"
-
 #include <gmock/gmock.h>
 
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/matching/internal/lines/line_transfer.h"
 #include "support/matchers.h"
 
 namespace lowlap {

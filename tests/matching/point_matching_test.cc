@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include "lowlap/core/internal/random.h"
-#include "lowlap/matching/internal/points/approximate_nearest_two.h"
 #include "lowlap/matching/internal/points/nearest_two.h"
 #include "support/matchers.h"
 #include "support/synthetic_image.h"

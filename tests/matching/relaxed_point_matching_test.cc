@@ -1,11 +1,10 @@
-#include "lowlap/matching/internal/points/relaxed_point_matching.h"
-
 #include <gmock/gmock.h>
 
 #include <Eigen/Geometry>
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/matching/internal/matching.h"
+#include "lowlap/matching/internal/points/point_matching.h"
 #include "support/matchers.h"
 
 namespace lowlap {

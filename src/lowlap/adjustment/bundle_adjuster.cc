@@ -10,8 +10,7 @@
 
 #include "lowlap/adjustment/internal/rounds/calibration_score.h"
 #include "lowlap/adjustment/internal/rounds/outlier_round.h"
-#include "lowlap/adjustment/internal/rounds/pair_selection.h"
-#include "lowlap/adjustment/internal/rounds/pair_terms.h"
+#include "lowlap/adjustment/internal/rounds/pairs.h"
 #include "lowlap/adjustment/internal/rounds/solve.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
 #include "lowlap/core/internal/propagate.h"

@@ -9,7 +9,6 @@
 #include "lowlap/features/internal/features.h"
 #include "lowlap/matching/internal/lines/line_matching.h"
 #include "lowlap/matching/internal/points/point_matching.h"
-#include "lowlap/matching/internal/points/relaxed_point_matching.h"
 #include "lowlap/matching/match_options.h"
 
 namespace lowlap {

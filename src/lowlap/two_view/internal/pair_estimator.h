@@ -8,7 +8,7 @@
 #include "lowlap/core/result.h"
 #include "lowlap/features/internal/features.h"
 #include "lowlap/matching/internal/lines/guided_line_matching.h"
-#include "lowlap/matching/internal/lines/line_filter.h"
+#include "lowlap/matching/internal/lines/line_transfer.h"
 #include "lowlap/matching/internal/matching.h"
 #include "lowlap/matching/internal/points/guided_point_matching.h"
 #include "lowlap/two_view/internal/relative_pose_estimator.h"

@@ -1,11 +1,39 @@
 #pragma once
 
+#include <ceres/sized_cost_function.h>
+
+#include <Eigen/Geometry>
 #include <vector>
 
 #include "lowlap/adjustment/internal/camera_set.h"
-#include "lowlap/adjustment/internal/costs/relative_pose_cost.h"
+#include "lowlap/geometry/types.h"
 
 namespace lowlap {
+
+/// A measured relative pose, and how well it is known.
+struct MeasuredRelativePose {
+  Eigen::Quaterniond cam2_from_cam1;
+  Eigen::Matrix<double, 3, 2> tangent_basis;
+  Eigen::Matrix<double, 5, 5> sqrt_information;
+};
+
+/// How far a pair of poses is from its measured relative pose, in standard
+/// deviations (5):
+///   r = W (w, B^T t / |t|),  exp([w]x) = (R2 R1^T) R_measured^T,
+///   t = R2 (C1 - C2),  B = TangentBasis(measured direction),
+/// W^T W the inverse of the measured covariance; w to first order (twice the
+/// vector part of the quaternion). Parameter blocks: rotation and centre of
+/// view 1, rotation and centre of view 2.
+class RelativePoseCost final : public ceres::SizedCostFunction<5, 4, 3, 4, 3> {
+ public:
+  explicit RelativePoseCost(const MeasuredRelativePose& measured)
+      : measured_(measured) {}
+  bool Evaluate(const double* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  MeasuredRelativePose measured_;
+};
 
 /// A measured relative pose of two poses of the set.
 struct RelativePosePrior {

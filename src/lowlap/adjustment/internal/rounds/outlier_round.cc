@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "lowlap/adjustment/internal/rounds/pair_gap.h"
-#include "lowlap/adjustment/internal/rounds/pair_selection.h"
+#include "lowlap/adjustment/internal/rounds/pairs.h"
 #include "lowlap/adjustment/internal/rounds/problem_selection.h"
 
 namespace lowlap {

@@ -8,7 +8,7 @@
 #include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
 #include "lowlap/adjustment/internal/costs/point_reprojection_cost.h"
 #include "lowlap/adjustment/internal/costs/subspace_manifold.h"
-#include "lowlap/adjustment/internal/rounds/pair_terms.h"
+#include "lowlap/adjustment/internal/rounds/pairs.h"
 
 namespace lowlap {
 namespace {
