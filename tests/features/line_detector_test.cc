@@ -10,6 +10,7 @@
 namespace lowlap {
 namespace {
 
+using testing::ExpectRefused;
 using testing::IsError;
 using testing::IsOk;
 using testing::LeftOf;
@@ -203,18 +204,9 @@ TEST(DetectLinesTest, ImagesWithoutEdgesHaveNoSegments) {
 TEST(DetectLinesTest, RejectsAnEmptyImageAndBadOptions) {
   EXPECT_THAT(DetectLines(GrayImage{}, {}),
               IsError(ErrorCode::kInvalidArgument, "0 x 0"));
-  LineOptions options;
-  options.min_length_ratio = 1;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "min_length_ratio"));
-  options = {};
-  options.coarsest_side_px = 0;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "coarsest_side_px"));
-  options = {};
-  options.max_segments = 0;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_segments"));
+  ExpectRefused(&LineOptions::min_length_ratio, 1, "min_length_ratio");
+  ExpectRefused(&LineOptions::coarsest_side_px, 0, "coarsest_side_px");
+  ExpectRefused(&LineOptions::max_segments, 0, "max_segments");
 }
 
 }  // namespace

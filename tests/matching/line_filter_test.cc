@@ -8,8 +8,8 @@ namespace lowlap {
 namespace {
 
 using ::testing::ElementsAre;
+using testing::ExpectRefused;
 using ::testing::IsEmpty;
-using testing::IsError;
 
 const RigidTransform kCam2FromCam1 = {
     RotationFromAngleAxis(Vec3(0.05, -0.4, 0.02)), Vec3(0.9, 0.1, 0.42)};
@@ -101,14 +101,9 @@ TEST(FilterLineMatchesTest, DropsInvalidSegmentsAndIndices) {
 }
 
 TEST(LineFilterOptionsTest, RejectsBadValues) {
-  LineFilterOptions options;
-  options.min_overlap = 1.5;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "min_overlap"));
-  options = {};
-  options.min_epipolar_angle_deg = 90;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "min_epipolar_angle_deg"));
+  ExpectRefused(&LineFilterOptions::min_overlap, 1.5, "min_overlap");
+  ExpectRefused(&LineFilterOptions::min_epipolar_angle_deg, 90,
+                "min_epipolar_angle_deg");
 }
 
 }  // namespace

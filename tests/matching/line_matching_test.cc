@@ -9,8 +9,8 @@
 namespace lowlap {
 namespace {
 
+using testing::ExpectRefused;
 using ::testing::IsEmpty;
-using testing::IsError;
 using testing::PolygonCover;
 using testing::Render;
 
@@ -168,22 +168,10 @@ TEST(MatchLinesTest, NoSegmentsOrALonelyOneHaveNoMatches) {
 }
 
 TEST(LineMatchOptionsTest, RejectsBadValues) {
-  LineMatchOptions options;
-  options.max_distance_bits = 300;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_distance_bits"));
-  options = {};
-  options.max_candidates = 0;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_candidates"));
-  options = {};
-  options.min_score = 2;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "min_score"));
-  options = {};
-  options.max_length_ratio = 0.5;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_length_ratio"));
+  ExpectRefused(&LineMatchOptions::max_distance_bits, 300, "max_distance_bits");
+  ExpectRefused(&LineMatchOptions::max_candidates, 0, "max_candidates");
+  ExpectRefused(&LineMatchOptions::min_score, 2, "min_score");
+  ExpectRefused(&LineMatchOptions::max_length_ratio, 0.5, "max_length_ratio");
 }
 
 }  // namespace

@@ -9,8 +9,8 @@ namespace lowlap {
 namespace {
 
 using ::testing::ElementsAre;
+using testing::ExpectRefused;
 using ::testing::IsEmpty;
-using testing::IsError;
 using testing::IsOk;
 
 // A view sees the points [begin, end) of a long wall.
@@ -87,18 +87,9 @@ TEST(RetrievePairsTest, TheLargestPointsVote) {
 }
 
 TEST(RetrievalOptionsTest, RejectsValuesOutOfRange) {
-  RetrievalOptions options;
-  options.sample_points = 1;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "sample_points"));
-  options = {};
-  options.max_partners = 0;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_partners"));
-  options = {};
-  options.max_ratio = 0;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_ratio"));
+  ExpectRefused(&RetrievalOptions::sample_points, 1, "sample_points");
+  ExpectRefused(&RetrievalOptions::max_partners, 0, "max_partners");
+  ExpectRefused(&RetrievalOptions::max_ratio, 0, "max_ratio");
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ namespace lowlap {
 namespace {
 
 using ::testing::Contains;
-using testing::IsError;
+using testing::ExpectRefused;
 using testing::IsOk;
 using ::testing::IsSubsetOf;
 using ::testing::Not;
@@ -112,18 +112,9 @@ TEST(MatchFeaturesTest, OnlyStarvedPairsAreMatchedAgain) {
 }
 
 TEST(RelaxedPointOptionsTest, RejectsValuesOutOfRange) {
-  RelaxedPointOptions options;
-  options.neighbors = 1;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "neighbors"));
-  options = {};
-  options.max_deviation = 1;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_deviation"));
-  options = {};
-  options.max_ratio = 0;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_ratio"));
+  ExpectRefused(&RelaxedPointOptions::neighbors, 1, "neighbors");
+  ExpectRefused(&RelaxedPointOptions::max_deviation, 1, "max_deviation");
+  ExpectRefused(&RelaxedPointOptions::max_ratio, 0, "max_ratio");
 }
 
 }  // namespace

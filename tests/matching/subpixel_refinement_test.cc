@@ -14,6 +14,7 @@ namespace lowlap {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ExpectRefused;
 using testing::IsError;
 using testing::IsOk;
 
@@ -175,26 +176,12 @@ TEST(AlignPatchTest, RefusesWhatItCannotAlign) {
 }
 
 TEST(PatchAlignmentOptionsTest, RejectsValuesOutOfRange) {
-  PatchAlignmentOptions options;
-  options.max_iterations = 0;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_iterations"));
-  options = {};
-  options.min_step = 0;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "min_step"));
-  options = {};
-  options.min_correlation = 1;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "min_correlation"));
-  options = {};
-  options.keypoint_stddev = 0;
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "keypoint_stddev"));
-  options = {};
-  options.max_deviation = std::nan("");
-  EXPECT_THAT(options.Validate(),
-              IsError(ErrorCode::kInvalidArgument, "max_deviation"));
+  ExpectRefused(&PatchAlignmentOptions::max_iterations, 0, "max_iterations");
+  ExpectRefused(&PatchAlignmentOptions::min_step, 0, "min_step");
+  ExpectRefused(&PatchAlignmentOptions::min_correlation, 1, "min_correlation");
+  ExpectRefused(&PatchAlignmentOptions::keypoint_stddev, 0, "keypoint_stddev");
+  ExpectRefused(&PatchAlignmentOptions::max_deviation, std::nan(""),
+                "max_deviation");
 }
 
 class RefinePointTracksTest : public ::testing::Test {

@@ -27,6 +27,15 @@ MATCHER_P2(IsError, code, text, "is the error with the text") {
          arg.error().ToString().find(text) != std::string::npos;
 }
 
+/// Options with this value of a member are refused with this text.
+template <class Options, class Member, class Value>
+void ExpectRefused(Member Options::*member, const Value& value,
+                   const char* text) {
+  Options options;
+  options.*member = value;
+  EXPECT_THAT(options.Validate(), IsError(ErrorCode::kInvalidArgument, text));
+}
+
 /// A rotation within an angle of the expected one.
 MATCHER_P2(RotationNear, expected, max_angle_deg, "is near the rotation") {
   const double angle = DegFromRad(RotationAngleBetween(arg, expected));

@@ -118,10 +118,8 @@ TEST(RefineRatio, ALineIsOneMeasurementInHoweverManyPairs) {
         RatioFeature pair;
         pair.log_ratio = 0.3 + first[a] - last[b];
         pair.log_ratio_stddev = std::sqrt(2.0) * kNoise;
-        pair.first_unit = a;
-        pair.last_unit = b;
-        pair.by_first = {kNoise, 0, 0, 0};
-        pair.by_last = {-kNoise, 0, 0, 0};
+        pair.units = {a, b};
+        pair.moves = {{{kNoise, 0, 0, 0}, {-kNoise, 0, 0, 0}}};
         pair.cell = kLines * a + b;
         features.push_back(pair);
       }
@@ -145,10 +143,8 @@ TEST(RefineRatio, WrongPairsDoNotWidenTheNoise) {
       RatioFeature pair;
       pair.log_ratio = log_ratio;
       pair.log_ratio_stddev = std::sqrt(2.0) * kNoise;
-      pair.first_unit = first;
-      pair.last_unit = last;
-      pair.by_first = {kNoise, 0, 0, 0};
-      pair.by_last = {-kNoise, 0, 0, 0};
+      pair.units = {first, last};
+      pair.moves = {{{kNoise, 0, 0, 0}, {-kNoise, 0, 0, 0}}};
       pair.cell = static_cast<int>(features.size());
       features.push_back(pair);
     };

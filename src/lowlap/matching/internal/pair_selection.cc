@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iomanip>
 #include <optional>
 #include <sstream>
+#include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/scene/internal/view_names.h"
@@ -44,23 +46,15 @@ std::vector<ViewPair> WindowPairs(const std::vector<ViewId>& ids,
 // Splits at blanks; double quotes hold a word together. nullopt: a quote that
 // is not closed.
 std::optional<std::vector<std::string>> SplitWords(const std::string& line) {
+  std::istringstream stream(line);
   std::vector<std::string> words;
-  std::size_t at = 0;
-  while (true) {
-    at = line.find_first_not_of(" \t\r", at);
-    if (at == std::string::npos) return words;
-    if (line[at] == '"') {
-      const std::size_t end = line.find('"', at + 1);
-      if (end == std::string::npos) return std::nullopt;
-      words.push_back(line.substr(at + 1, end - at - 1));
-      at = end + 1;
-    } else {
-      const std::size_t end =
-          std::min(line.find_first_of(" \t\r", at), line.size());
-      words.push_back(line.substr(at, end - at));
-      at = end;
-    }
+  while (!(stream >> std::ws).eof()) {
+    constexpr char kNoEscape = '\0';
+    std::string word;
+    if (!(stream >> std::quoted(word, '"', kNoEscape))) return std::nullopt;
+    words.push_back(std::move(word));
   }
+  return words;
 }
 
 }  // namespace

@@ -272,13 +272,6 @@ std::vector<LineSegment> FitSegments(const std::vector<RawSegment>& raw,
   return fitted;
 }
 
-bool LongerFirst(const LineSegment& a, const LineSegment& b) {
-  const double la = a.LengthPx(), lb = b.LengthPx();
-  if (la != lb) return la > lb;
-  if (a.start_px.y() != b.start_px.y()) return a.start_px.y() < b.start_px.y();
-  return a.start_px.x() < b.start_px.x();
-}
-
 std::vector<LineSegment> DetectInMat(const cv::Mat& image,
                                      const LineOptions& options) {
   const std::vector<cv::Mat> levels =
@@ -297,7 +290,7 @@ std::vector<LineSegment> DetectInMat(const cv::Mat& image,
                merged.end());
 
   std::vector<LineSegment> fitted = FitSegments(merged, levels);
-  std::sort(fitted.begin(), fitted.end(), LongerFirst);
+  std::sort(fitted.begin(), fitted.end(), LongerFirst<LineSegment>);
   std::vector<RawSegment> placed;
   for (const LineSegment& s : fitted) {
     placed.push_back({s.start_px, s.end_px, 0});

@@ -129,18 +129,11 @@ double Cover(const RawSegment& span, const std::vector<RawSegment>& pieces) {
   return UnionLength(std::move(intervals)) / span.LengthPx();
 }
 
-bool Longer(const RawSegment& a, const RawSegment& b) {
-  const double la = a.LengthPx(), lb = b.LengthPx();
-  if (la != lb) return la > lb;
-  if (a.start_px.y() != b.start_px.y()) return a.start_px.y() < b.start_px.y();
-  return a.start_px.x() < b.start_px.x();
-}
-
 // Splits pieces that lie on one guide into collinear groups: a guide may run
 // between two edges that only the finer level tells apart.
 std::vector<std::vector<RawSegment>> GroupCollinear(
     std::vector<RawSegment> pieces) {
-  std::sort(pieces.begin(), pieces.end(), Longer);
+  std::sort(pieces.begin(), pieces.end(), LongerFirst<RawSegment>);
   std::vector<std::vector<RawSegment>> groups;
   for (const RawSegment& piece : pieces) {
     bool placed = false;
@@ -250,7 +243,7 @@ bool ContinuesAxis(const Axis& axis, const RawSegment& longer,
 
 // Joins collinear neighbours, longest first.
 std::vector<RawSegment> CloseGaps(std::vector<RawSegment> segments) {
-  std::sort(segments.begin(), segments.end(), Longer);
+  std::sort(segments.begin(), segments.end(), LongerFirst<RawSegment>);
   MidpointGrid grid = EmptyGrid(segments);
   int coarsest = 0;
   for (std::size_t i = 0; i < segments.size(); ++i) {
@@ -293,7 +286,7 @@ std::vector<RawSegment> CloseGaps(std::vector<RawSegment> segments) {
 std::vector<RawSegment> MergeLevels(
     const std::vector<std::vector<RawSegment>>& levels) {
   const auto sorted = [](std::vector<RawSegment> segments) {
-    std::sort(segments.begin(), segments.end(), Longer);
+    std::sort(segments.begin(), segments.end(), LongerFirst<RawSegment>);
     return segments;
   };
   auto level = std::find_if(levels.begin(), levels.end(),

@@ -15,6 +15,15 @@ struct RawSegment {
   double LengthPx() const { return (end_px - start_px).norm(); }
 };
 
+/// An order of segments (RawSegment, LineSegment) from long to short.
+template <class Segment>
+bool LongerFirst(const Segment& a, const Segment& b) {
+  const double la = a.LengthPx(), lb = b.LengthPx();
+  if (la != lb) return la > lb;
+  if (a.start_px.y() != b.start_px.y()) return a.start_px.y() < b.start_px.y();
+  return a.start_px.x() < b.start_px.x();
+}
+
 /// Joins the segments of all levels, finest first, into one set. A coarse
 /// segment sees an edge whole that noise and crossings break on finer levels:
 /// the pieces that lie on it and are collinear at their own precision become

@@ -76,11 +76,10 @@ class CoplanarLines : public ResidualEvidence<TransferResiduals> {
   CandidateDetail DetailOf(const TripletView& triplet, int n) const override {
     const MatchedLine& a = triplet.lines_ij[pairs_[n].first];
     const MatchedLine& b = triplet.lines_jk[pairs_[n].second];
-    const CoplanarNoise noise = NoiseOfCoplanarRatio(triplet.geometry, a, b);
     const Vec3 crossing =
         CrossingInMiddle(a.in_middle.segment, b.in_middle.segment)
             .value_or(Vec3(Vec3::Zero()));
-    return {crossing.head<2>(), {noise.by_first, noise.by_last}};
+    return {crossing.head<2>(), NoiseOfCoplanarRatio(triplet.geometry, a, b)};
   }
   RatioCandidate RatioIn(const TripletView& triplet,
                          const TripletGeometry& geometry,

@@ -57,12 +57,12 @@ CoplanarNoise NoiseOf(const CoplanarLine& a, const CoplanarLine& b,
   // with respect to the direction only, so the length divides out.
   const Vec3 h = (b.q / c.qx_b - a.q / c.qx_a) / c.image_scale;
   const Vec3 by_normal_a = b.normal.cross(h), by_normal_b = h.cross(a.normal);
-  return {{g_a.dot(a.move_in_neighbor[0]), g_a.dot(a.move_in_neighbor[1]),
-           by_normal_a.dot(a.move_in_middle[0]),
-           by_normal_a.dot(a.move_in_middle[1])},
-          {-g_b.dot(b.move_in_neighbor[0]), -g_b.dot(b.move_in_neighbor[1]),
-           by_normal_b.dot(b.move_in_middle[0]),
-           by_normal_b.dot(b.move_in_middle[1])}};
+  return {{{g_a.dot(a.move_in_neighbor[0]), g_a.dot(a.move_in_neighbor[1]),
+            by_normal_a.dot(a.move_in_middle[0]),
+            by_normal_a.dot(a.move_in_middle[1])},
+           {-g_b.dot(b.move_in_neighbor[0]), -g_b.dot(b.move_in_neighbor[1]),
+            by_normal_b.dot(b.move_in_middle[0]),
+            by_normal_b.dot(b.move_in_middle[1])}}};
 }
 
 CoplanarLine FirstLine(const TripletGeometry& geometry, const MatchedLine& a) {
@@ -104,8 +104,7 @@ RatioCandidate CoplanarRatio(const CoplanarLine& a, const CoplanarLine& b) {
   const CoplanarNoise noise = NoiseOf(a, b, *crossing);
   double variance = 0;
   for (int n = 0; n < 4; ++n) {
-    variance += noise.by_first[n] * noise.by_first[n] +
-                noise.by_last[n] * noise.by_last[n];
+    variance += noise[0][n] * noise[0][n] + noise[1][n] * noise[1][n];
   }
   candidate.log_ratio_stddev = std::sqrt(variance);
   if (!(candidate.log_ratio_stddev <= kMaxPlaneLogRatioStddev)) {
@@ -132,7 +131,7 @@ CoplanarNoise NoiseOfCoplanarRatio(const TripletGeometry& geometry,
   const CoplanarLine line_a = FirstLine(geometry, a);
   const CoplanarLine line_b = LastLine(geometry, b);
   const std::optional<Crossing> crossing = Cross(line_a, line_b);
-  return crossing ? NoiseOf(line_a, line_b, *crossing) : CoplanarNoise();
+  return crossing ? NoiseOf(line_a, line_b, *crossing) : CoplanarNoise{};
 }
 
 }  // namespace lowlap

@@ -61,10 +61,7 @@ RatioCandidate CoplanarRatio(const CoplanarLine& a, const CoplanarLine& b);
 /// its segment by one standard deviation: start and end in the neighbour, start
 /// and end in the middle view. Pairs that share a line share its noise. The sum
 /// of the squares of both lines is log_ratio_stddev^2.
-struct CoplanarNoise {
-  std::array<double, 4> by_first{};
-  std::array<double, 4> by_last{};
-};
+using CoplanarNoise = std::array<std::array<double, 4>, 2>;
 
 /// Of a pair whose CoplanarRatio is valid.
 CoplanarNoise NoiseOfCoplanarRatio(const TripletGeometry& geometry,

@@ -105,10 +105,9 @@ Measurements Measure(const TripletView& triplet, const RatioSupport& support,
                          : kFirstCellAlone +
                                static_cast<int>(measurements.features.size());
       if (kind.units().num_sides == 2) {
-        feature.first_unit = kind.units().Of(near[m], 0);
-        feature.last_unit = kind.units().Of(near[m], 1);
-        feature.by_first = details[m].moves[0];
-        feature.by_last = details[m].moves[1];
+        feature.units = {kind.units().Of(near[m], 0),
+                         kind.units().Of(near[m], 1)};
+        feature.moves = details[m].moves;
       }
       measurements.features.push_back(feature);
       measurements.candidates.push_back({k, near[m], 0.0});

@@ -33,21 +33,21 @@ class MixtureFit {
     const Eigen::Index size = static_cast<Eigen::Index>(features.size());
     log_ratio_.resize(size);
     stddev_.resize(size);
-    int num_first = 0, num_last = 0;
     for (Eigen::Index n = 0; n < size; ++n) {
       const RatioFeature& feature = features[n];
       log_ratio_[n] = feature.log_ratio;
       stddev_[n] = feature.log_ratio_stddev;
-      num_first = std::max(num_first, feature.first_unit + 1);
-      num_last = std::max(num_last, feature.last_unit + 1);
+      for (const int side : {0, 1}) {
+        const auto num_units =
+            static_cast<std::size_t>(feature.units[side] + 1);
+        if (num_units > of_unit_[side].size()) of_unit_[side].resize(num_units);
+      }
       if (runs_.empty() || runs_.back().group != feature.group) {
         runs_.push_back({feature.group, n, 0});
       }
       ++runs_.back().size;
     }
     precision_ = stddev_.inverse();
-    of_first_.resize(num_first);
-    of_last_.resize(num_last);
     odds_.resize(groups.size());
     num_right_.resize(groups.size());
     fit_.log_ratio = initial;
@@ -107,19 +107,20 @@ class MixtureFit {
 
   // By feature, the mean of the numbers of right pairs of its two lines.
   void FindMultiplicities() {
-    if (of_first_.empty()) return;
-    std::fill(of_first_.begin(), of_first_.end(), 0.0);
-    std::fill(of_last_.begin(), of_last_.end(), 0.0);
-    for (std::size_t n = 0; n < features_.size(); ++n) {
-      if (!features_[n].IsPair()) continue;
-      of_first_[features_[n].first_unit] += fit_.probability[n];
-      of_last_[features_[n].last_unit] += fit_.probability[n];
+    if (of_unit_[0].empty()) return;
+    for (const int side : {0, 1}) {
+      std::vector<double>& of_unit = of_unit_[side];
+      std::fill(of_unit.begin(), of_unit.end(), 0.0);
+      for (std::size_t n = 0; n < features_.size(); ++n) {
+        if (!features_[n].IsPair()) continue;
+        of_unit[features_[n].units[side]] += fit_.probability[n];
+      }
     }
     for (std::size_t n = 0; n < features_.size(); ++n) {
       if (!features_[n].IsPair()) continue;
       fit_.multiplicity[n] =
-          std::max(1.0, 0.5 * (of_first_[features_[n].first_unit] +
-                               of_last_[features_[n].last_unit]));
+          std::max(1.0, 0.5 * (of_unit_[0][features_[n].units[0]] +
+                               of_unit_[1][features_[n].units[1]]));
     }
   }
 
@@ -224,8 +225,7 @@ class MixtureFit {
   std::vector<double> odds_;
   std::vector<double> num_right_;
   // Right pairs of every line.
-  std::vector<double> of_first_;
-  std::vector<double> of_last_;
+  std::array<std::vector<double>, 2> of_unit_;
 };
 
 }  // namespace

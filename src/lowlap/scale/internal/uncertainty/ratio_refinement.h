@@ -16,12 +16,10 @@ struct RatioFeature {
   int cell = 0;
   /// Of a pair: which units it joins (counted from 0 on either side), and how
   /// their noise moves the log ratio, see CandidateDetail.
-  int first_unit = -1;
-  int last_unit = -1;
-  std::array<double, 4> by_first{};
-  std::array<double, 4> by_last{};
+  std::array<int, 2> units = {-1, -1};
+  std::array<std::array<double, 4>, 2> moves{};
 
-  bool IsPair() const { return first_unit >= 0; }
+  bool IsPair() const { return units[0] >= 0; }
 };
 
 /// What is known of a group beforehand.

@@ -106,11 +106,9 @@ using Moves = std::array<double, 4>;
 // Calls visit(begin, end) for the pairs of every line of one side, `pairs`
 // being sorted by it.
 template <class Visit>
-void VisitUnits(const std::vector<RatioFeature>& features, bool is_first,
+void VisitUnits(const std::vector<RatioFeature>& features, int side,
                 std::vector<int>* pairs, const Visit& visit) {
-  const auto unit_of = [&](int n) {
-    return is_first ? features[n].first_unit : features[n].last_unit;
-  };
+  const auto unit_of = [&](int n) { return features[n].units[side]; };
   std::stable_sort(pairs->begin(), pairs->end(),
                    [&](int a, int b) { return unit_of(a) < unit_of(b); });
   for (auto begin = pairs->begin(), end = begin; begin != pairs->end();
@@ -133,12 +131,12 @@ double PairVariance(const std::vector<RatioFeature>& features,
                 Square(slopes[n] * features[n].log_ratio_stddev) *
                     mixture.noise2[features[n].group];
   }
-  for (const bool is_first : {true, false}) {
-    VisitUnits(features, is_first, &pairs, [&](auto begin, auto end) {
+  for (const int side : {0, 1}) {
+    VisitUnits(features, side, &pairs, [&](auto begin, auto end) {
       Moves sum{};
       for (; begin != end; ++begin) {
         const RatioFeature& pair = features[*begin];
-        const Moves& moves = is_first ? pair.by_first : pair.by_last;
+        const Moves& moves = pair.moves[side];
         const double scale =
             slopes[*begin] * std::sqrt(mixture.noise2[pair.group]);
         for (std::size_t m = 0; m < sum.size(); ++m) sum[m] += scale * moves[m];
@@ -154,14 +152,14 @@ double PairVariance(const std::vector<RatioFeature>& features,
 double SharedSquares(const std::vector<RatioFeature>& features,
                      std::vector<int> pairs, const RatioMixture& mixture) {
   double shared = 0;
-  for (const bool is_first : {true, false}) {
-    VisitUnits(features, is_first, &pairs, [&](auto begin, auto end) {
+  for (const int side : {0, 1}) {
+    VisitUnits(features, side, &pairs, [&](auto begin, auto end) {
       // The squared norm of the sum of p a a^T, a the moves in standard
       // deviations of the pair, without what every pair has with itself.
       std::array<Moves, 4> sum{};
       for (; begin != end; ++begin) {
         const RatioFeature& pair = features[*begin];
-        const Moves& moves = is_first ? pair.by_first : pair.by_last;
+        const Moves& moves = pair.moves[side];
         const double scale =
             mixture.probability[*begin] / Square(pair.log_ratio_stddev);
         double own = 0;
