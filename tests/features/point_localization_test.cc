@@ -1,10 +1,9 @@
-#include "lowlap/features/internal/points/point_localization.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
 
+#include "lowlap/features/internal/points/point_detector.h"
 #include "lowlap/geometry/types.h"
 
 namespace lowlap {

@@ -1,10 +1,9 @@
-#include "lowlap/matching/internal/lines/hamming.h"
-
 #include <gtest/gtest.h>
 
 #include <bitset>
 
 #include "lowlap/core/internal/random.h"
+#include "lowlap/matching/internal/lines/line_candidates.h"
 
 namespace lowlap {
 namespace {

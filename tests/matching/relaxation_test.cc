@@ -1,6 +1,6 @@
-#include "lowlap/matching/internal/lines/relaxation.h"
-
 #include <gtest/gtest.h>
+
+#include "lowlap/matching/internal/lines/line_candidates.h"
 
 namespace lowlap {
 namespace {

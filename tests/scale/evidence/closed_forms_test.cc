@@ -7,7 +7,7 @@
 #include "lowlap/geometry/internal/triangulation.h"
 #include "lowlap/scale/evidence/internal/coplanar_ratio.h"
 #include "lowlap/scale/evidence/internal/line_in_middle.h"
-#include "lowlap/scale/evidence/internal/trifocal_line.h"
+#include "lowlap/scale/evidence/internal/trifocal.h"
 #include "lowlap/scale/evidence/internal/triplet_points.h"
 #include "scale/rig.h"
 

@@ -1,5 +1,3 @@
-#include "lowlap/scale/evidence/internal/coplanar_residuals.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,11 +1,10 @@
-#include "lowlap/scale/evidence/internal/trifocal_point.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
 #include "lowlap/geometry/internal/triangulation.h"
+#include "lowlap/scale/evidence/internal/trifocal.h"
 #include "scale/rig.h"
 
 namespace lowlap {

@@ -4,8 +4,7 @@
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/scale/evidence/internal/coplanar_lines.h"
-#include "lowlap/scale/evidence/internal/trifocal_line.h"
-#include "lowlap/scale/evidence/internal/trifocal_point.h"
+#include "lowlap/scale/evidence/internal/trifocal.h"
 #include "lowlap/scale/internal/criterion/ratio_support.h"
 #include "scale/synthetic_triplet.h"
 

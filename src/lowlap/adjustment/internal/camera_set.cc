@@ -58,17 +58,9 @@ int CameraSet::Find(ViewId view) const {
   return found == view_index.end() ? -1 : found->second;
 }
 
-double CameraSet::MeanImageArea() const {
+double CameraSet::Mean(double (Intrinsic::*size)() const) const {
   double sum = 0;
-  for (const IntrinsicState& state : intrinsics) sum += state.value.ImageArea();
-  return intrinsics.empty() ? 1 : sum / static_cast<double>(intrinsics.size());
-}
-
-double CameraSet::MeanImageDiagonal() const {
-  double sum = 0;
-  for (const IntrinsicState& state : intrinsics) {
-    sum += state.value.ImageDiagonal();
-  }
+  for (const IntrinsicState& state : intrinsics) sum += (state.value.*size)();
   return intrinsics.empty() ? 1 : sum / static_cast<double>(intrinsics.size());
 }
 

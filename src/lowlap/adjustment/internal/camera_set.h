@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "lowlap/robust/internal/a_contrario.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -64,9 +65,15 @@ struct CameraSet {
     return intrinsics[views[view].intrinsic];
   }
 
-  /// Means over the intrinsics, for the background laws; 1 without any.
-  double MeanImageArea() const;
-  double MeanImageDiagonal() const;
+  /// Mean over the intrinsics, for the background laws; 1 without any.
+  double Mean(double (Intrinsic::*size)() const) const;
+  BackgroundLaw PointToPoint() const {
+    return BackgroundLaw::PointToPoint(Mean(&Intrinsic::ImageArea));
+  }
+  BackgroundLaw PointToLine() const {
+    return BackgroundLaw::PointToLine(Mean(&Intrinsic::ImageArea),
+                                      Mean(&Intrinsic::ImageDiagonal));
+  }
 
   /// Poses and intrinsics back into the scene, which keeps the given ones of
   /// intrinsics that moved.

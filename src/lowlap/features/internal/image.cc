@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "lowlap/core/internal/atomic_file.h"
-#include "lowlap/core/internal/propagate.h"
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/features/internal/opencv.h"
 
 namespace lowlap {
@@ -126,20 +126,13 @@ Result<std::optional<ImageSize>> SizeFromHead(const std::string& bytes,
 }  // namespace
 
 Status GrayImage::Validate() const {
-  if (width <= 0 || height <= 0) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "an image of " + std::to_string(width) + " x " +
-                         std::to_string(height) + " pixels");
-  }
-  const std::size_t expected =
-      static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
-  if (pixels.size() != expected) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "an image of " + std::to_string(width) + " x " +
-                         std::to_string(height) + " with " +
-                         std::to_string(pixels.size()) + " pixels");
-  }
-  return {};
+  const std::string size =
+      "an image of " + std::to_string(width) + " x " + std::to_string(height);
+  return Require(
+      {{width > 0 && height > 0, size + " pixels"},
+       {pixels.size() ==
+            static_cast<std::size_t>(width) * static_cast<std::size_t>(height),
+        size + " with " + std::to_string(pixels.size()) + " pixels"}});
 }
 
 Result<GrayImage> ReadGrayImage(const std::string& path) {

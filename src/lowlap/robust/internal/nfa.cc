@@ -41,6 +41,15 @@ NfaTerm PaperMinimum(int n, int min_k, const LadderCounts& counts,
       false);
 }
 
+template <class Alpha>
+NfaTerm PaperTrifocalTerm(const LogFactorials& factorials, int n,
+                          const LadderCounts& counts, const Alpha& alpha) {
+  return PaperMinimum(n, 2, counts, [&](int k, double e) {
+    return std::log10(n - 1.0) + factorials.Log10Binomial(n, k) +
+           std::log10(k) + (k - 1) * std::log10(alpha(e));
+  });
+}
+
 }  // namespace
 
 LogFactorials::LogFactorials(int max_n)
@@ -105,19 +114,16 @@ LadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
 
 NfaTerm PaperPointTerm(const LogFactorials& factorials, int n,
                        const LadderCounts& counts, double image_area_px2) {
-  return PaperMinimum(n, 2, counts, [&](int k, double e) {
-    return std::log10(n - 1.0) + factorials.Log10Binomial(n, k) +
-           std::log10(k) + (k - 1) * std::log10(kPi * e * e / image_area_px2);
+  return PaperTrifocalTerm(factorials, n, counts, [&](double e) {
+    return kPi * e * e / image_area_px2;
   });
 }
 
 NfaTerm PaperLineTerm(const LogFactorials& factorials, int n,
                       const LadderCounts& counts, double image_area_px2,
                       double image_diagonal_px) {
-  return PaperMinimum(n, 2, counts, [&](int k, double e) {
-    return std::log10(n - 1.0) + factorials.Log10Binomial(n, k) +
-           std::log10(k) +
-           (k - 1) * std::log10(2 * image_diagonal_px * e / image_area_px2);
+  return PaperTrifocalTerm(factorials, n, counts, [&](double e) {
+    return 2 * image_diagonal_px * e / image_area_px2;
   });
 }
 

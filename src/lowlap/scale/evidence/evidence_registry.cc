@@ -5,8 +5,7 @@
 
 #include "lowlap/scale/evidence/internal/coplanar_lines.h"
 #include "lowlap/scale/evidence/internal/plane_points.h"
-#include "lowlap/scale/evidence/internal/trifocal_line.h"
-#include "lowlap/scale/evidence/internal/trifocal_point.h"
+#include "lowlap/scale/evidence/internal/trifocal.h"
 
 namespace lowlap {
 namespace {

@@ -122,11 +122,8 @@ NoiseScale EstimatePairNoise(const CameraSet& cameras,
   for (const PairGap& gap : gaps) gaps_px.push_back(gap.gap_px);
   NoiseBounds pair_bounds = bounds;
   pair_bounds.fallback = line_noise;
-  NoiseScale noise =
-      EstimateNoise(gaps_px,
-                    BackgroundLaw::PointToLine(cameras.MeanImageArea(),
-                                               cameras.MeanImageDiagonal()),
-                    kMedianOfNorm<1>, pair_bounds);
+  NoiseScale noise = EstimateNoise(gaps_px, cameras.PointToLine(),
+                                   kMedianOfNorm<1>, pair_bounds);
   noise.stddev_px = std::max(noise.stddev_px, line_noise.stddev_px);
   noise.threshold_px = std::max(noise.threshold_px, line_noise.threshold_px);
   return noise;

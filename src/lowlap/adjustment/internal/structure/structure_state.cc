@@ -227,8 +227,7 @@ LineLandmark ToLandmark(const CameraSet& cameras, const LineTrackState& track) {
 NoiseScale EstimateNoise(const CameraSet& cameras,
                          const std::vector<PointTrackState>& points,
                          const NoiseBounds& bounds) {
-  return EstimateNoise(ErrorsPx(cameras, points),
-                       BackgroundLaw::PointToPoint(cameras.MeanImageArea()),
+  return EstimateNoise(ErrorsPx(cameras, points), cameras.PointToPoint(),
                        kMedianOfNorm<2>, bounds);
 }
 
@@ -236,9 +235,7 @@ NoiseScale EstimateNoise(const CameraSet& cameras,
                          const std::vector<LineTrackState>& lines,
                          const NoiseBounds& bounds) {
   // The root mean square of two distances, not their length.
-  return EstimateNoise(ErrorsPx(cameras, lines),
-                       BackgroundLaw::PointToLine(cameras.MeanImageArea(),
-                                                  cameras.MeanImageDiagonal()),
+  return EstimateNoise(ErrorsPx(cameras, lines), cameras.PointToLine(),
                        kMedianOfNorm<2> / std::sqrt(2.0), bounds);
 }
 

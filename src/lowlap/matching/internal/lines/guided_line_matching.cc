@@ -6,10 +6,8 @@
 #include <utility>
 
 #include "lowlap/core/internal/requirement.h"
-#include "lowlap/matching/internal/lines/hamming.h"
-#include "lowlap/matching/internal/lines/line_rivals.h"
+#include "lowlap/matching/internal/lines/line_candidates.h"
 #include "lowlap/matching/internal/lines/line_transfer.h"
-#include "lowlap/matching/internal/lines/relaxation.h"
 
 namespace lowlap {
 namespace {

@@ -4,9 +4,7 @@
 #include <cmath>
 
 #include "lowlap/core/internal/requirement.h"
-#include "lowlap/matching/internal/lines/hamming.h"
-#include "lowlap/matching/internal/lines/line_rivals.h"
-#include "lowlap/matching/internal/lines/relaxation.h"
+#include "lowlap/matching/internal/lines/line_candidates.h"
 
 namespace lowlap {
 namespace {

@@ -7,7 +7,6 @@
 #include "lowlap/robust/internal/nfa.h"
 #include "lowlap/scale/evidence/internal/coplanar_candidates.h"
 #include "lowlap/scale/evidence/internal/coplanar_ratio.h"
-#include "lowlap/scale/evidence/internal/coplanar_residuals.h"
 #include "lowlap/scale/evidence/internal/residual_evidence.h"
 
 namespace lowlap {

@@ -9,6 +9,14 @@
 
 namespace lowlap {
 
+/// Points seen in all three views (TripletView::points), by TripletPointSolver
+/// and PointResiduals.
+class TrifocalPointKind : public EvidenceKind {
+ public:
+  std::string Name() const override { return "points"; }
+  std::unique_ptr<Evidence> Gather(const TripletView& triplet) const override;
+};
+
 /// Lines seen in all three views (TripletView::lines). The error is the mean
 /// distance of the two end points observed in k to the projection of the
 /// infinite line from (i, j), and likewise from (k, j) into i; the mean of the

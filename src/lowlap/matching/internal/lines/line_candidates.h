@@ -1,11 +1,36 @@
 #pragma once
 
+#include <cstddef>
 #include <vector>
 
 #include "lowlap/core/ids.h"
+#include "lowlap/features/internal/lines/line_descriptor.h"
 #include "lowlap/scene/features.h"
 
 namespace lowlap {
+
+/// Numbers of bits in which `query` differs from each of `others`, which
+/// replace the content of `distances`.
+void HammingDistances(const LineDescriptor& query,
+                      const std::vector<LineDescriptor>& others,
+                      std::vector<int>* distances);
+
+/// That a neighbouring candidate match speaks for one, and how much.
+struct Support {
+  std::size_t candidate;
+  double weight;
+};
+
+/// The scores of candidate matches after `iterations` rounds of relaxation.
+/// supports[c] has one list per neighbour of candidate c; its support is the
+/// mean over them of
+///   max over the list of  weight score(candidate),
+/// and its new score support / (support + half_support), in [0, 1). Candidates
+/// without neighbours end at zero.
+std::vector<double> RelaxScores(
+    std::vector<double> scores,
+    const std::vector<std::vector<std::vector<Support>>>& supports,
+    double half_support, int iterations);
 
 /// Whether two segments of one view are pieces of one edge: collinear, of one
 /// direction, and one behind the other.

@@ -1,7 +1,10 @@
-#include "lowlap/matching/internal/lines/line_rivals.h"
+#include "lowlap/matching/internal/lines/line_candidates.h"
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <opencv2/core.hpp>
+#include <utility>
 
 namespace lowlap {
 namespace {
@@ -39,6 +42,46 @@ std::vector<double> FindRivals(const std::vector<LineSegment>& first,
 }
 
 }  // namespace
+
+void HammingDistances(const LineDescriptor& query,
+                      const std::vector<LineDescriptor>& others,
+                      std::vector<int>* distances) {
+  distances->resize(others.size());
+  if (others.empty()) return;
+  // Views; OpenCV has no const matrix.
+  const int length = static_cast<int>(query.size());
+  const int count = static_cast<int>(others.size());
+  const cv::Mat one(1, length, CV_8U, const_cast<std::uint8_t*>(query.data()));
+  const cv::Mat all(count, length, CV_8U,
+                    const_cast<std::uint8_t*>(others.front().data()));
+  cv::Mat result(1, count, CV_32S, distances->data());
+  cv::batchDistance(one, all, result, CV_32S, cv::noArray(), cv::NORM_HAMMING,
+                    0);
+}
+
+std::vector<double> RelaxScores(
+    std::vector<double> scores,
+    const std::vector<std::vector<std::vector<Support>>>& supports,
+    double half_support, int iterations) {
+  for (int iteration = 0; iteration < iterations; ++iteration) {
+    std::vector<double> next(scores.size(), 0);
+    for (std::size_t c = 0; c < scores.size(); ++c) {
+      if (supports[c].empty()) continue;
+      double sum = 0;
+      for (const std::vector<Support>& list : supports[c]) {
+        double best = 0;
+        for (const Support& s : list) {
+          best = std::max(best, s.weight * scores[s.candidate]);
+        }
+        sum += best;
+      }
+      const double support = sum / static_cast<double>(supports[c].size());
+      next[c] = support / (support + half_support);
+    }
+    scores = std::move(next);
+  }
+  return scores;
+}
 
 bool ArePieces(const LineSegment& a, const LineSegment& b) {
   constexpr double kMaxDistancePx = 2.0;
