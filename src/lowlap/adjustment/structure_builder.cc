@@ -37,36 +37,24 @@ double ImageNoisePx(double verification_threshold_px) {
              : kDefaultNoisePx;
 }
 
+// In the order of LandmarkStatus.
+constexpr std::size_t TriangulationSummary::*kCounters[] = {
+    &TriangulationSummary::landmarks,    &TriangulationSummary::too_few_views,
+    &TriangulationSummary::inconsistent, &TriangulationSummary::behind_camera,
+    &TriangulationSummary::uncertain,    &TriangulationSummary::implausible};
+
 template <class Track>
 void Summarise(const std::vector<Track>& tracks, const CameraSet& cameras,
                TriangulationSummary* summary) {
   summary->tracks = tracks.size();
   for (const Track& track : tracks) {
     summary->observations += track.candidates.size();
-    switch (track.status) {
-      case LandmarkStatus::kLandmark:
-        ++summary->landmarks;
-        if (track.PoseCount(cameras) == 2) ++summary->two_view_landmarks;
-        summary->observations_used += track.UsedCount();
-        summary->observations_dropped +=
-            track.candidates.size() - track.UsedCount();
-        break;
-      case LandmarkStatus::kTooFewViews:
-        ++summary->too_few_views;
-        break;
-      case LandmarkStatus::kInconsistent:
-        ++summary->inconsistent;
-        break;
-      case LandmarkStatus::kBehindCamera:
-        ++summary->behind_camera;
-        break;
-      case LandmarkStatus::kUncertain:
-        ++summary->uncertain;
-        break;
-      case LandmarkStatus::kImplausible:
-        ++summary->implausible;
-        break;
-    }
+    ++(summary->*kCounters[static_cast<std::size_t>(track.status)]);
+    if (!track.IsLandmark()) continue;
+    if (track.PoseCount(cameras) == 2) ++summary->two_view_landmarks;
+    summary->observations_used += track.UsedCount();
+    summary->observations_dropped +=
+        track.candidates.size() - track.UsedCount();
   }
 }
 

@@ -32,7 +32,7 @@ struct RigidTransform {
   }
 
   /// [R | t], 3x4.
-  Mat34 Matrix() const;
+  Mat34 Matrix() const { return (Mat34() << rotation, translation).finished(); }
 };
 
 }  // namespace lowlap

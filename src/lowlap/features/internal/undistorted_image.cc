@@ -1,5 +1,6 @@
 #include "lowlap/features/internal/undistorted_image.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -13,24 +14,14 @@ namespace {
 
 // Where the border of the photograph lies without distortion, relative to the
 // principal point, in pixels of the pinhole.
-struct Extent {
-  Vec2 low_px = Vec2::Zero();
-  Vec2 high_px = Vec2::Zero();
-
-  void Include(const Vec2& p_px) {
-    low_px = low_px.cwiseMin(p_px);
-    high_px = high_px.cwiseMax(p_px);
-  }
-};
-
-Extent UndistortedExtent(const Intrinsic& intrinsic) {
+Eigen::AlignedBox2d UndistortedExtent(const Intrinsic& intrinsic) {
   const Vec2 size(intrinsic.width_px, intrinsic.height_px);
-  Extent extent;
+  Eigen::AlignedBox2d extent(Vec2::Zero(), Vec2::Zero());
   const auto include = [&](double x, double y) {
     // Beyond the fold of the distortion lies more than can be shown.
     const std::optional<Vec2> p = intrinsic.Normalize({x, y});
     if (p) {
-      extent.Include({intrinsic.fx_px * p->x(), intrinsic.fy_px * p->y()});
+      extent.extend(Vec2(intrinsic.fx_px * p->x(), intrinsic.fy_px * p->y()));
     }
   };
   for (int x = 0; x < intrinsic.width_px; ++x) {
@@ -44,10 +35,10 @@ Extent UndistortedExtent(const Intrinsic& intrinsic) {
   // Pixels of the border may lie beyond the fold: the photograph's own size
   // about the principal point is shown in any case, and twice it at most.
   const Vec2 pp = intrinsic.principal_point_px;
-  extent.Include(-pp);
-  extent.Include(size - pp);
-  extent.low_px = extent.low_px.cwiseMax(-size);
-  extent.high_px = extent.high_px.cwiseMin(size);
+  extent.extend(-pp);
+  extent.extend(size - pp);
+  extent.min() = extent.min().cwiseMax(-size);
+  extent.max() = extent.max().cwiseMin(size);
   return extent;
 }
 
@@ -65,12 +56,11 @@ Result<UndistortedImage> UndistortedImage::Make(const GrayImage& distorted,
     return MakeError(ErrorCode::kInvalidArgument,
                      "image and intrinsic differ in size");
   }
-  const Extent extent = UndistortedExtent(intrinsic);
-  const Vec2 origin_px = (-extent.low_px).array().ceil();
+  const Eigen::AlignedBox2d extent = UndistortedExtent(intrinsic);
+  const Vec2 origin_px = (-extent.min()).array().ceil();
   GrayImage image;
-  image.width = static_cast<int>(std::ceil(extent.high_px.x() + origin_px.x()));
-  image.height =
-      static_cast<int>(std::ceil(extent.high_px.y() + origin_px.y()));
+  image.width = static_cast<int>(std::ceil(extent.max().x() + origin_px.x()));
+  image.height = static_cast<int>(std::ceil(extent.max().y() + origin_px.y()));
   image.pixels.resize(static_cast<std::size_t>(image.width) * image.height);
   UndistortedImage result(std::move(image), intrinsic, origin_px);
   const Status done = CatchOpenCv("undistortion", [&]() -> Status {

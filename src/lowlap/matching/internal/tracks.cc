@@ -15,7 +15,7 @@
 namespace lowlap {
 namespace {
 
-using Matches = const std::vector<FeatureMatch>& (*)(const RelativePose&);
+using Matches = std::vector<FeatureMatch> RelativePose::*;
 
 // A match of two features, numbered over all views.
 struct Link {
@@ -34,7 +34,7 @@ struct FeatureGraph {
 FeatureGraph CollectLinks(const Scene& scene, Matches matches_of) {
   FeatureGraph graph;
   for (const auto& [views, pose] : scene.relative_poses) {
-    for (const FeatureMatch& match : matches_of(pose)) {
+    for (const FeatureMatch& match : pose.*matches_of) {
       graph.features.push_back({views.first, match.first});
       graph.features.push_back({views.second, match.second});
     }
@@ -49,7 +49,7 @@ FeatureGraph CollectLinks(const Scene& scene, Matches matches_of) {
         graph.features.begin());
   };
   for (const auto& [views, pose] : scene.relative_poses) {
-    const std::vector<FeatureMatch>& matches = matches_of(pose);
+    const std::vector<FeatureMatch>& matches = pose.*matches_of;
     for (const FeatureMatch& match : matches) {
       Link link;
       link.a = index({views.first, match.first});
@@ -189,21 +189,13 @@ Status LineTrackOptions::Validate() const {
 }
 
 std::map<PointTrackId, Track> BuildPointTracks(const Scene& scene) {
-  const Matches inliers =
-      [](const RelativePose& pose) -> const std::vector<FeatureMatch>& {
-    return pose.point_inliers;
-  };
   return Number<PointTrackId>(
-      JoinTracks(CollectLinks(scene, inliers),
+      JoinTracks(CollectLinks(scene, &RelativePose::point_inliers),
                  [](const FeatureRef&, const FeatureRef&) { return false; }));
 }
 
 std::map<LineTrackId, Track> BuildLineTracks(const Scene& scene,
                                              const LineTrackOptions& options) {
-  const Matches inliers =
-      [](const RelativePose& pose) -> const std::vector<FeatureMatch>& {
-    return pose.line_inliers;
-  };
   // Straightened: in the pixels of a pinhole with the same focal lengths.
   const auto find = [&](const FeatureRef& ref) -> std::optional<LineSegment> {
     const auto features = scene.features.find(ref.view);
@@ -222,7 +214,7 @@ std::map<LineTrackId, Track> BuildLineTracks(const Scene& scene,
     return segment;
   };
   return Number<LineTrackId>(
-      JoinTracks(CollectLinks(scene, inliers),
+      JoinTracks(CollectLinks(scene, &RelativePose::line_inliers),
                  [&](const FeatureRef& a, const FeatureRef& b) {
                    const auto segment_a = find(a), segment_b = find(b);
                    return segment_a && segment_b &&

@@ -270,8 +270,9 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
   const LinearisedProblem linearised(&builder);
 
   std::vector<Candidate> candidates;
-  std::vector<Eigen::Triplet<double>> moves;
-  std::vector<char> is_free(static_cast<std::size_t>(linearised.kept_size), 1);
+  MatX held_directions = MatX::Zero(
+      linearised.kept_size,
+      static_cast<Eigen::Index>(groups.size()) * kMaxIntrinsicParameters);
   int count = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<int> column(groups[g].intrinsics.size());
@@ -287,8 +288,7 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
             cameras.intrinsics[groups[g].intrinsics[n]].value;
         const int size = Size(part, value);
         for (int k = 0; k < size && !(groups[g].refined.*part); ++k) {
-          is_free[static_cast<std::size_t>(column[n] + k)] = 0;
-          moves.emplace_back(column[n] + k, count + k, Unit(part, value));
+          held_directions(column[n] + k, count + k) = Unit(part, value);
           candidate.size = std::max(candidate.size, size);
         }
         column[n] += size;
@@ -300,12 +300,9 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
   if (candidates.empty()) return {};
   std::vector<int> free;
   for (int n = 0; n < linearised.kept_size; ++n) {
-    if (is_free[static_cast<std::size_t>(n)]) free.push_back(n);
+    if ((held_directions.row(n).array() == 0).all()) free.push_back(n);
   }
-  MatX held_directions = MatX::Zero(linearised.kept_size, count);
-  for (const Eigen::Triplet<double>& move : moves) {
-    held_directions(move.row(), move.col()) = move.value();
-  }
+  held_directions.conservativeResize(Eigen::NoChange, count);
 
   const std::optional<Score> score =
       ComputeScore(linearised, free, held_directions);

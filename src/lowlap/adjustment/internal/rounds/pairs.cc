@@ -49,6 +49,16 @@ std::vector<PairTerm> PairTerms(const StructureState& state,
   return terms;
 }
 
+std::unique_ptr<ceres::CostFunction> MakePairCost(
+    const CameraSet& cameras, const PairTerm& term,
+    AdjustedCoplanarResidual residual) {
+  const double focal_px = cameras.IntrinsicOf(term.view).value.MeanFocalPx();
+  if (residual == AdjustedCoplanarResidual::kTransfer) {
+    return std::make_unique<CoplanarTransferCost>(focal_px);
+  }
+  return std::make_unique<CoplanarImageDistanceCost>(focal_px);
+}
+
 double PairErrorPx(const CameraSet& cameras, const StructureState& state,
                    const PairState& pair, AdjustedCoplanarResidual residual) {
   const std::vector<PairTerm> terms = PairTerms(state, pair, residual);
@@ -57,15 +67,10 @@ double PairErrorPx(const CameraSet& cameras, const StructureState& state,
   for (const PairTerm& term : terms) {
     const LineParameters on = Parameters(state.lines[term.on]);
     const LineParameters to = Parameters(state.lines[term.to]);
-    const double focal_px = cameras.IntrinsicOf(term.view).value.MeanFocalPx();
     const Vec3& center = cameras.PoseOf(term.view).center;
     const double* const blocks[] = {center.data(), on.data(), to.data()};
     double values[3] = {0, 0, 0};
-    if (residual == AdjustedCoplanarResidual::kTransfer) {
-      CoplanarTransferCost(focal_px).Evaluate(blocks, values, nullptr);
-    } else {
-      CoplanarImageDistanceCost(focal_px).Evaluate(blocks, values, nullptr);
-    }
+    MakePairCost(cameras, term, residual)->Evaluate(blocks, values, nullptr);
     squares +=
         values[0] * values[0] + values[1] * values[1] + values[2] * values[2];
   }

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <ceres/cost_function.h>
+
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "lowlap/adjustment/adjustment_options.h"
@@ -23,6 +26,10 @@ struct PairTerm {
 std::vector<PairTerm> PairTerms(const StructureState& state,
                                 const PairState& pair,
                                 AdjustedCoplanarResidual residual);
+
+std::unique_ptr<ceres::CostFunction> MakePairCost(
+    const CameraSet& cameras, const PairTerm& term,
+    AdjustedCoplanarResidual residual);
 
 /// Root mean square of the pair's residuals, in pixels; infinity without any.
 double PairErrorPx(const CameraSet& cameras, const StructureState& state,

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "lowlap/adjustment/internal/costs/coplanar_costs.h"
 #include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
 #include "lowlap/adjustment/internal/costs/point_reprojection_cost.h"
 #include "lowlap/adjustment/internal/costs/subspace_manifold.h"
@@ -51,26 +50,30 @@ ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
   SplitBlocks();
 }
 
-double* ProblemBuilder::RotationBlock(int pose) {
+double* ProblemBuilder::RotationBlock(std::size_t pose) {
   return blocks_.data() + kPoseSize * pose;
 }
 
-double* ProblemBuilder::CenterBlock(int pose) {
+double* ProblemBuilder::CenterBlock(std::size_t pose) {
   return RotationBlock(pose) + 4;
 }
 
-double* ProblemBuilder::IntrinsicBlock(int intrinsic) {
-  return RotationBlock(static_cast<int>(cameras_->poses.size())) +
+double* ProblemBuilder::IntrinsicBlock(std::size_t intrinsic) {
+  return RotationBlock(cameras_->poses.size()) +
          kMaxIntrinsicParameters * intrinsic;
 }
 
-double* ProblemBuilder::LineBlock(int line) {
-  return IntrinsicBlock(static_cast<int>(cameras_->intrinsics.size())) +
-         kLineSize * line;
+double* ProblemBuilder::LineBlock(std::size_t line) {
+  return IntrinsicBlock(cameras_->intrinsics.size()) + kLineSize * line;
 }
 
-double* ProblemBuilder::PointBlock(int point) {
-  return LineBlock(static_cast<int>(state_->lines.size())) + kPointSize * point;
+double* ProblemBuilder::PointBlock(std::size_t point) {
+  return LineBlock(state_->lines.size()) + kPointSize * point;
+}
+
+bool ProblemBuilder::AllFinite() const {
+  return std::all_of(blocks_.begin(), blocks_.end(),
+                     [](double value) { return std::isfinite(value); });
 }
 
 void ProblemBuilder::CopyIntoBlocks() {
@@ -81,15 +84,14 @@ void ProblemBuilder::CopyIntoBlocks() {
                  0);
   for (std::size_t n = 0; n < cameras_->poses.size(); ++n) {
     const PoseState& pose = cameras_->poses[n];
-    const int index = static_cast<int>(n);
-    Eigen::Map<Vec4>(RotationBlock(index)) = pose.cam_from_world.coeffs();
-    Eigen::Map<Vec3>(CenterBlock(index)) = pose.center;
+    Eigen::Map<Vec4>(RotationBlock(n)) = pose.cam_from_world.coeffs();
+    Eigen::Map<Vec3>(CenterBlock(n)) = pose.center;
   }
   for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
     IntrinsicState& intrinsic = cameras_->intrinsics[n];
     intrinsic.ParametersFromValue();
     std::copy(intrinsic.parameters.begin(), intrinsic.parameters.end(),
-              IntrinsicBlock(static_cast<int>(n)));
+              IntrinsicBlock(n));
   }
   for (const int n : selection_.lines) {
     Eigen::Map<LineParameters>(LineBlock(n)) << state_->lines[n].point,
@@ -100,7 +102,7 @@ void ProblemBuilder::CopyIntoBlocks() {
   }
 }
 
-bool ProblemBuilder::IsRefined(int intrinsic) const {
+bool ProblemBuilder::IsRefined(std::size_t intrinsic) const {
   return RefinementOf(options_, cameras_->intrinsics[intrinsic]).Any();
 }
 
@@ -181,15 +183,8 @@ void ProblemBuilder::AddPairs() {
     ceres::LossFunction* loss =
         MakeLoss(noise, 1 / (degree * static_cast<double>(terms.size())));
     for (const PairTerm& term : terms) {
-      const double focal_px =
-          cameras_->IntrinsicOf(term.view).value.MeanFocalPx();
-      std::unique_ptr<ceres::CostFunction> cost;
-      if (options_.coplanar_residual == AdjustedCoplanarResidual::kTransfer) {
-        cost = std::make_unique<CoplanarTransferCost>(focal_px);
-      } else {
-        cost = std::make_unique<CoplanarImageDistanceCost>(focal_px);
-      }
-      AddResiduals(std::move(cost), loss,
+      AddResiduals(MakePairCost(*cameras_, term, options_.coplanar_residual),
+                   loss,
                    {CenterBlock(cameras_->views[term.view].pose),
                     LineBlock(term.on), LineBlock(term.to)});
     }
@@ -199,7 +194,7 @@ void ProblemBuilder::AddPairs() {
 void ProblemBuilder::AddPrincipalPoints() {
   for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
     const IntrinsicState& intrinsic = cameras_->intrinsics[n];
-    double* parameters = IntrinsicBlock(static_cast<int>(n));
+    double* parameters = IntrinsicBlock(n);
     const double stddev_px = PrincipalPointStddevPx(options_, intrinsic);
     if (stddev_px > 0 && problem_.HasParameterBlock(parameters)) {
       AddResiduals(std::make_unique<PrincipalPointCost>(intrinsic, stddev_px),
@@ -250,7 +245,7 @@ void ProblemBuilder::SetManifolds() {
   }
   for (std::size_t index = 0; index < cameras_->intrinsics.size(); ++index) {
     const IntrinsicState& intrinsic = cameras_->intrinsics[index];
-    double* parameters = IntrinsicBlock(static_cast<int>(index));
+    double* parameters = IntrinsicBlock(index);
     if (!problem_.HasParameterBlock(parameters)) continue;
     const Eigen::MatrixXd basis =
         FreeDirections(RefinementOf(options_, intrinsic), intrinsic);
@@ -271,11 +266,11 @@ void ProblemBuilder::SplitBlocks() {
     }
   };
   for (std::size_t n = 0; n < cameras_->poses.size(); ++n) {
-    keep(RotationBlock(static_cast<int>(n)));
-    keep(CenterBlock(static_cast<int>(n)));
+    keep(RotationBlock(n));
+    keep(CenterBlock(n));
   }
   for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
-    keep(IntrinsicBlock(static_cast<int>(n)));
+    keep(IntrinsicBlock(n));
   }
   // Two lines of a pair share residuals: only one of them may be eliminated.
   std::vector<std::vector<int>> partners(state_->lines.size());
@@ -301,15 +296,13 @@ void ProblemBuilder::SplitBlocks() {
 void ProblemBuilder::TakeResults() {
   for (std::size_t n = 0; n < cameras_->poses.size(); ++n) {
     PoseState& pose = cameras_->poses[n];
-    const int index = static_cast<int>(n);
-    pose.cam_from_world.coeffs() = Eigen::Map<Vec4>(RotationBlock(index));
-    pose.center = Eigen::Map<Vec3>(CenterBlock(index));
+    pose.cam_from_world.coeffs() = Eigen::Map<Vec4>(RotationBlock(n));
+    pose.center = Eigen::Map<Vec3>(CenterBlock(n));
   }
   for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
-    const int index = static_cast<int>(n);
-    if (!IsRefined(index)) continue;
+    if (!IsRefined(n)) continue;
     IntrinsicState& intrinsic = cameras_->intrinsics[n];
-    std::copy_n(IntrinsicBlock(index), kMaxIntrinsicParameters,
+    std::copy_n(IntrinsicBlock(n), kMaxIntrinsicParameters,
                 intrinsic.parameters.begin());
     intrinsic.ValueFromParameters();
   }

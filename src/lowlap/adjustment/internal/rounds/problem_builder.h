@@ -36,8 +36,9 @@ class ProblemBuilder {
   const std::vector<double*>& eliminated() const { return eliminated_; }
   /// The other blocks of the problem, without those that are constant.
   const std::vector<double*>& kept() const { return kept_; }
-  double* CenterBlock(int pose);
-  double* IntrinsicBlock(int intrinsic);
+  double* CenterBlock(std::size_t pose);
+  double* IntrinsicBlock(std::size_t intrinsic);
+  bool AllFinite() const;
   /// From the solver's blocks into cameras and state.
   void TakeResults();
 
@@ -49,10 +50,10 @@ class ProblemBuilder {
   void AddPrincipalPoints();
   void SetManifolds();
   void SplitBlocks();
-  bool IsRefined(int intrinsic) const;
-  double* RotationBlock(int pose);
-  double* PointBlock(int point);
-  double* LineBlock(int line);
+  bool IsRefined(std::size_t intrinsic) const;
+  double* RotationBlock(std::size_t pose);
+  double* PointBlock(std::size_t point);
+  double* LineBlock(std::size_t line);
   void CopyIntoBlocks();
   void AddResiduals(std::unique_ptr<ceres::CostFunction> cost,
                     ceres::LossFunction* loss,

@@ -3,7 +3,6 @@
 #include <ceres/solver.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "lowlap/adjustment/internal/rounds/linearised_problem.h"
 #include "lowlap/adjustment/internal/rounds/problem_builder.h"
@@ -61,30 +60,6 @@ ceres::Solver::Options SolverOptions(const AdjustmentOptions& options,
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;
   return solver;
-}
-
-bool AllFinite(const CameraSet& cameras, const StructureState& state,
-               const ProblemSelection& selection) {
-  for (const PoseState& pose : cameras.poses) {
-    if (!pose.center.allFinite() || !pose.cam_from_world.coeffs().allFinite()) {
-      return false;
-    }
-  }
-  for (const IntrinsicState& intrinsic : cameras.intrinsics) {
-    for (const double value : intrinsic.parameters) {
-      if (!std::isfinite(value)) return false;
-    }
-  }
-  for (const int n : selection.points) {
-    if (!state.points[n].position.allFinite()) return false;
-  }
-  for (const int n : selection.lines) {
-    if (!state.lines[n].point.allFinite() ||
-        !state.lines[n].direction.allFinite()) {
-      return false;
-    }
-  }
-  return true;
 }
 
 // From the tangent space of the block to its three numbers.
@@ -170,7 +145,7 @@ Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
                      "adjustment: " + request.stage);
   }
   builder.TakeResults();
-  if (!summary.IsSolutionUsable() || !AllFinite(*cameras, *state, selection)) {
+  if (!summary.IsSolutionUsable() || !builder.AllFinite()) {
     return MakeError(ErrorCode::kNumerical,
                      "the adjustment failed: " + summary.message, {},
                      request.stage);

@@ -8,7 +8,7 @@
 
 namespace lowlap {
 
-/// What became of a track.
+/// What became of a track, as TriangulationSummary counts it.
 enum class LandmarkStatus {
   kLandmark,
   kTooFewViews,

@@ -37,12 +37,8 @@ PairPlanes PlanesOfPair(const SceneFeatures& features, ViewId middle,
   const RelativePose* edge = scene.FindRelativePose(middle, neighbor);
   const auto in_middle = features.normalized.find(middle);
   const auto in_neighbor = features.normalized.find(neighbor);
-  const auto raw_middle = scene.features.find(middle);
-  const auto raw_neighbor = scene.features.find(neighbor);
   if (edge == nullptr || in_middle == features.normalized.end() ||
-      in_neighbor == features.normalized.end() ||
-      raw_middle == scene.features.end() ||
-      raw_neighbor == scene.features.end()) {
+      in_neighbor == features.normalized.end()) {
     return {};
   }
   const bool middle_is_first = edge->views.first == middle;
@@ -62,10 +58,9 @@ PairPlanes PlanesOfPair(const SceneFeatures& features, ViewId middle,
     if (x.z() > 0 && y.z() > 0) points.push_back({a, x, y});
   }
   std::vector<MatchedLine> lines;
-  const auto observe = [](const NormalizedFeatures& normalized,
-                          const ViewFeatures& raw, FeatureIndex segment) {
-    return ObservedSegment{normalized.segments[segment],
-                           raw.segments[segment].stddev_px};
+  const auto observe = [&](ViewId view, FeatureIndex segment) {
+    return ObservedSegment{features.normalized.at(view).segments[segment],
+                           scene.features.at(view).segments[segment].stddev_px};
   };
   for (const FeatureMatch& match : edge->line_inliers) {
     const auto [a, b] = indices(match);
@@ -73,8 +68,7 @@ PairPlanes PlanesOfPair(const SceneFeatures& features, ViewId middle,
         b >= in_neighbor->second.segments.size()) {
       continue;
     }
-    lines.push_back({a, observe(in_middle->second, raw_middle->second, a),
-                     observe(in_neighbor->second, raw_neighbor->second, b)});
+    lines.push_back({a, observe(middle, a), observe(neighbor, b)});
   }
   return FindPlanes(DepthSamples(UnitTransform(*edge, middle, neighbor),
                                  in_middle->second.focal_px,
