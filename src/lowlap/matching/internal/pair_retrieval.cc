@@ -7,13 +7,15 @@
 
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/requirement.h"
+#include "lowlap/core/internal/union_find.h"
 #include "lowlap/matching/internal/points/point_matching.h"
 
 namespace lowlap {
 namespace {
 
 struct Votes {
-  ViewPair pair;
+  std::size_t first;  // indices of views
+  std::size_t second;
   std::size_t count = 0;
 };
 
@@ -32,25 +34,6 @@ std::vector<PointDescriptor> LargestPoints(const DetectedFeatures& view,
     sample.push_back(view.point_descriptors[i]);
   }
   return sample;
-}
-
-// The pairs of `votes`, which are sorted by falling count, that join two parts
-// which no earlier pair joins (Kruskal).
-void AddSpanningForest(const std::vector<Votes>& votes,
-                       std::set<ViewPair>* pairs) {
-  std::map<ViewId, ViewId> parent;
-  const auto root = [&](ViewId id) {
-    parent.emplace(id, id);
-    while (parent[id] != id) id = parent[id] = parent[parent[id]];
-    return id;
-  };
-  for (const Votes& v : votes) {
-    const ViewId a = root(v.pair.first);
-    const ViewId b = root(v.pair.second);
-    if (a == b) continue;
-    parent[b] = a;
-    pairs->insert(v.pair);
-  }
 }
 
 }  // namespace
@@ -76,24 +59,23 @@ Result<std::vector<ViewPair>> RetrievePairs(
   for (std::size_t i = 0; i < ids.size(); ++i) {
     for (std::size_t j = i + 1; j < ids.size(); ++j) {
       everything.push_back({ids[i], ids[j]});
-      votes.push_back({everything.back()});
+      votes.push_back({i, j});
     }
   }
   const auto max_partners = static_cast<std::size_t>(options.max_partners);
   if (ids.size() <= max_partners + 1) return everything;
 
-  std::map<ViewId, std::vector<PointDescriptor>> samples;
+  std::vector<std::vector<PointDescriptor>> samples;
   for (const auto& [id, view] : features) {
-    samples[id] =
-        LargestPoints(view, static_cast<std::size_t>(options.sample_points));
+    samples.push_back(
+        LargestPoints(view, static_cast<std::size_t>(options.sample_points)));
   }
-  PointMatchOptions match;
-  match.max_ratio = options.max_ratio;
   const Status done =
       ParallelFor(context, "pairs", votes.size(), [&](std::size_t i) {
-        votes[i].count = MatchPoints(samples.at(votes[i].pair.first),
-                                     samples.at(votes[i].pair.second), match)
-                             .size();
+        votes[i].count =
+            MatchPoints(samples[votes[i].first], samples[votes[i].second],
+                        {options.max_ratio})
+                .size();
       });
   if (!done) return tl::unexpected<Error>(done.error());
 
@@ -104,13 +86,16 @@ Result<std::vector<ViewPair>> RetrievePairs(
       votes.begin(), votes.end(),
       [](const Votes& a, const Votes& b) { return a.count > b.count; });
   std::set<ViewPair> pairs;
-  std::map<ViewId, std::size_t> proposed;
+  std::vector<std::size_t> proposed(ids.size(), 0);
+  UnionFind joined(ids.size());
   for (const Votes& v : votes) {
-    for (const ViewId id : {v.pair.first, v.pair.second}) {
-      if (proposed[id]++ < max_partners) pairs.insert(v.pair);
+    const ViewPair pair{ids[v.first], ids[v.second]};
+    for (const std::size_t view : {v.first, v.second}) {
+      if (proposed[view]++ < max_partners) pairs.insert(pair);
     }
+    // Kruskal: what no earlier pair joins.
+    if (joined.Union(v.first, v.second)) pairs.insert(pair);
   }
-  AddSpanningForest(votes, &pairs);
   return std::vector<ViewPair>(pairs.begin(), pairs.end());
 }
 

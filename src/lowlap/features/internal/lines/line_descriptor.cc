@@ -1,5 +1,6 @@
 #include "lowlap/features/internal/lines/line_descriptor.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -74,10 +75,6 @@ std::vector<LineDescriptor> Describe(const cv::Mat& image,
   return descriptors;
 }
 
-bool IsFinite(const LineSegment& segment) {
-  return segment.start_px.allFinite() && segment.end_px.allFinite();
-}
-
 }  // namespace
 
 Result<std::vector<LineDescriptor>> DescribeLines(
@@ -90,16 +87,10 @@ Result<std::vector<LineDescriptor>> DescribeLines(
                      "line descriptors of an image of more than " +
                          std::to_string(kMaxCoordinate) + " pixels a side");
   }
-  const Vec2 low = Vec2::Constant(-1);
-  const Vec2 high(image.width, image.height);
+  const Eigen::AlignedBox2d box(Vec2(-1, -1), Vec2(image.width, image.height));
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    const LineSegment& s = segments[i];
-    const bool inside = IsFinite(s) &&
-                        (s.start_px.array() >= low.array()).all() &&
-                        (s.end_px.array() >= low.array()).all() &&
-                        (s.start_px.array() <= high.array()).all() &&
-                        (s.end_px.array() <= high.array()).all();
-    if (!inside) {
+    if (!box.contains(segments[i].start_px) ||
+        !box.contains(segments[i].end_px)) {
       return MakeError(
           ErrorCode::kInvalidArgument,
           "segment " + std::to_string(i) + " does not lie in the image");

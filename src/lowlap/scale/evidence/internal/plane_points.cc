@@ -161,31 +161,6 @@ void AddPlanePoints(const TripletGeometry& geometry, const PairPlanes& planes,
   }
 }
 
-// Unites the planes of both pairs that lie on each other.
-class Surfaces {
- public:
-  Surfaces(const PairPlanes& planes_ij, const PairPlanes& planes_jk)
-      : num_first_(static_cast<int>(planes_ij.planes.size())),
-        sets_(planes_ij.planes.size() + planes_jk.planes.size()) {}
-
-  void Unite(const PlanePoint& point) {
-    if (point.other_plane == PairPlanes::kNoPlane) return;
-    sets_.Union(Node(point.plane_is_first, point.plane),
-                Node(!point.plane_is_first, point.other_plane));
-  }
-  std::size_t Of(const PlanePoint& point) {
-    return sets_.Find(Node(point.plane_is_first, point.plane));
-  }
-
- private:
-  std::size_t Node(bool is_first, int plane) const {
-    return static_cast<std::size_t>(is_first ? plane : num_first_ + plane);
-  }
-
-  int num_first_;
-  UnionFind sets_;
-};
-
 class PlanePoints : public ResidualEvidence<PointResiduals> {
  public:
   PlanePoints(const TripletView& triplet,
@@ -226,11 +201,23 @@ std::vector<PlanePoint> FindPlanePoints(const TripletGeometry& geometry,
   std::vector<PlanePoint> all;
   AddPlanePoints(geometry, planes_ij, planes_jk, true, &all);
   AddPlanePoints(geometry, planes_jk, planes_ij, false, &all);
-  Surfaces surfaces(planes_ij, planes_jk);
-  for (const PlanePoint& point : all) surfaces.Unite(point);
+  // Planes of both pairs that lie on each other are one surface.
+  const std::size_t num_first = planes_ij.planes.size();
+  UnionFind surfaces(num_first + planes_jk.planes.size());
+  const auto node = [&](bool is_first, int plane) {
+    return (is_first ? 0 : num_first) + static_cast<std::size_t>(plane);
+  };
+  for (const PlanePoint& point : all) {
+    if (point.other_plane == PairPlanes::kNoPlane) continue;
+    surfaces.Union(node(point.plane_is_first, point.plane),
+                   node(!point.plane_is_first, point.other_plane));
+  }
+  const auto surface_of = [&](const PlanePoint& point) {
+    return surfaces.Find(node(point.plane_is_first, point.plane));
+  };
   std::map<std::size_t, std::size_t> surest;  // by surface
   for (std::size_t n = 0; n < all.size(); ++n) {
-    const auto [it, is_new] = surest.emplace(surfaces.Of(all[n]), n);
+    const auto [it, is_new] = surest.emplace(surface_of(all[n]), n);
     if (!is_new && all[n].ratio.log_ratio_stddev <
                        all[it->second].ratio.log_ratio_stddev) {
       it->second = n;
@@ -238,7 +225,7 @@ std::vector<PlanePoint> FindPlanePoints(const TripletGeometry& geometry,
   }
   std::vector<PlanePoint> points;
   for (std::size_t n = 0; n < all.size(); ++n) {
-    if (surest[surfaces.Of(all[n])] == n) points.push_back(all[n]);
+    if (surest[surface_of(all[n])] == n) points.push_back(all[n]);
   }
   return points;
 }
