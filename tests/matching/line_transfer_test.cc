@@ -1,7 +1,9 @@
+#include "lowlap/matching/internal/lines/line_transfer.h"
+
 #include <gmock/gmock.h>
+#include <gtest/gtest.h>
 
 #include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/matching/internal/lines/line_transfer.h"
 #include "support/matchers.h"
 
 namespace lowlap {
