@@ -15,7 +15,7 @@ namespace {
 // How far the crossing of a tier may be, in units of the image diagonal.
 constexpr std::array<double, 2> kTierOfDiagonal = {0.01, 0.035};
 // Nearest lines that each line is paired with.
-constexpr int kNumNeighbors = 10;
+constexpr int kNearestLines = 10;
 constexpr int kNumTiers = static_cast<int>(kTierOfDiagonal.size());
 
 // kNumTiers: too far to be used.
@@ -33,7 +33,7 @@ class CoplanarLines : public ResidualEvidence<TransferResiduals> {
   explicit CoplanarLines(const TripletView& triplet)
       : image_area_px2_(triplet.image_area_px2) {
     const CoplanarPairCandidates found = FindCoplanarCandidates(
-        triplet.geometry, triplet.lines_ij, triplet.lines_jk, kNumNeighbors);
+        triplet.geometry, triplet.lines_ij, triplet.lines_jk, kNearestLines);
     RejectNegative(found.num_rejected_negative);
     StartPairs(kNumTiers);
     for (int tier = 0; tier < kNumTiers; ++tier) {
@@ -58,7 +58,7 @@ class CoplanarLines : public ResidualEvidence<TransferResiduals> {
     }
     const auto& num_units = units().tiers.back().num_units;
     return PaperCoplanarTerm(factorials, num_units[0] + num_units[1], both,
-                             image_area_px2_, kNumNeighbors);
+                             image_area_px2_, kNearestLines);
   }
   int MinAgreeing() const override { return 3; }
   void RecordInliers(const TripletView& triplet,
