@@ -1,13 +1,15 @@
 #include "lowlap/matching/internal/points/nearest_two.h"
 
-#include <immintrin.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <flann/flann.hpp>
 #include <mutex>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
 
 namespace lowlap {
 namespace {
