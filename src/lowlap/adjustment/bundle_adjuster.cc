@@ -160,20 +160,13 @@ class Adjuster {
       at_rest = changed <= options_.outlier_round_tolerance;
       if (at_rest) break;
       summary_.outlier_rounds = round;
-      if (Status status = Solve("round " + std::to_string(round), false, rough);
-          !status) {
-        return status;
-      }
+      LOWLAP_RETURN_IF_ERROR(
+          Solve("round " + std::to_string(round), false, rough));
     }
-    if (Status status = Solve(kFinalStage, false, options_.function_tolerance);
-        !status) {
-      return status;
-    }
-    if (Status status =
-            FollowPoses(options_, noise_.lines, context_, cameras_, &state_);
-        !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(
+        Solve(kFinalStage, false, options_.function_tolerance));
+    LOWLAP_RETURN_IF_ERROR(
+        FollowPoses(options_, noise_.lines, context_, cameras_, &state_));
     summary_.converged = at_rest && summary_.solves.back().converged;
     for (LineTrackState& line : state_.lines) {
       if (line.IsLandmark()) UpdateLineExtent(cameras_, &line);
@@ -268,11 +261,8 @@ class Adjuster {
   Result<double> Update(bool take_new_pairs) {
     // Segments are undistorted with the intrinsics of the last solve.
     if (options_.MovesIntrinsics()) RefreshRays(scene_, cameras_, &state_);
-    if (Status status =
-            FollowPoses(options_, noise_.lines, context_, cameras_, &state_);
-        !status) {
-      return tl::unexpected<Error>(status.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(
+        FollowPoses(options_, noise_.lines, context_, cameras_, &state_));
     EstimateNoise();
     const Result<ObservationChanges> changes = UpdateObservations(
         options_, noise_, take_new_pairs, context_, cameras_, &state_);

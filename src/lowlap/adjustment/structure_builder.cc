@@ -72,20 +72,14 @@ Status BuildLandmarks(const CameraSet& cameras, const StructureOptions& options,
   } else {
     // From all observations of every track, whatever its errors, one sees how
     // far the poses let true observations stray.
-    if (Status status = TriangulateAll(cameras, limits, context, &tracks);
-        !status) {
-      return status;
-    }
+    LOWLAP_RETURN_IF_ERROR(TriangulateAll(cameras, limits, context, &tracks));
     NoiseBounds bounds;
     bounds.fallback = {noise_px, 3 * noise_px};
     limits.threshold_px = std::max(
         EstimateNoise(cameras, tracks, bounds).threshold_px, verification_px);
   }
   summary->threshold_px = limits.threshold_px;
-  if (Status status = TriangulateAll(cameras, limits, context, &tracks);
-      !status) {
-    return status;
-  }
+  LOWLAP_RETURN_IF_ERROR(TriangulateAll(cameras, limits, context, &tracks));
   Summarise(tracks, cameras, summary);
   for (const Track& track : tracks) {
     if (track.IsLandmark()) {
@@ -180,24 +174,17 @@ Result<StructureSummary> BuildStructure(Scene* scene,
     return MakeError(ErrorCode::kCancelled, "stopped on request");
   }
   if (options.use_points) {
-    if (Status status = BuildLandmarks(
-            cameras, options, options.max_point_error_px, verification_px,
-            context, LoadPoints(*scene, cameras), &structure, &summary.points);
-        !status) {
-      return tl::unexpected<Error>(status.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(BuildLandmarks(
+        cameras, options, options.max_point_error_px, verification_px, context,
+        LoadPoints(*scene, cameras), &structure, &summary.points));
   }
   if (!context.Progress("structure", 1, 2)) {
     return MakeError(ErrorCode::kCancelled, "stopped on request");
   }
   if (options.use_lines) {
-    if (Status status = BuildLandmarks(
-            cameras, options, options.max_line_error_px, verification_px,
-            context, LoadLines(*scene, cameras, false), &line_structure,
-            &summary.lines);
-        !status) {
-      return tl::unexpected<Error>(status.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(BuildLandmarks(
+        cameras, options, options.max_line_error_px, verification_px, context,
+        LoadLines(*scene, cameras, false), &line_structure, &summary.lines));
     if (options.use_coplanar) {
       coplanar_pairs = CollectCoplanarPairs(
           scene->scale_ratios, line_structure,

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/evidence/evidence_registry.h"

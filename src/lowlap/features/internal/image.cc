@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/features/internal/opencv.h"
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/core/internal/union_find.h"
 #include "lowlap/matching/internal/points/point_matching.h"

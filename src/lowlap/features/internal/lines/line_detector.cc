@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/features/internal/lines/segment_merging.h"
 #include "lowlap/features/internal/opencv.h"

@@ -7,6 +7,7 @@
 #include <opencv2/features2d.hpp>
 #include <tuple>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/features/internal/opencv.h"
 
