@@ -174,6 +174,21 @@ TEST_F(AtomicFileTest, AFailingDeviceLeavesTheRestOfTheSetUnwritten) {
   EXPECT_FALSE(fs::exists(path_));
 }
 
+TEST_F(AtomicFileTest, ARenameThatFailsTakesTheOthersBack) {
+  ASSERT_THAT(WriteFileAtomically(path_, "old"), IsOk());
+  {
+    FileSet files;
+    ASSERT_THAT(files.Add(path_, "new"), IsOk());
+    ASSERT_THAT(files.Add(Path("other"), "new"), IsOk());
+    ASSERT_THAT(files.Add(Path("folder"), "new"), IsOk());
+    fs::create_directory(Path("folder"));  // no file can take its place
+    EXPECT_THAT(files.Commit(), IsError(ErrorCode::kIo, Path("folder")));
+  }
+  EXPECT_EQ(*ReadWholeFile(path_), "old");
+  EXPECT_FALSE(fs::exists(Path("other")));
+  EXPECT_EQ(CountFiles(), 2u);  // file and folder
+}
+
 // Forks a writer that has prepared `path` and is then killed, or lives until
 // the pipe `stay` is closed.
 pid_t ForkWriter(const std::string& path, const int (&ready)[2],

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cerrno>
 #include <filesystem>
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -97,6 +98,13 @@ void RemoveStale(const std::string& target, int n) {
   }
 }
 
+/// A name that no other writer uses.
+std::string UniqueName(const std::string& start) {
+  static std::atomic<unsigned> call{0};
+  return start + std::to_string(static_cast<long>(::getpid())) + "-" +
+         std::to_string(call.fetch_add(1));
+}
+
 /// Opens an empty temporary file beside `target`; -1 and errno on failure.
 int OpenTemporary(const std::string& target, std::string* name) {
   constexpr int kMaxWriters = 10000;
@@ -120,15 +128,50 @@ int OpenTemporary(const std::string& target, std::string* name) {
     const bool is_taken = errno == EWOULDBLOCK;
     ::close(file);
     if (!is_taken) {  // a file system without locks
-      static std::atomic<unsigned> call{0};
-      *name = target + ".tmp" + std::to_string(static_cast<long>(::getpid())) +
-              "-" + std::to_string(call.fetch_add(1));
+      *name = UniqueName(target + ".tmp");
       return Open(*name, O_WRONLY | O_CREAT | O_EXCL);
     }
   }
   errno = EBUSY;
   return -1;
 }
+
+/// What files replace, by a second name until all of them are in place.
+class ReplacedFiles {
+ public:
+  ~ReplacedFiles() {
+    for (const Replaced& file : files_) {
+      if (file.second_name) ::unlink(file.second_name->c_str());
+    }
+  }
+
+  void Keep(const std::string& target) {
+    Replaced file{target, UniqueName(target + ".old"), false};
+    if (::link(target.c_str(), file.second_name->c_str()) != 0) {
+      file.was_missing = errno == ENOENT;
+      file.second_name.reset();
+    }
+    files_.push_back(std::move(file));
+  }
+
+  /// A file that could not be kept, for lack of links, stays replaced.
+  void PutBack() {
+    for (const Replaced& file : files_) {
+      if (file.was_missing) ::unlink(file.target.c_str());
+      if (file.second_name) {
+        ::rename(file.second_name->c_str(), file.target.c_str());
+      }
+    }
+  }
+
+ private:
+  struct Replaced {
+    std::string target;
+    std::optional<std::string> second_name;
+    bool was_missing = false;
+  };
+  std::vector<Replaced> files_;
+};
 
 }  // namespace
 
@@ -178,10 +221,14 @@ Status FileSet::Commit() {
       return SystemError("cannot be written", output.path, reason);
     }
   }
+  ReplacedFiles replaced;
   for (Output& output : outputs_) {
     if (output.temporary.empty()) continue;
+    if (outputs_.size() > 1) replaced.Keep(output.target);
     if (::rename(output.temporary.c_str(), output.target.c_str()) != 0) {
-      return SystemError("cannot be replaced", output.path);
+      const int reason = errno;
+      replaced.PutBack();
+      return SystemError("cannot be replaced", output.path, reason);
     }
     ::close(std::exchange(output.file, -1));
   }

@@ -9,7 +9,9 @@
 namespace lowlap {
 
 /// Files that are written together: each appears whole or not at all, and none
-/// of them before all are prepared.
+/// of them before all are prepared. If one cannot take its name all the same,
+/// those that have are taken back, and what they replaced is back in its place
+/// (where the file system has hard links).
 ///
 /// A file is prepared under a temporary name in its folder (NAME.tmp0), which
 /// is locked while the writer lives, and then renamed. What a killed writer
