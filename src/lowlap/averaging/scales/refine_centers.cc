@@ -86,8 +86,11 @@ Status RefineCenters(const TranslationProblem& problem,
     direction_blocks.push_back(
         {centers[edge.first].data(), centers[edge.second].data()});
     Vec3 error = Vec3::Zero();
-    directions.back()(direction_blocks.back()[0], direction_blocks.back()[1],
-                      error.data());
+    // Joined views that coincide have no direction, and leave no way to go.
+    if (!directions.back()(direction_blocks.back()[0],
+                           direction_blocks.back()[1], error.data())) {
+      return {};
+    }
     direction_sizes.push_back(error.norm());
   }
   std::vector<RatioError> ratios;
@@ -99,15 +102,18 @@ Status RefineCenters(const TranslationProblem& problem,
         reference.first == target.first || reference.first == target.second;
     const std::size_t shared =
         shares_first ? reference.first : reference.second;
+    if (target.first != shared && target.second != shared) continue;
     const std::size_t from = reference.first + reference.second - shared;
     const std::size_t to = target.first + target.second - shared;
-    if (!placed[shared] || !placed[from] || !placed[to]) continue;
+    if (from == to || !placed[shared] || !placed[from] || !placed[to]) continue;
     ratios.push_back({ratio.log_ratio, ratio.stddev});
     ratio_blocks.push_back(
         {centers[shared].data(), centers[from].data(), centers[to].data()});
     double error = 0;
-    ratios.back()(ratio_blocks.back()[0], ratio_blocks.back()[1],
-                  ratio_blocks.back()[2], &error);
+    if (!ratios.back()(ratio_blocks.back()[0], ratio_blocks.back()[1],
+                       ratio_blocks.back()[2], &error)) {
+      return {};
+    }
     ratio_sizes.push_back(std::abs(error));
   }
   if (directions.empty()) return {};

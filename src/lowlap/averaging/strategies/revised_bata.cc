@@ -58,6 +58,7 @@ Result<std::vector<Vec3>> SolveRevisedBata(const DirectionPart& part,
             new AngleError{edge.direction_in_world}),
         &loss, (*centers)[edge.first].data(), (*centers)[edge.second].data());
   }
+  problem.AddParameterBlock(centers->front().data(), 3);
   problem.SetParameterBlockConstant(centers->front().data());
   const auto iterations =
       Minimise(context, options.max_iterations, 1e-10, &problem);
