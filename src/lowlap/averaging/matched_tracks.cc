@@ -37,17 +37,27 @@ FeatureMatches CollectMatches(const Scene& scene,
   return matches;
 }
 
-// Adds `ref`, whose view is not before the last one; false if the track has
-// another point of that view.
-bool Extend(const Scene& scene, const FeatureRef& ref, Track* track) {
-  if (track->empty() || track->back().view != ref.view) {
-    track->push_back(ref);
-    return true;
+// A set of features under construction, one view after the other.
+struct JoinedSet {
+  Track track;            // the first feature of every view
+  Track of_current_view;  // all features of the last one
+  bool is_contradictory = false;
+
+  // `ref`, whose view is not before the current one.
+  void Add(const Scene& scene, const FeatureRef& ref) {
+    if (is_contradictory) return;
+    if (track.empty() || track.back().view != ref.view) {
+      track.push_back(ref);
+      of_current_view.clear();
+    }
+    const auto& points_px = scene.features.at(ref.view).points_px;
+    for (const FeatureRef& other : of_current_view) {
+      const Vec2 offset = points_px[other.feature] - points_px[ref.feature];
+      if (!(offset.norm() <= kSamePointPx)) is_contradictory = true;
+    }
+    of_current_view.push_back(ref);
   }
-  const auto& points_px = scene.features.at(ref.view).points_px;
-  return (points_px[track->back().feature] - points_px[ref.feature]).norm() <=
-         kSamePointPx;
-}
+};
 
 }  // namespace
 
@@ -75,18 +85,15 @@ std::map<PointTrackId, Track> MatchedTracks(
   UnionFind sets(features.size());
   for (const auto& [a, b] : matches) sets.Union(index(a), index(b));
   const std::vector<std::size_t> labels = sets.Labels();
-  std::map<std::size_t, Track> joined;
-  std::set<std::size_t> contradictory;
+  std::map<std::size_t, JoinedSet> joined;
   for (std::size_t n = 0; n < features.size(); ++n) {
-    if (!Extend(scene, features[n], &joined[labels[n]])) {
-      contradictory.insert(labels[n]);
-    }
+    joined[labels[n]].Add(scene, features[n]);
   }
   std::map<PointTrackId, Track> tracks;
   PointTrackId id = 0;
-  for (auto& [label, track] : joined) {
-    if (contradictory.count(label) > 0 || track.size() < 2) continue;
-    tracks.emplace_hint(tracks.end(), id, std::move(track));
+  for (auto& [label, set] : joined) {
+    if (set.is_contradictory || set.track.size() < 2) continue;
+    tracks.emplace_hint(tracks.end(), id, std::move(set.track));
     ++id;
   }
   return tracks;

@@ -49,7 +49,7 @@ class Writer {
                "rejected were: " +
                Triplets(doubt.ratios);
       case WarningReason::kLostFeatures:
-        return "only " + std::to_string(static_cast<int>(100 * doubt.share)) +
+        return "only " + Format("%.0f", 100 * doubt.share) +
                " % of what was matched in it fits its place";
     }
     return "";

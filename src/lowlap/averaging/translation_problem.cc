@@ -13,6 +13,8 @@ constexpr double kDefaultDirectionRad = 0.02;
 constexpr double kRatioFloor = 1e-3;
 constexpr double kWeakRatioFloor = 0.2;
 
+bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
+
 double DirectionStddev(const RelativePose& pose) {
   if (!pose.covariance) return kDefaultDirectionRad;
   const double variance =
@@ -90,13 +92,16 @@ Status ValidateProblem(const TranslationProblem& problem) {
   if (problem.cam_from_world.size() != problem.views.size()) {
     return invalid("one rotation per view is needed");
   }
+  for (const Mat3& rotation : problem.cam_from_world) {
+    if (!rotation.allFinite()) return invalid("a rotation is not finite");
+  }
   for (const DirectionEdge& edge : problem.edges) {
     if (edge.first >= problem.views.size() ||
         edge.second >= problem.views.size() || edge.first == edge.second) {
       return invalid("an edge does not join two views");
     }
     if (!(std::abs(edge.direction_in_world.norm() - 1) < 1e-6) ||
-        !(edge.stddev_rad > 0)) {
+        !IsPositive(edge.stddev_rad)) {
       return invalid("an edge needs a unit direction and a deviation");
     }
   }
@@ -106,8 +111,9 @@ Status ValidateProblem(const TranslationProblem& problem) {
         ratio.reference == ratio.target) {
       return invalid("a ratio does not join two edges");
     }
-    if (!std::isfinite(ratio.log_ratio) || !(ratio.stddev > 0)) {
-      return invalid("a ratio needs a finite value and a deviation");
+    if (!std::isfinite(ratio.log_ratio) || !IsPositive(ratio.stddev) ||
+        !std::isfinite(ratio.log10_nfa)) {
+      return invalid("a ratio needs a finite value, deviation and NFA");
     }
   }
   for (const TrackRays& track : problem.tracks) {

@@ -31,8 +31,8 @@ class SparseSolver {
   SparseSolver& operator=(const SparseSolver&) = delete;
 
   /// `lower` holds the lower triangle of A; what is above it is ignored.
-  /// kNumerical if A is not positive definite or the result is not finite;
-  /// kCancelled.
+  /// kNumerical if A is singular or the result is not finite (that A is
+  /// positive definite is taken for granted); kCancelled.
   Result<Eigen::MatrixXd> Solve(const Eigen::SparseMatrix<double>& lower,
                                 const Eigen::MatrixXd& rhs);
 
