@@ -23,6 +23,11 @@ TEST(AveragerRegistry, TheDefaultComesFirst) {
   }
 }
 
+TEST(AveragerRegistry, SaysWhereThereIsNoOption) {
+  EXPECT_THAT(AveragerRegistry::WithBuiltIns().Describe(),
+              HasSubstr("best ratios\n      (no options)\n  linf: "));
+}
+
 TEST(AveragerRegistry, EveryDefaultCanBeReadBack) {
   const AveragerRegistry registry = AveragerRegistry::WithBuiltIns();
   for (const AveragerRegistry::Strategy& strategy : registry.strategies()) {

@@ -79,6 +79,7 @@ Result<Averager> Named(const std::string& name, Result<Averager> made) {
 void DescribeEntry(const AveragerRegistry::Entry& entry, const char* suffix,
                    std::string* text) {
   *text += "  " + entry.name + suffix + ": " + entry.description + "\n";
+  if (entry.options.empty()) *text += "      (no options)\n";
   for (const StrategyOption& option : entry.options) {
     *text += "      " + option.key + "=" + option.default_value + ": " +
              option.description + "\n";
@@ -91,6 +92,7 @@ AveragerRegistry AveragerRegistry::WithBuiltIns() {
   AveragerRegistry r;
   r.Register("graph", "average over all ratios and directions of any graph",
              GraphScalesOptions(), Maker<GraphScalesAverager>());
+  // Trees of the best ratios and directions: nothing in it could be chosen.
   Strategy chain;
   chain.name = "chain";
   chain.description = "the paper's composition along the best ratios";

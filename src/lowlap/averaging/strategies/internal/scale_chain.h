@@ -7,7 +7,8 @@ namespace lowlap {
 /// The paper's composition: edge lengths multiplied up along the spanning
 /// forest of the most meaningful ratios, centres laid end to end along a
 /// spanning tree of those edges; nothing is averaged (Salaün, Marlet, Monasse
-/// 2017, section 5).
+/// 2017, section 5). It has no options: two spanning forests, no threshold, no
+/// loss, no iteration.
 class ScaleChainAverager : public TranslationAverager {
  public:
   std::string Name() const override { return "chain"; }
