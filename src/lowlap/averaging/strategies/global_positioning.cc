@@ -151,7 +151,10 @@ Result<std::vector<Part>> SolveGroup(Part group,
                                      int* num_iterations) {
   const PositioningOptions solver = {options.huber_reach,
                                      options.max_iterations};
+  // Starting a solution takes a while as well.
+  const auto ask = [&] { return AskToGoOn(context, 0, solver.max_iterations); };
   const auto solve = [&](Part* part) -> Status {
+    LOWLAP_RETURN_IF_ERROR(ask());
     LOWLAP_ASSIGN_OR_RETURN(
         const auto iterations,
         SolvePositions(part->tracks, solver, context, &part->state));
@@ -164,7 +167,13 @@ Result<std::vector<Part>> SolveGroup(Part group,
     parts.push_back(std::move(group));
     return parts;
   }
+  if (const Status go_on = ask(); !go_on) {
+    return tl::unexpected<Error>(go_on.error());
+  }
   const Part cleaned = WithoutWrongRays(group, options);
+  if (const Status go_on = ask(); !go_on) {
+    return tl::unexpected<Error>(go_on.error());
+  }
   for (const std::vector<std::size_t>& views : GroupViewsByTracks(
            cleaned.views.size(), cleaned.tracks, options.min_views_per_track,
            options.min_shared_points)) {
@@ -220,6 +229,7 @@ Result<TranslationSolution> GlobalPositioningAverager::Solve(
                     [&](std::size_t view) { return is_covered[view]; })) {
       continue;
     }
+    LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, 0, options_.max_iterations));
     LOWLAP_ASSIGN_OR_RETURN(
         auto solved,
         SolveGroup(StartPart(problem, options_, std::move(views), context.seed),

@@ -1,7 +1,10 @@
 #include "lowlap/averaging/strategies/internal/linear_program.h"
 
+#include <algorithm>
+#include <chrono>
 #include <coin/ClpEventHandler.hpp>
 #include <coin/ClpSimplex.hpp>
+#include <coin/ClpSolve.hpp>
 #include <exception>
 
 #include "lowlap/averaging/internal/cancellation.h"
@@ -9,20 +12,28 @@
 namespace lowlap {
 namespace {
 
-/// Lets the host stop the simplex method, every few of its steps.
+// Beyond so many rows Clp would of its own begin with a crash that cannot be
+// stopped and takes seconds.
+constexpr std::size_t kMaxRowsOfClpsChoice = 40'000;
+
+/// Lets the host stop the simplex method: every few of its steps, and where
+/// these or what is between them take their time.
 class StepAsker : public ClpEventHandler {
  public:
   StepAsker(const RunContext& context, int max_steps, Status* answer)
       : context_(context), max_steps_(max_steps), answer_(answer) {}
   int event(Event which) override {
     constexpr int kStop = 5;  // Clp's status of a run that its user stops
-    if (which != endOfIteration || model_->numberIterations() % 16 != 0) {
-      return -1;
+    constexpr std::chrono::milliseconds kMostBetweenQuestions(50);
+    const int steps = model_->numberIterations();
+    const bool is_due = which == endOfIteration && steps % 16 == 0;
+    const auto now = std::chrono::steady_clock::now();
+    if (*answer_ && (is_due || now > last_ + kMostBetweenQuestions)) {
+      *answer_ = AskToGoOn(context_, std::min(steps, max_steps_), max_steps_);
+      last_ = std::chrono::steady_clock::now();
     }
-    if (*answer_) {
-      *answer_ = AskToGoOn(context_, model_->numberIterations(), max_steps_);
-    }
-    return *answer_ ? -1 : kStop;
+    // Clp stops between two steps, whatever it is told elsewhere.
+    return *answer_ || which != endOfIteration ? -1 : kStop;
   }
   ClpEventHandler* clone() const override { return new StepAsker(*this); }
 
@@ -30,6 +41,8 @@ class StepAsker : public ClpEventHandler {
   const RunContext& context_;
   int max_steps_;
   Status* answer_;  // shared by the copies that Clp makes
+  std::chrono::steady_clock::time_point last_ =
+      std::chrono::steady_clock::now();
 };
 
 }  // namespace
@@ -76,7 +89,11 @@ Result<LinearProgram::Optimum> LinearProgram::Minimize(
                       factors.data(), lower_.data(), upper_.data(),
                       cost_.data(), row_lower_.data(), row_upper_.data());
     model.setMaximumIterations(max_iterations);
-    model.initialSolve();
+    ClpSolve method;
+    if (num_rows() > kMaxRowsOfClpsChoice) {
+      method.setSolveType(ClpSolve::useDual);
+    }
+    model.initialSolve(method);
     if (!answer) return tl::unexpected<Error>(answer.error());
     constexpr int kOptimal = 0;
     if (model.status() != kOptimal) {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
+#include "lowlap/averaging/internal/block_matrix.h"
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
-#include "lowlap/averaging/strategies/internal/block_matrix.h"
 #include "lowlap/robust/internal/robust_loss.h"
 
 namespace lowlap {
@@ -15,13 +15,46 @@ namespace {
 
 constexpr double kLeastScale = 1e-6;
 
+// Tracks that are worked through between two questions to the host: some
+// hundredths of a second.
+constexpr std::size_t kTracksPerQuestion = 4096;
+
+// Asks the host in a loop over tracks, now and then.
+class TrackAsker {
+ public:
+  TrackAsker(const RunContext& context, int iteration, int max_iterations)
+      : context_(context),
+        iteration_(iteration),
+        max_iterations_(max_iterations) {}
+  Status Ask() const {
+    return AskToGoOn(context_, iteration_, max_iterations_);
+  }
+  Status AskAfter(std::size_t track) const {
+    return (track + 1) % kTracksPerQuestion == 0 ? Ask() : Status();
+  }
+
+ private:
+  const RunContext& context_;
+  int iteration_, max_iterations_;
+};
+
+// Each pair once: common points are many.
 std::vector<BlockMatrix::Place> PairsOfCenters(
-    const std::vector<TrackRays>& tracks) {
+    const std::vector<TrackRays>& tracks, std::size_t num_centers) {
+  std::vector<std::vector<std::size_t>> tracks_of_view(num_centers);
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    for (const RayObservation& seen : tracks[k].observations) {
+      tracks_of_view[seen.view].push_back(k);
+    }
+  }
   std::vector<BlockMatrix::Place> places;
-  for (const TrackRays& track : tracks) {
-    for (const RayObservation& a : track.observations) {
-      for (const RayObservation& b : track.observations) {
-        if (a.view > b.view) places.push_back({a.view, b.view});
+  std::vector<std::size_t> last_met(num_centers, num_centers);
+  for (std::size_t view = 0; view < num_centers; ++view) {
+    for (const std::size_t k : tracks_of_view[view]) {
+      for (const RayObservation& seen : tracks[k].observations) {
+        if (seen.view <= view || last_met[seen.view] == view) continue;
+        last_met[seen.view] = view;
+        places.push_back({seen.view, view});
       }
     }
   }
@@ -35,14 +68,23 @@ std::vector<BlockMatrix::Place> PairsOfCenters(
 /// h = (1 + mu) w e^T e; without X, a 3x3 block between any two of its centres.
 class StepEquations {
  public:
-  StepEquations(const std::vector<TrackRays>& tracks, std::size_t num_centers)
+  StepEquations(const std::vector<TrackRays>& tracks, std::size_t num_centers,
+                const RunContext& context)
       : tracks_(tracks),
         num_centers_(num_centers),
-        matrix_(num_centers, PairsOfCenters(tracks)) {
+        matrix_(num_centers, PairsOfCenters(tracks, num_centers)),
+        solver_(context) {
     terms_.resize(tracks.size());
     blocks_.resize(tracks.size());
-    for (std::size_t k = 0; k < tracks.size(); ++k) {
-      const std::vector<RayObservation>& seen = tracks[k].observations;
+    inverses_.resize(tracks.size());
+    pulls_.resize(tracks.size());
+  }
+
+  /// To be called once, before Solve. kCancelled.
+  Status FindBlocks(const TrackAsker& asker) {
+    for (std::size_t k = 0; k < tracks_.size(); ++k) {
+      if (const Status go_on = asker.AskAfter(k); !go_on) return go_on;
+      const std::vector<RayObservation>& seen = tracks_[k].observations;
       terms_[k].resize(seen.size());
       for (const RayObservation& a : seen) {
         for (const RayObservation& b : seen) {
@@ -52,30 +94,31 @@ class StepEquations {
         }
       }
     }
-    inverses_.resize(tracks.size());
-    pulls_.resize(tracks.size());
+    return {};
   }
 
-  /// False if the centres' system cannot be factored.
-  bool Solve(const PositioningState& state, double reach, double damping,
-             PositioningState* next) {
+  /// kNumerical if the centres' system cannot be solved; kCancelled.
+  Status Solve(const PositioningState& state, double reach, double damping,
+               const TrackAsker& asker, PositioningState* next) {
     matrix_.SetZero();
     Eigen::VectorXd rhs =
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * num_centers_));
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
+      if (const Status go_on = asker.AskAfter(k); !go_on) return go_on;
       AddTrack(state, k, reach, damping, &rhs);
     }
     const auto solved = solver_.Solve(matrix_.lower(), rhs);
-    if (!solved) return false;
+    if (!solved) return tl::unexpected<Error>(solved.error());
     const Eigen::VectorXd step = solved->col(0);
 
     for (std::size_t n = 0; n < num_centers_; ++n) {
       next->centers[n] = state.centers[n] + step.segment<3>(3 * n);
     }
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
+      if (const Status go_on = asker.AskAfter(k); !go_on) return go_on;
       BackSubstitute(state, k, step, next);
     }
-    return true;
+    return {};
   }
 
  private:
@@ -189,7 +232,10 @@ Result<int> SolvePositions(const std::vector<TrackRays>& tracks,
   constexpr double kLeastDamping = 1e-10, kGreatestDamping = 1e10;
   constexpr double kTolerance = 1e-7;
   constexpr double kNoCost = 1e-24;  // per observation: rounding is left
-  StepEquations equations(tracks, state->centers.size());
+  StepEquations equations(tracks, state->centers.size(), context);
+  Status status =
+      equations.FindBlocks(TrackAsker(context, 0, options.max_iterations));
+  if (!status) return tl::unexpected<Error>(status.error());
   double cost = PositioningCost(tracks, *state, options.huber_reach);
   double damping = 1e-4, increase = 2;
   std::size_t num_observations = 0;
@@ -200,12 +246,17 @@ Result<int> SolvePositions(const std::vector<TrackRays>& tracks,
   int iteration = 0, small_steps = 0;
   while (iteration < options.max_iterations && small_steps < 3 &&
          cost > kNoCost * static_cast<double>(num_observations)) {
-    const Status go_on = AskToGoOn(context, iteration, options.max_iterations);
-    if (!go_on) return tl::unexpected<Error>(go_on.error());
+    const TrackAsker asker(context, iteration, options.max_iterations);
+    status = asker.Ask();
+    if (!status) return tl::unexpected<Error>(status.error());
     ++iteration;
     double next_cost = std::nan("");
-    if (equations.Solve(*state, options.huber_reach, damping, &next)) {
+    status =
+        equations.Solve(*state, options.huber_reach, damping, asker, &next);
+    if (status) {
       next_cost = PositioningCost(tracks, next, options.huber_reach);
+    } else if (status.error().code == ErrorCode::kCancelled) {
+      return tl::unexpected<Error>(status.error());
     }
     if (next_cost < cost) {
       small_steps = cost - next_cost < kTolerance * cost ? small_steps + 1 : 0;

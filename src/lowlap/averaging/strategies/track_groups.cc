@@ -1,11 +1,49 @@
 #include "lowlap/averaging/strategies/internal/track_groups.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 namespace lowlap {
 namespace {
+
+// Two views and how many points they share.
+struct Seed {
+  std::pair<std::size_t, std::size_t> views;
+  std::size_t num_shared;
+};
+
+// Those that share enough, by views.
+std::vector<Seed> FindSeeds(std::size_t num_views,
+                            const std::vector<TrackRays>& tracks,
+                            std::size_t min_views, std::size_t min_points) {
+  std::vector<std::vector<std::size_t>> tracks_of_view(num_views);
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (tracks[t].observations.size() < min_views) continue;
+    for (const RayObservation& seen : tracks[t].observations) {
+      tracks_of_view[seen.view].push_back(t);
+    }
+  }
+  std::vector<Seed> seeds;
+  std::vector<std::size_t> count(num_views, 0), met;
+  for (std::size_t view = 0; view < num_views; ++view) {
+    for (const std::size_t t : tracks_of_view[view]) {
+      for (const RayObservation& seen : tracks[t].observations) {
+        if (seen.view > view && ++count[seen.view] == 1) {
+          met.push_back(seen.view);
+        }
+      }
+    }
+    std::sort(met.begin(), met.end());
+    for (const std::size_t other : met) {
+      if (count[other] >= min_points) {
+        seeds.push_back({{view, other}, count[other]});
+      }
+      count[other] = 0;
+    }
+    met.clear();
+  }
+  return seeds;
+}
 
 /// Grows one group after the other; what a group left is told by its stamp.
 class GroupGrower {
@@ -78,23 +116,7 @@ class GroupGrower {
 std::vector<std::vector<std::size_t>> GroupViewsByTracks(
     std::size_t num_views, const std::vector<TrackRays>& tracks,
     std::size_t min_views, std::size_t min_points) {
-  std::map<std::pair<std::size_t, std::size_t>, std::size_t> shared;
-  for (const TrackRays& track : tracks) {
-    if (track.observations.size() < min_views) continue;
-    for (const RayObservation& a : track.observations) {
-      for (const RayObservation& b : track.observations) {
-        if (a.view < b.view) ++shared[{a.view, b.view}];
-      }
-    }
-  }
-  struct Seed {
-    std::pair<std::size_t, std::size_t> views;
-    std::size_t num_shared;
-  };
-  std::vector<Seed> seeds;
-  for (const auto& [views, count] : shared) {
-    if (count >= min_points) seeds.push_back({views, count});
-  }
+  std::vector<Seed> seeds = FindSeeds(num_views, tracks, min_views, min_points);
   std::stable_sort(
       seeds.begin(), seeds.end(),
       [](const Seed& a, const Seed& b) { return a.num_shared > b.num_shared; });
