@@ -206,40 +206,5 @@ TEST(TripletProgramNorms, TooManyTripletsAreRefusedByNumber) {
       << refused.error().message;
 }
 
-TEST(FindTripletBaselines, BoundsTheirNumberWithoutLosingAConnection) {
-  const RandomProblem made = MakeRandomProblem(14, Band(14, 13), 13);
-  TripletProgramOptions options;
-  options.max_triplets_per_edge = 1;
-  const auto sets = FindTripletBaselines(made.problem, options);
-  ASSERT_EQ(sets.size(), 1u);
-  EXPECT_LT(sets[0].size(), 120u);  // of 364
-  std::vector<bool> is_held(made.problem.edges.size(), false);
-  for (const TripletMotion& motion : sets[0]) {
-    for (const std::size_t e : motion.edges) is_held[e] = true;
-  }
-  EXPECT_EQ(std::count(is_held.begin(), is_held.end(), false), 0);
-}
-
-TEST(FindTripletBaselines, BaselinesAreTheTrueOnesUpToScale) {
-  const RandomProblem made = MakeRandomProblem(3, Edges{{1, 0}, {1, 2}, {2, 0}},
-                                               14, /*with_ratios=*/false);
-  const auto sets = FindTripletBaselines(made.problem, {});
-  ASSERT_EQ(sets.size(), 1u);
-  ASSERT_EQ(sets[0].size(), 1u);
-  const TripletMotion& motion = sets[0][0];
-  std::vector<double> factors;
-  double mean = 0;
-  for (int n = 0; n < 3; ++n) {
-    const DirectionEdge& edge = made.problem.edges[motion.edges[n]];
-    const Vec3 truth = made.centers[edge.second] - made.centers[edge.first];
-    EXPECT_GT(truth.dot(motion.baselines[n]), 0);
-    factors.push_back(motion.baselines[n].norm() / truth.norm());
-    mean += motion.baselines[n].norm() / 3;
-  }
-  EXPECT_NEAR(mean, 1, 1e-12);
-  EXPECT_NEAR(factors[0], factors[1], 1e-9);
-  EXPECT_NEAR(factors[0], factors[2], 1e-9);
-}
-
 }  // namespace
 }  // namespace lowlap

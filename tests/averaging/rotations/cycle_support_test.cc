@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "averaging/random_rotation_graph.h"
+#include "averaging/rotations/random_rotation_graph.h"
 
 namespace lowlap {
 namespace {

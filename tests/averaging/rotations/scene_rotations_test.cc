@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "averaging/random_rotation_graph.h"
+#include "averaging/rotations/random_rotation_graph.h"
 
 namespace lowlap {
 namespace {

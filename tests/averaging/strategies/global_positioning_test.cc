@@ -1,13 +1,10 @@
 #include "lowlap/averaging/strategies/internal/global_positioning.h"
 
-#include <ceres/ceres.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "averaging/ray_problem.h"
-#include "lowlap/averaging/strategies/internal/positioning_solver.h"
-#include "lowlap/averaging/strategies/internal/track_groups.h"
+#include "averaging/strategies/ray_problem.h"
 
 namespace lowlap {
 namespace {
@@ -160,112 +157,6 @@ TEST(GlobalPositioning, RefusesWrongInput) {
   EXPECT_TRUE(fails({}));
   made.problem.tracks[0].observations[0] = {77, Vec3::UnitZ()};
   EXPECT_TRUE(fails({}));
-}
-
-// ray - s (X - C).
-struct RayError {
-  template <typename T>
-  bool operator()(const T* center, const T* point, const T* scale,
-                  T* residual) const {
-    for (int axis = 0; axis < 3; ++axis) {
-      residual[axis] = ray(axis) - *scale * (point[axis] - center[axis]);
-    }
-    return true;
-  }
-  Vec3 ray;
-};
-
-TEST(PositioningSolver, MeetsCeres) {
-  RandomProblem made = MakeRayRing(6, 60, 3, true, 15);
-  Random random(16);
-  for (TrackRays& track : made.problem.tracks) {
-    for (RayObservation& seen : track.observations) {
-      const double size = random.Uniform() < 0.1 ? 0.5 : 0.02;
-      seen.ray_in_world =
-          (seen.ray_in_world + RandomVector(&random, size)).normalized();
-    }
-  }
-  const auto& tracks = made.problem.tracks;
-  PositioningState state;
-  state.centers = made.centers;
-  for (const TrackRays& track : tracks) {
-    state.points.push_back(made.centers[track.observations[0].view] +
-                           5 * track.observations[0].ray_in_world);
-    state.scales.push_back(std::vector<double>(track.observations.size(), 0.2));
-  }
-  PositioningState theirs = state;
-  PositioningOptions options;
-  options.max_iterations = 2000;
-  ASSERT_TRUE(SolvePositions(tracks, options, RunContext(), &state));
-
-  ceres::Problem problem;
-  auto* loss = new ceres::HuberLoss(options.huber_reach);
-  for (std::size_t k = 0; k < tracks.size(); ++k) {
-    for (std::size_t n = 0; n < tracks[k].observations.size(); ++n) {
-      const RayObservation& seen = tracks[k].observations[n];
-      problem.AddResidualBlock(
-          new ceres::AutoDiffCostFunction<RayError, 3, 3, 3, 1>(
-              new RayError{seen.ray_in_world}),
-          loss, theirs.centers[seen.view].data(), theirs.points[k].data(),
-          &theirs.scales[k][n]);
-      problem.SetParameterLowerBound(&theirs.scales[k][n], 0, 1e-6);
-    }
-  }
-  ceres::Solver::Options solver;
-  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
-  solver.max_num_iterations = 2000;
-  solver.function_tolerance = 1e-12;
-  solver.logging_type = ceres::SILENT;
-  ceres::Solver::Summary summary;
-  ceres::Solve(solver, &problem, &summary);
-  const double cost = PositioningCost(tracks, theirs, options.huber_reach);
-  EXPECT_NEAR(PositioningCost(tracks, state, options.huber_reach), cost,
-              0.01 * cost);
-}
-
-TEST(PositioningSolver, StopsAtAMinimum) {
-  RandomProblem made = MakeRayRing(6, 60, 3, true, 12);
-  Random random(13);
-  for (TrackRays& track : made.problem.tracks) {
-    for (RayObservation& seen : track.observations) {
-      seen.ray_in_world =
-          (seen.ray_in_world + RandomVector(&random, 0.05)).normalized();
-    }
-  }
-  const auto& tracks = made.problem.tracks;
-  PositioningState state;
-  state.centers = made.centers;
-  for (const TrackRays& track : tracks) {
-    state.points.push_back(made.centers[track.observations[0].view] +
-                           5 * track.observations[0].ray_in_world);
-    state.scales.push_back(std::vector<double>(track.observations.size(), 0.2));
-  }
-  PositioningOptions options;
-  options.max_iterations = 2000;
-  ASSERT_TRUE(SolvePositions(tracks, options, RunContext(), &state));
-  const double best = PositioningCost(tracks, state, options.huber_reach);
-  EXPECT_GT(best, 1e-3);
-  for (int trial = 0; trial < 2000; ++trial) {
-    PositioningState other = state;
-    const double size = std::pow(10.0, random.Uniform(-4, -1));
-    for (Vec3& center : other.centers) center += RandomVector(&random, size);
-    for (Vec3& point : other.points) point += RandomVector(&random, size);
-    EXPECT_GE(PositioningCost(tracks, other, options.huber_reach),
-              best * (1 - 1e-6));
-  }
-}
-
-TEST(GroupViewsByTracks, AViewJoinsByPointsThatTwoViewsSee) {
-  const RandomProblem made = MakeRayRing(9, 63, 3, false, 14);  // 9 per start
-  const auto& tracks = made.problem.tracks;
-  using Groups = std::vector<std::vector<std::size_t>>;
-  EXPECT_EQ(GroupViewsByTracks(9, tracks, 3, 5),
-            (Groups{{0, 1, 2, 3, 4, 5, 6, 7, 8}}));
-  // Neighbours share 18 points (nine at the ends), of which a third view sees
-  // nine.
-  EXPECT_EQ(GroupViewsByTracks(9, tracks, 3, 10),
-            (Groups{{1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 6}, {6, 7}}));
-  EXPECT_TRUE(GroupViewsByTracks(9, tracks, 4, 5).empty());
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 #include <set>
 #include <vector>
 
-#include "averaging/random_rotation_graph.h"
+#include "averaging/rotations/random_rotation_graph.h"
 
 namespace lowlap {
 namespace {

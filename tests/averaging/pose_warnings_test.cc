@@ -1,0 +1,138 @@
+#include "lowlap/averaging/internal/pose_warnings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lowlap {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::Not;
+
+// Views a.jpg, b.jpg, ... of ids 0, 1, ...
+Scene FiveViews() {
+  Scene scene;
+  for (std::uint32_t view = 0; view < 5; ++view) {
+    scene.views[view].filename = std::string(1, "abcde"[view]) + ".jpg";
+  }
+  return scene;
+}
+
+std::vector<std::string> Warnings(const PoseSummary& summary) {
+  return PoseWarnings(summary, FiveViews());
+}
+
+TEST(PoseWarnings, AreNoneIfAllIsWell) {
+  PoseSummary summary;
+  summary.num_views = summary.num_placed = 5;
+  summary.num_edges = 9;
+  summary.components = {{0, 1, 2, 3, 4}};
+  EXPECT_THAT(Warnings(summary), IsEmpty());
+}
+
+TEST(PoseWarnings, NameViewsThatAreNotPlaced) {
+  PoseSummary summary;
+  summary.unplaced = {1, 4, 12};
+  // An id that the scene does not have stands for itself.
+  EXPECT_THAT(Warnings(summary),
+              ElementsAre(HasSubstr("the others: b.jpg, e.jpg, 12.")));
+}
+
+TEST(PoseWarnings, NameWhatHangsOnAContestedLink) {
+  PoseSummary summary;
+  summary.contested = {{{0, 1}, {{0, 2}, {1, 3}}, {3, 4}}};
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre("Doubtful: only the relative pose a.jpg - b.jpg places "
+                  "d.jpg, e.jpg, and it is contradicted by a.jpg - c.jpg, "
+                  "b.jpg - d.jpg, which have less evidence."));
+}
+
+TEST(PoseWarnings, SayByHowMuchALoopDoesNotCloseAndWhatBecameOfIt) {
+  PoseSummary summary;
+  LoopClosing loop;
+  loop.edges = {{0, 1}, {1, 2}, {0, 2}};
+  loop.closing_deg = 3.456;
+  loop.expected_deg = 0.5;
+  summary.loops = {loop};
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre(AllOf(HasSubstr("a loop of 3 relative poses"),
+                        HasSubstr("by 3.46 degrees (0.50 expected)"),
+                        HasSubstr("all are used: a.jpg - b.jpg, b.jpg - c.jpg, "
+                                  "a.jpg - c.jpg."),
+                        Not(HasSubstr("left out")))));
+  summary.loops[0].left_out = ViewPair{1, 2};
+  EXPECT_THAT(Warnings(summary),
+              ElementsAre(AllOf(
+                  HasSubstr("least evidence, b.jpg - c.jpg, was left out: a."),
+                  Not(HasSubstr("all are used")))));
+}
+
+TEST(PoseWarnings, NameWeakRatios) {
+  PoseSummary summary;
+  summary.weak_ratios = {{0, 1, 2}, {2, 3, 4}};
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre(HasSubstr(": a.jpg, b.jpg, c.jpg; c.jpg, d.jpg, e.jpg.")));
+}
+
+TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
+  PoseSummary summary;
+  ReliabilityWarning contradicted;
+  contradicted.reason = WarningReason::kContradictedPoses;
+  contradicted.views = {3};
+  contradicted.against = {{2, 3}};
+  ReliabilityWarning weak;
+  weak.reason = WarningReason::kWeakScale;
+  weak.views = {0, 1};
+  weak.ratios = {{0, 1, 2}};
+  ReliabilityWarning ratios = weak;
+  ratios.reason = WarningReason::kContradictedRatios;
+  ReliabilityWarning lost;
+  lost.reason = WarningReason::kLostFeatures;
+  lost.views = {4};
+  lost.share = 0.29;
+  summary.reliability_warnings = {contradicted, weak, ratios, lost};
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre(
+          AllOf(HasSubstr("Doubtful: d.jpg: more of the evidence"),
+                HasSubstr("they contradict: c.jpg - d.jpg.")),
+          AllOf(HasSubstr("Doubtful: a.jpg, b.jpg: only weak scale ratios"),
+                HasSubstr(": a.jpg, b.jpg, c.jpg.")),
+          AllOf(HasSubstr("Doubtful: a.jpg, b.jpg: the scale ratios"),
+                HasSubstr("rejected were: a.jpg, b.jpg, c.jpg.")),
+          // No less than it is, as cutting 28.999... off would say.
+          HasSubstr("Doubtful: e.jpg: only 29 % of what")));
+}
+
+TEST(PoseWarnings, CountWhatNothingChecks) {
+  PoseSummary summary;
+  summary.num_edges = 7;
+  summary.unchecked = {{0, 1}, {1, 2}};
+  EXPECT_THAT(Warnings(summary), ElementsAre(HasSubstr(": 2 of 7.")));
+}
+
+TEST(PoseWarnings, ListWhatWasLeftOutByReason) {
+  PoseSummary summary;
+  summary.outlier_edges = {{{0, 1}, OutlierReason::kDirection, 9},
+                           {{0, 2}, OutlierReason::kRotation, 8},
+                           {{1, 2}, OutlierReason::kDirection, 7},
+                           {{1, 4}, OutlierReason::kContradicted, 6},
+                           // Its loop says so already.
+                           {{2, 3}, OutlierReason::kOpenLoop, 5}};
+  EXPECT_THAT(
+      Warnings(summary),
+      ElementsAre(
+          AllOf(HasSubstr("rotations contradict"), HasSubstr("(1): a.jpg - c")),
+          AllOf(HasSubstr("directions contradict"),
+                HasSubstr("(2): a.jpg - b.jpg, b.jpg - c.jpg.")),
+          AllOf(HasSubstr("no cycle confirms"), HasSubstr("(1): b.jpg - e"))));
+}
+
+}  // namespace
+}  // namespace lowlap
