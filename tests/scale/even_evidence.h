@@ -56,4 +56,17 @@ inline TripletEvidence EvidenceOf(
   return evidence;
 }
 
+/// A triplet that estimators accept, for evidence that does not look at it.
+inline TripletView ValidTriplet() {
+  TripletView triplet;
+  triplet.views = {0, 1, 2};
+  triplet.geometry.cami_from_camj.translation = Vec3::UnitX();
+  triplet.geometry.camk_from_camj.translation = Vec3::UnitY();
+  triplet.geometry.focal_i_px = triplet.geometry.focal_j_px =
+      triplet.geometry.focal_k_px = 1000;
+  triplet.image_area_px2 = 1e6;
+  triplet.image_diagonal_px = 1500;
+  return triplet;
+}
+
 }  // namespace lowlap::testing

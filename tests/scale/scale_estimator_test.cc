@@ -174,48 +174,6 @@ TEST(ScaleEstimator, SurvivesSeventyPercentWrongCoplanarPairs) {
   EXPECT_LT(*std::max_element(errors.begin(), errors.end()), 0.1);
 }
 
-// The promise: on features that have nothing in common, at most one ratio in a
-// hundred is called meaningful.
-class PureNoise : public ::testing::TestWithParam<
-                      std::pair<const char*, std::vector<int>>> {};
-
-TEST_P(PureNoise, IsMeaningfulAtMostOnceInAHundredTriplets) {
-  const std::vector<int>& counts = GetParam().second;
-  SyntheticTripletOptions options;
-  options.pure_noise = true;
-  options.noise_px = 1;
-  options.num_points = counts[0];
-  options.num_lines = counts[1];
-  options.num_lines_ij = options.num_lines_jk = counts[2];
-  constexpr int kTriplets = 2000;
-  int meaningful = 0;
-  for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
-    const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 5000 + seed);
-    meaningful += Estimate(triplet.view).verdict == RatioVerdict::kMeaningful;
-  }
-  EXPECT_LE(meaningful, kTriplets / 100);
-}
-
-INSTANTIATE_TEST_SUITE_P(
-    Kinds, PureNoise,
-    ::testing::Values(std::make_pair("Points", std::vector<int>{40, 0, 0}),
-                      std::make_pair("FewPoints", std::vector<int>{8, 0, 0}),
-                      std::make_pair("Lines", std::vector<int>{0, 30, 0}),
-                      std::make_pair("Pairs", std::vector<int>{0, 0, 40}),
-                      std::make_pair("FewPairs", std::vector<int>{0, 0, 12}),
-                      std::make_pair("Mixed", std::vector<int>{20, 15, 30})),
-    [](const auto& kind) { return kind.param.first; });
-
-TEST(ScaleEstimator, ThePaperFormTakesNoiseForACertainty) {
-  SyntheticTripletOptions options = Pairs(60, 1.0, 0);
-  options.pure_noise = true;
-  const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 1);
-  ScaleOptions paper;
-  paper.nfa_form = NfaForm::kPaper;
-  EXPECT_LT(Estimate(triplet.view, paper).log10_nfa, -80);
-  EXPECT_EQ(Estimate(triplet.view).verdict, RatioVerdict::kNotMeaningful);
-}
-
 TEST(ScaleEstimator, StatedDeviationsHoldTheTruth) {
   for (const bool pose_errors : {false, true}) {
     SyntheticTripletOptions options = Mixed(0.7, 0.2);
@@ -259,34 +217,6 @@ TEST(ScaleEstimator, TheOrderOfTheFeaturesChangesNothing) {
     EXPECT_EQ(before.kinds[n].inliers, after.kinds[n].inliers);
     EXPECT_EQ(before.kinds[n].candidates, after.kinds[n].candidates);
   }
-}
-
-// Large triplets try a subset; it must be as good as trying all.
-TEST(ScaleEstimator, TheSubsetFindsWhatTheExhaustiveSearchFinds) {
-  for (std::uint64_t seed = 0; seed < 8; ++seed) {
-    SyntheticTripletOptions options = Pairs(80, 1.0, 0.3);
-    options.num_points = 250;
-    const SyntheticTriplet triplet = MakeSyntheticTriplet(options, seed);
-    ScaleOptions exhaustive;
-    exhaustive.search = RatioSearch::kExhaustive;
-    const ScaleRatio reference = Estimate(triplet.view, exhaustive);
-    ScaleOptions subset;
-    subset.search = RatioSearch::kFeatures;
-    const ScaleRatio ratio = Estimate(triplet.view, subset);
-    EXPECT_LE(reference.log10_nfa, ratio.log10_nfa + 1e-9);
-    EXPECT_LT(ratio.log10_nfa, 0.95 * reference.log10_nfa);
-    EXPECT_NEAR(ratio.log_ratio, reference.log_ratio,
-                reference.log_ratio_stddev);
-  }
-}
-
-TEST(ScaleEstimator, OneFeatureIsNotMeaningful) {
-  SyntheticTripletOptions options;
-  options.num_points = 1;
-  const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 1);
-  const ScaleRatio ratio = Estimate(triplet.view);
-  EXPECT_EQ(ratio.verdict, RatioVerdict::kNotMeaningful);
-  EXPECT_NEAR(ratio.log_ratio, triplet.true_log_ratio, 1e-6);
 }
 
 TEST(ScaleEstimator, NothingToGoByIsAVerdict) {
