@@ -4,12 +4,17 @@
 
 namespace lowlap::testing {
 
+/// Processor time of this program so far.
+inline double ProcessorSecondsNow() {
+  return static_cast<double>(std::clock()) / CLOCKS_PER_SEC;
+}
+
 /// Processor time of `work()` in seconds, which a busy machine hardly changes.
 template <class Work>
 double ProcessorSeconds(const Work& work) {
-  const std::clock_t start = std::clock();
+  const double start = ProcessorSecondsNow();
   work();
-  return static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  return ProcessorSecondsNow() - start;
 }
 
 }  // namespace lowlap::testing

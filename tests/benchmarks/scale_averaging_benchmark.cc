@@ -2,14 +2,27 @@
 // the processor time in units of one sparse factorisation of the graph in the
 // same run, so that machines and loads compare; the median position error, and
 // the same without the wrong ratios; neighbours are a metre apart.
+//
+// AnswerToStop: how long a host waits for what it asked to stop. Counters:
+// answer_s, the longest wait of a few requests, on the wall's clock; gap_s, the
+// longest time without a question, which no request waits longer than, in
+// processor time and so without the load of the machine; run_s, the wall time
+// of the run that gap_s is of, which is stopped in the end if need be.
 #include <benchmark/benchmark.h>
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <chrono>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "averaging/big_graph.h"
+#include "averaging/rotations/random_rotation_graph.h"
 #include "benchmarks/processor_time.h"
+#include "lowlap/averaging/averager_registry.h"
 #include "lowlap/averaging/scales/internal/edge_scales.h"
+#include "lowlap/averaging/scales/internal/refine_centers.h"
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
 
 namespace lowlap {
@@ -92,7 +105,177 @@ void Arguments(benchmark::internal::Benchmark* benchmark) {
 BENCHMARK(EdgeScalesOfGraph)->Apply(Arguments);
 BENCHMARK(CentersOfGraph)->Apply(Arguments);
 
+double WallSeconds() {
+  return std::chrono::duration<double>(
+             std::chrono::steady_clock::now().time_since_epoch())
+      .count();
+}
+
+// One run that is asked to stop after some seconds.
+struct StoppedRun {
+  double seconds = 0;
+  double answer_s = 0;  // from the request to the return; 0: it was done before
+  double gap_s = 0;     // processor time
+  double gap_begin_s = 0;
+};
+
+using Run = std::function<void(const RunContext&)>;
+
+StoppedRun RunAndStop(const Run& run, double stop_after_s) {
+  StoppedRun stopped;
+  const double begin = WallSeconds();
+  double asked_at = 0, processor = testing::ProcessorSecondsNow();
+  const auto end_gap = [&] {
+    const double now = testing::ProcessorSecondsNow();
+    if (now - processor > stopped.gap_s) {
+      stopped.gap_s = now - processor;
+      stopped.gap_begin_s = asked_at;
+    }
+    processor = now;
+    asked_at = WallSeconds() - begin;
+  };
+  RunContext context;
+  context.num_threads = 1;
+  context.progress = [&](const std::string&, std::size_t, std::size_t) {
+    end_gap();
+    return asked_at < stop_after_s;
+  };
+  run(context);
+  end_gap();
+  stopped.seconds = asked_at;
+  stopped.answer_s = std::max(0.0, stopped.seconds - stop_after_s);
+  return stopped;
+}
+
+// Requests at once, as the longest gap begins, and spread over the run.
+void MeasureAnswers(const Run& run, benchmark::State* state) {
+  constexpr double kMostSeconds = 20;
+  StoppedRun whole;
+  double answer_s = 0;
+  for (auto _ : *state) {
+    whole = RunAndStop(run, kMostSeconds);
+    answer_s = std::max(answer_s, whole.answer_s);
+    for (const double moment :
+         {0.0, whole.gap_begin_s + 1e-6, whole.seconds / 4, whole.seconds / 2,
+          3 * whole.seconds / 4}) {
+      answer_s = std::max(answer_s, RunAndStop(run, moment).answer_s);
+    }
+  }
+  state->counters["answer_s"] = answer_s;
+  state->counters["gap_s"] = whole.gap_s;
+  state->counters["gap_at_s"] = whole.gap_begin_s;
+  state->counters["run_s"] = whole.seconds;
+}
+
+// A graph with points around its views, each seen by a view and its neighbours.
+TranslationProblem ProblemWithTracks(const BigGraphOptions& options) {
+  constexpr int kTracksPerView = 20;
+  BigGraph graph = MakeBigGraph(options);
+  TranslationProblem problem = std::move(graph.made.problem);
+  std::vector<std::vector<std::size_t>> seen_by(options.num_views);
+  for (std::size_t n = 0; n < options.num_views; ++n) seen_by[n].push_back(n);
+  for (const DirectionEdge& edge : problem.edges) {
+    seen_by[edge.first].push_back(edge.second);
+    seen_by[edge.second].push_back(edge.first);
+  }
+  Random random(options.seed);
+  for (std::size_t n = 0; n < options.num_views; ++n) {
+    std::sort(seen_by[n].begin(), seen_by[n].end());
+    for (int k = 0; k < kTracksPerView; ++k) {
+      const Vec3 point = graph.made.centers[n] + RandomVector(&random, 5.0);
+      TrackRays track;
+      for (const std::size_t view : seen_by[n]) {
+        const Vec3 ray = (point - graph.made.centers[view]).normalized() +
+                         RandomVector(&random, 0.001);
+        track.observations.push_back({view, ray.normalized()});
+      }
+      problem.tracks.push_back(std::move(track));
+    }
+  }
+  return problem;
+}
+
+void AnswerToStop(benchmark::State& state, const std::string& request,
+                  const BigGraphOptions& options) {
+  const auto averager = AveragerRegistry::WithBuiltIns().Make(request);
+  const TranslationProblem problem = ProblemWithTracks(options);
+  MeasureAnswers(
+      [&](const RunContext& context) {
+        benchmark::DoNotOptimize((*averager)->Solve(problem, context));
+      },
+      &state);
+}
+
+void AnswerOfRotations(benchmark::State& state) {
+  const RotationGraph graph = MakeRotationGraph(5000, 4, 0.1, 1.0, 1);
+  MeasureAnswers(
+      [&](const RunContext& context) {
+        benchmark::DoNotOptimize(
+            AverageRotations(5000, graph.measurements, {}, context));
+      },
+      &state);
+}
+
+void AnswerOfRefinement(benchmark::State& state) {
+  const BigGraph graph = MakeBigGraph(BigGraphOptions());
+  const std::vector<bool> placed(graph.made.centers.size(), true);
+  MeasureAnswers(
+      [&](const RunContext& context) {
+        std::vector<Vec3> centers = graph.made.centers;
+        benchmark::DoNotOptimize(
+            RefineCenters(graph.made.problem, placed, &centers, context));
+      },
+      &state);
+}
+
+void RegisterAnswers() {
+  const auto once = [](benchmark::internal::Benchmark* benchmark) {
+    benchmark->Unit(benchmark::kSecond)->Iterations(1);
+  };
+  once(benchmark::RegisterBenchmark("AnswerToStop/rotations",
+                                    AnswerOfRotations));
+  once(benchmark::RegisterBenchmark("AnswerToStop/refinement",
+                                    AnswerOfRefinement));
+  const auto add = [&](const std::string& request, const char* name,
+                       const BigGraphOptions& options) {
+    once(benchmark::RegisterBenchmark(
+        ("AnswerToStop/" + request + "/" + name).c_str(), AnswerToStop, request,
+        options));
+  };
+  std::vector<std::string> requests = AveragerRegistry::WithBuiltIns().Names();
+  requests.push_back("1dsfm+chain");
+  BigGraphOptions town;
+  BigGraphOptions street = town;
+  street.shape = GraphShape::kStreet;
+  BigGraphOptions random = town;
+  random.shape = GraphShape::kRandom;
+  // Most lengths are for the directions to find out.
+  BigGraphOptions sparse = town;
+  sparse.num_ratios = 6000;
+  for (const std::string& request : requests) {
+    add(request, "town", town);
+    add(request, "street", street);
+    add(request, "random", random);
+    add(request, "town_of_few_ratios", sparse);
+  }
+  // The largest graphs that the simplex method takes.
+  for (const auto& [request, views] :
+       {std::pair<const char*, std::size_t>{"linf", 1000}, {"l1_lp", 350}}) {
+    BigGraphOptions small = street;
+    small.num_views = views;
+    small.num_edges = 4 * views;
+    small.num_ratios = 12 * views;
+    add(request, "short_street", small);
+  }
+}
+
 }  // namespace
 }  // namespace lowlap
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  lowlap::RegisterAnswers();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}
