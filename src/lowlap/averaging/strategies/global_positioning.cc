@@ -167,13 +167,9 @@ Result<std::vector<Part>> SolveGroup(Part group,
     parts.push_back(std::move(group));
     return parts;
   }
-  if (const Status go_on = ask(); !go_on) {
-    return tl::unexpected<Error>(go_on.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ask());
   const Part cleaned = WithoutWrongRays(group, options);
-  if (const Status go_on = ask(); !go_on) {
-    return tl::unexpected<Error>(go_on.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ask());
   for (const std::vector<std::size_t>& views : GroupViewsByTracks(
            cleaned.views.size(), cleaned.tracks, options.min_views_per_track,
            options.min_shared_points)) {

@@ -5,9 +5,10 @@
 #include <cmath>
 #include <utility>
 
-#include "lowlap/averaging/internal/block_matrix.h"
+#include "lowlap/averaging/strategies/internal/block_matrix.h"
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/robust/internal/robust_loss.h"
 
 namespace lowlap {
@@ -83,7 +84,7 @@ class StepEquations {
   /// To be called once, before Solve. kCancelled.
   Status FindBlocks(const TrackAsker& asker) {
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
-      if (const Status go_on = asker.AskAfter(k); !go_on) return go_on;
+      LOWLAP_RETURN_IF_ERROR(asker.AskAfter(k));
       const std::vector<RayObservation>& seen = tracks_[k].observations;
       terms_[k].resize(seen.size());
       for (const RayObservation& a : seen) {
@@ -104,7 +105,7 @@ class StepEquations {
     Eigen::VectorXd rhs =
         Eigen::VectorXd::Zero(static_cast<Eigen::Index>(3 * num_centers_));
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
-      if (const Status go_on = asker.AskAfter(k); !go_on) return go_on;
+      LOWLAP_RETURN_IF_ERROR(asker.AskAfter(k));
       AddTrack(state, k, reach, damping, &rhs);
     }
     const auto solved = solver_.Solve(matrix_.lower(), rhs);
@@ -115,7 +116,7 @@ class StepEquations {
       next->centers[n] = state.centers[n] + step.segment<3>(3 * n);
     }
     for (std::size_t k = 0; k < tracks_.size(); ++k) {
-      if (const Status go_on = asker.AskAfter(k); !go_on) return go_on;
+      LOWLAP_RETURN_IF_ERROR(asker.AskAfter(k));
       BackSubstitute(state, k, step, next);
     }
     return {};
