@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/matching/internal/tracks.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/synthetic/synthetic_scene.h"
@@ -159,6 +160,29 @@ TEST(TranslationScaleEstimator, KeepsTheRotationsOfTheHost) {
   for (const auto& [view, pose] : estimate->poses) {
     EXPECT_EQ(pose.rotation, chain.true_poses.at(view).rotation);
   }
+}
+
+TEST(TranslationScaleEstimator, LeavesOutWhatContradictsGivenRotations) {
+  SyntheticOptions options;
+  options.num_views = 6;
+  options.pairs = "window:2";
+  const SyntheticScene truth = *Simulate(options);
+  Scene scene = truth.scene;
+  RelativePose& wrong = scene.relative_poses.at({1, 2});
+  wrong.rotation = RotationFromAngleAxis({0, 0.2, 0}) * wrong.rotation;
+  TranslationScaleEstimator estimator = HostOf(scene, Order::kAscending);
+  for (const auto& [view, pose] : truth.true_poses) {
+    estimator.SetRotation(view, pose.rotation);
+  }
+  const auto estimate = estimator.Estimate();
+  ASSERT_THAT(estimate, IsOk());
+  ASSERT_EQ(estimate->summary.outlier_edges.size(), 1u);
+  EXPECT_EQ(estimate->summary.outlier_edges[0].views, (ViewPair{1, 2}));
+  EXPECT_EQ(estimate->summary.outlier_edges[0].reason,
+            OutlierReason::kRotation);
+  EXPECT_NEAR(estimate->summary.outlier_edges[0].error_deg, DegFromRad(0.2),
+              1e-3);
+  EXPECT_TRUE(estimate->unplaced.empty());
 }
 
 TEST(TranslationScaleEstimator, EstimatesAsOftenAsAsked) {

@@ -6,6 +6,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/matching/internal/tracks.h"
+#include "lowlap/pipeline/internal/given_rotations.h"
 #include "lowlap/scene/validation.h"
 
 namespace lowlap {
@@ -23,13 +24,6 @@ std::vector<FeatureMatch> Matches(const Eigen::Matrix2Xi& columns,
                        static_cast<FeatureIndex>(columns(swapped ? 0 : 1, n))});
   }
   return matches;
-}
-
-// The host's rotations in place of averaged ones: nothing is left out by them.
-SceneRotations Given(const std::map<ViewId, Mat3>& cam_from_world) {
-  SceneRotations rotations;
-  rotations.cam_from_world = cam_from_world;
-  return rotations;
 }
 
 }  // namespace
@@ -135,37 +129,26 @@ Result<TranslationEstimate> TranslationScaleEstimator::Estimate(
 
   Scene scene = scene_;
   scene.line_tracks = BuildLineTracks(scene, LineTrackOptions());
-  SolveStart start;
+  Result<PoseSummary> summary;
   if (cam_from_world_.empty()) {
-    LOWLAP_ASSIGN_OR_RETURN(start,
+    LOWLAP_ASSIGN_OR_RETURN(const auto start,
                             StartSolution(&scene, options_, context, nullptr));
+    LOWLAP_RETURN_IF_ERROR(
+        EstimateBelievedRatios(&scene, start, options_, context, nullptr));
+    summary =
+        ComposePoses(&scene, start.rotations, options_.poses, context, nullptr);
   } else {
-    start.rotations = Given(cam_from_world_);
+    summary = SolveGivenRotations(cam_from_world_, options_, context, nullptr,
+                                  &scene);
   }
-  LOWLAP_RETURN_IF_ERROR(
-      EstimateBelievedRatios(&scene, start, options_, context, nullptr));
-  LOWLAP_ASSIGN_OR_RETURN(
-      auto summary,
-      cam_from_world_.empty()
-          ? ComposePoses(&scene, start.rotations, options_.poses, context,
-                         nullptr)
-          : SolveScenePoses(&scene, start.rotations, options_.poses, context));
+  LOWLAP_RETURN_IF_ERROR(summary);
 
   TranslationEstimate estimate;
   estimate.ratios = std::move(scene.scale_ratios);
-  estimate.unplaced = summary.unplaced;
-  estimate.summary = std::move(summary);
+  estimate.unplaced = summary->unplaced;
+  estimate.summary = std::move(*summary);
   for (const auto& [view, description] : scene.views) {
     if (const Pose* pose = scene.FindPose(view)) estimate.poses[view] = *pose;
-  }
-  if (!cam_from_world_.empty()) {
-    // Poses come in the frame of the first placed view.
-    const ViewId gauge = estimate.poses.begin()->first;
-    const Mat3 given_from_world = cam_from_world_.at(gauge).transpose();
-    for (auto& [view, pose] : estimate.poses) {
-      pose.rotation = cam_from_world_.at(view);
-      pose.center = given_from_world * pose.center;
-    }
   }
   return estimate;
 }

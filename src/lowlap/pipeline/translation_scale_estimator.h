@@ -68,7 +68,8 @@ class TranslationScaleEstimator {
                        const Eigen::Matrix2Xi& line_matches = {});
 
   /// A global rotation that the host has found already. With one for every view
-  /// they are kept as they are; otherwise rotations are averaged here.
+  /// they are kept as they are, and relative poses that contradict them are
+  /// left out; otherwise rotations are averaged here.
   void SetRotation(ViewId view, const Mat3& cam_from_world);
 
   /// Errors: kInvalidScene naming the view or relative pose (given twice, of

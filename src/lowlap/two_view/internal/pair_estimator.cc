@@ -84,6 +84,17 @@ RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
   return improved;
 }
 
+std::vector<FeatureMatch> GuidedLineMatches(
+    const ViewMeasurements& first, const ViewMeasurements& second,
+    const RigidTransform& cam2_from_cam1,
+    const std::vector<FeatureMatch>& seeds, const PairOptions& options) {
+  const DetectedFeatures &d1 = *first.detected, &d2 = *second.detected;
+  return MatchLinesGuided({d1.features.segments, d1.line_descriptors},
+                          {d2.features.segments, d2.line_descriptors},
+                          first.features, second.features, cam2_from_cam1,
+                          seeds, options.guided_lines);
+}
+
 // Matches again under the pose, and refines it on what that finds.
 void UseGuidedMatches(const ViewMeasurements& first,
                       const ViewMeasurements& second,
@@ -101,11 +112,8 @@ void UseGuidedMatches(const ViewMeasurements& first,
                           options.guided_points);
     AddMatches(guided, &input->point_matches);
   }
-  *line_matches =
-      MatchLinesGuided({d1.features.segments, d1.line_descriptors},
-                       {d2.features.segments, d2.line_descriptors},
-                       first.features, second.features, pose->Cam2FromCam1(),
-                       *line_matches, options.guided_lines);
+  *line_matches = GuidedLineMatches(first, second, pose->Cam2FromCam1(),
+                                    *line_matches, options);
   if (options.use_lines) input->line_matches = *line_matches;
   *pose = Improve(*input, *pose, options.two_view);
 }
@@ -180,6 +188,34 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
   // One pair that cannot be used must not make the scene invalid.
   if (const Status valid = ValidateRelativePose(pose); !valid) {
     estimate.reason = "the estimate is not usable: " + valid.error().message;
+    return estimate;
+  }
+  estimate.pose = std::move(pose);
+  return estimate;
+}
+
+PairEstimate TakePair(const ViewPair& views, const ViewMeasurements& first,
+                      const ViewMeasurements& second,
+                      const PairMatches& matches,
+                      const RigidTransform& cam2_from_cam1,
+                      const PairOptions& options) {
+  RelativePose pose;
+  pose.views = views;
+  pose.rotation = cam2_from_cam1.rotation;
+  pose.direction = cam2_from_cam1.translation.normalized();
+  pose.point_inliers = matches.points;
+  std::vector<FeatureMatch> line_matches = matches.lines;
+  if (first.detected != nullptr && second.detected != nullptr) {
+    line_matches = GuidedLineMatches(first, second, pose.Cam2FromCam1(),
+                                     line_matches, options);
+  }
+  pose.line_inliers =
+      FilterLineMatches(line_matches, first.features, second.features,
+                        pose.Cam2FromCam1(), options.line_filter);
+  PairEstimate estimate;
+  estimate.num_point_inliers = static_cast<int>(pose.point_inliers.size());
+  if (const Status valid = ValidateRelativePose(pose); !valid) {
+    estimate.reason = "the given pose is not usable: " + valid.error().message;
     return estimate;
   }
   estimate.pose = std::move(pose);

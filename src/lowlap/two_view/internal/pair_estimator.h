@@ -57,6 +57,14 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
                           const PairMatches& putative,
                           const PairOptions& options, std::uint64_t seed);
 
+/// A relative pose (at any baseline) that is known already, taken as it is:
+/// with all point matches, and the line matches that are plausible under it.
+PairEstimate TakePair(const ViewPair& views, const ViewMeasurements& first,
+                      const ViewMeasurements& second,
+                      const PairMatches& matches,
+                      const RigidTransform& cam2_from_cam1,
+                      const PairOptions& options);
+
 /// The pose improved once more on its inliers, after features have moved; as it
 /// was, where that leads nowhere.
 RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,

@@ -97,7 +97,8 @@ Status RelativePoseOptions::Validate() const {
 Result<std::vector<PairReport>> EstimateRelativePoses(
     Scene* scene, const std::map<ViewPair, PairMatches>& matches,
     const std::map<ViewId, DetectedFeatures>* detected,
-    const RelativePoseOptions& options, const RunContext& context) {
+    const RelativePoseOptions& options, const RunContext& context,
+    const std::map<ViewPair, RigidTransform>& given) {
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::vector<ViewPair> pairs;
   for (const auto& entry : matches) pairs.push_back(entry.first);
@@ -113,10 +114,15 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
             context.seed * 0x9E3779B97F4A7C15ull +
             (static_cast<std::uint64_t>(pairs[n].first.value()) << 32) +
             pairs[n].second.value();
+        const ViewMeasurements& first = measurements.at(pairs[n].first);
+        const ViewMeasurements& second = measurements.at(pairs[n].second);
+        const auto known = given.find(pairs[n]);
         estimates[n] =
-            EstimatePair(pairs[n], measurements.at(pairs[n].first),
-                         measurements.at(pairs[n].second), matches.at(pairs[n]),
-                         options.pair, pair_seed);
+            known != given.end()
+                ? TakePair(pairs[n], first, second, matches.at(pairs[n]),
+                           known->second, options.pair)
+                : EstimatePair(pairs[n], first, second, matches.at(pairs[n]),
+                               options.pair, pair_seed);
       });
   if (!done) return tl::unexpected<Error>(done.error());
 

@@ -19,13 +19,15 @@ namespace lowlap {
 /// matches of the scene's features: EstimatePair for every pair, then tracks.
 /// Pairs that fail get no relative pose; the report says why, and pairs without
 /// parallax are named in the log. `detected` as in MeasureView, for all views;
-/// null: matches are all there is.
+/// null: matches are all there is. Pairs of `given` are not estimated, but
+/// taken (TakePair): cam2_from_cam1.
 ///
 /// The result does not depend on the number of threads.
 Result<std::vector<PairReport>> EstimateRelativePoses(
     Scene* scene, const std::map<ViewPair, PairMatches>& matches,
     const std::map<ViewId, DetectedFeatures>* detected,
-    const RelativePoseOptions& options, const RunContext& context);
+    const RelativePoseOptions& options, const RunContext& context,
+    const std::map<ViewPair, RigidTransform>& given = {});
 
 /// The relative poses refined once more, each on its inliers, after features
 /// have moved; tracks are built anew. `detected` as above.

@@ -1,0 +1,85 @@
+#include "lowlap/pipeline/internal/measure/matched_points.h"
+
+#include <string>
+#include <utility>
+
+#include "lowlap/features/internal/features.h"
+#include "lowlap/matching/internal/matching.h"
+#include "lowlap/pipeline/internal/measure/relative_poses.h"
+
+namespace lowlap {
+namespace {
+
+// Segments of the photographs that there are, also in scene->features.
+Result<std::map<ViewId, DetectedFeatures>> DetectSegments(
+    const RunContext& context, Scene* scene) {
+  FeatureOptions options;
+  options.detect_points = false;
+  std::map<ViewId, Error> failed;
+  auto detected = DetectFeatures(*scene, options, context, &failed);
+  if (!detected) return detected;
+  if (detected->empty() && !failed.empty()) {
+    context.Log(LogLevel::kInfo, "no photographs, points alone: " +
+                                     failed.begin()->second.ToString());
+    return detected;
+  }
+  for (const auto& [view, error] : failed) {
+    context.Log(LogLevel::kWarning,
+                "no lines, points alone: " + error.ToString());
+  }
+  for (const auto& [view, features] : *detected) {
+    scene->features[view].segments = features.features.segments;
+  }
+  return detected;
+}
+
+Status MatchSegments(const std::map<ViewId, DetectedFeatures>& detected,
+                     const RunContext& context,
+                     std::map<ViewPair, PairMatches>* matches) {
+  std::vector<ViewPair> pairs;
+  for (const auto& [pair, of_pair] : *matches) {
+    if (detected.count(pair.first) > 0 && detected.count(pair.second) > 0) {
+      pairs.push_back(pair);
+    }
+  }
+  MatchOptions options;
+  options.match_points = false;
+  auto lines = MatchFeatures(detected, pairs, options, context);
+  if (!lines) return tl::unexpected<Error>(lines.error());
+  for (auto& [pair, of_pair] : *lines) {
+    matches->at(pair).lines = std::move(of_pair.lines);
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<std::vector<PairReport>> RelateMatchedPoints(
+    const MatchedPoints& points, PhotographUse use,
+    const RelativePoseOptions& options, const RunContext& context,
+    StageLog* stages, Scene* scene) {
+  std::map<ViewPair, PairMatches> matches;
+  for (const auto& [pair, of_pair] : points.matches) {
+    matches[pair].points = of_pair;
+  }
+  std::map<ViewId, DetectedFeatures> detected;
+  if (use == PhotographUse::kLines) {
+    {
+      const StageLog::Scope scope(stages, "features");
+      auto segments = DetectSegments(context, scene);
+      if (!segments) return tl::unexpected<Error>(segments.error());
+      detected = std::move(*segments);
+    }
+    const StageLog::Scope scope(stages, "matching");
+    const Status matched = MatchSegments(detected, context, &matches);
+    if (!matched) return tl::unexpected<Error>(matched.error());
+  }
+  const StageLog::Scope scope(stages, "relative poses");
+  RelativePoseOptions of_points = options;
+  // The points have no descriptors here to be matched again by.
+  of_points.pair.starved_below = 0;
+  return EstimateRelativePoses(scene, matches, &detected, of_points, context,
+                               points.cam2_from_cam1);
+}
+
+}  // namespace lowlap
