@@ -1,10 +1,12 @@
 #include "cli/scene_input.h"
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"
-#include "lowlap/pipeline/internal/measure/relative_poses.h"
+#include "lowlap/pipeline/internal/measure/matched_points.h"
 #include "third_party_adapters/openmvg/internal/import.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -19,10 +21,21 @@ Result<std::vector<ViewId>> ExcludedViews(const Scene& scene,
   return excluded;
 }
 
+// A relative root path is meant from here, as OpenMVG reads it, or from the
+// listing's folder.
+void FindPhotographs(const std::string& listing, Scene* scene) {
+  namespace fs = std::filesystem;
+  const fs::path root(scene->root_path);
+  std::error_code ignored;
+  if (root.is_absolute() || fs::is_directory(root, ignored)) return;
+  const fs::path beside = fs::path(listing).parent_path() / root;
+  if (fs::is_directory(beside, ignored)) scene->root_path = beside.string();
+}
+
 Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
                                   const RunContext& context, StageLog* stages) {
   LoadedScene loaded;
-  std::map<ViewPair, PairMatches> matches;
+  MatchedPoints points;
   {
     const StageLog::Scope scope(stages, "import");
     openmvg::ImportOptions options;
@@ -39,17 +52,20 @@ Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
     LOWLAP_ASSIGN_OR_RETURN(const auto excluded,
                             ExcludedViews(project.scene, flags));
     loaded.scene = WithoutViews(project.scene, excluded);
-    for (auto& [views, points] : project.matches) {
+    for (auto& [views, matches] : project.matches) {
       if (loaded.scene.views.count(views.first) > 0 &&
           loaded.scene.views.count(views.second) > 0) {
-        matches[views].points = std::move(points);
+        points.matches[views] = std::move(matches);
       }
     }
   }
-  const StageLog::Scope scope(stages, "relative poses");
+  if (flags.image_lines) FindPhotographs(flags.scene, &loaded.scene);
   LOWLAP_ASSIGN_OR_RETURN(
-      loaded.pairs, EstimateRelativePoses(&loaded.scene, matches, nullptr,
-                                          RelativePoseOptions{}, context));
+      loaded.pairs,
+      RelateMatchedPoints(
+          points,
+          flags.image_lines ? PhotographUse::kLines : PhotographUse::kNone,
+          RelativePoseOptions{}, context, stages, &loaded.scene));
   return loaded;
 }
 
@@ -73,10 +89,14 @@ void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
             "folder of 1DSfM, or an OpenMVG sfm_data file together "
             "with -m; as the first argument or with -i");
   Option matches =
-      AddOption(command, "-m,--matchdir", flags->matches_dir,
+      AddOption(command, "-m,--matchdir,--match_dir", flags->matches_dir,
                 "OpenMVG matches folder (.feat and matches.* files)");
   AddOption(command, "-M,--match_file", flags->match_file,
             "Match file in that folder; default as in OpenMVG")
+      .Needs(matches);
+  AddFlag(command, "--image-lines", flags->image_lines,
+          "Of an OpenMVG project: lines as well, detected and matched in the "
+          "photographs that are found below its root path")
       .Needs(matches);
   AddOption(command, "--exclude", flags->exclude,
             "Views to leave out (file names or ids), separated by "

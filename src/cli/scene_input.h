@@ -17,6 +17,7 @@ struct SceneInputFlags {
   std::string scene;
   std::string matches_dir;
   std::string match_file;
+  bool image_lines = false;
   std::vector<std::string> exclude;
 };
 
