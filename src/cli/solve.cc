@@ -1,4 +1,8 @@
+#include <map>
 #include <memory>
+#include <optional>
+#include <sstream>
+#include <string>
 #include <utility>
 
 #include "cli/command.h"
@@ -11,15 +15,139 @@
 namespace lowlap::cli {
 namespace {
 
+// Values of OpenMVG's flags, by their letters; empty: not given.
+struct HostFlags {
+  std::map<char, std::string> values;
+  bool priors = false;
+};
+
 struct Flags {
   CommonFlags common;
   SceneInputFlags input;
   std::string output;
   SolveFlags solve;
+  HostFlags host;
 };
 
-Result<int> Solve(const Flags& flags) {
+// What OpenMVG's GLOBAL engine does not read either is ignored, with the
+// reason.
+struct IgnoredFlag {
+  const char* names;
+  const char* reason;
+};
+constexpr IgnoredFlag kIgnored[] = {
+    {"-R,--rotationAveraging",
+     "rotations are averaged robustly, by one method"},
+    {"-t,--triangulation_method", "it is of INCREMENTAL"},
+    {"-r,--resection_method", "it is of INCREMENTAL"},
+    {"-c,--camera_model", "it is of INCREMENTAL"},
+    {"-a,--initial_pair_a", "it is of INCREMENTAL"},
+    {"-b,--initial_pair_b", "it is of INCREMENTAL"},
+    {"-S,--sfm_initializer", "it is of INCREMENTALV2"},
+    {"-G,--graph_simplification", "it is of STELLAR"},
+    {"-g,--graph_simplification_value", "it is of STELLAR"}};
+
+// OpenMVG's translation methods as lowlap's strategies.
+const std::map<std::string, std::string>& StrategyOfMethod() {
+  static const std::map<std::string, std::string> strategies = {
+      {"1", "linf"}, {"2", "l2_chordal"}, {"3", "soft_l1"}};
+  return strategies;
+}
+
+// What -f asks for, as --refine-intrinsics takes it; nullopt: nothing known.
+std::optional<std::string> PartsToRefine(const std::string& host_parts) {
+  static const std::map<std::string, std::string> kParts = {
+      {"ADJUST_ALL", "focal,principal-point,distortion,"},
+      {"ADJUST_FOCAL_LENGTH", "focal,"},
+      {"ADJUST_PRINCIPAL_POINT", "principal-point,"},
+      {"ADJUST_DISTORTION", "distortion,"},
+      {"NONE", ""}};
+  std::string parts;
+  std::istringstream list(host_parts);
+  for (std::string part; std::getline(list, part, '|');) {
+    const auto known = kParts.find(part);
+    if (known == kParts.end()) return std::nullopt;
+    parts += known->second;
+  }
+  return parts;
+}
+
+// Flags of openMVG_main_SfM that are not lowlap's own.
+void AddHostFlags(CLI::App* command, HostFlags* host) {
+  AddOption(command, "-s,--sfm_engine", host->values['s'],
+            "As in OpenMVG; lowlap takes the place of GLOBAL")
+      .Must(Check(
+          [](const std::string& engine) {
+            return engine == "GLOBAL" ? std::string()
+                                      : "lowlap takes the place of GLOBAL, "
+                                        "not of " +
+                                            engine;
+          },
+          "GLOBAL"));
+  AddOption(command, "-f,--refine_intrinsic_config", host->values['f'],
+            "--refine-intrinsics in OpenMVG's words: NONE (default, unlike "
+            "OpenMVG's), ADJUST_ALL, or some of "
+            "ADJUST_FOCAL_LENGTH|ADJUST_PRINCIPAL_POINT|ADJUST_DISTORTION")
+      .Must(Check(
+          [](const std::string& parts) {
+            return PartsToRefine(parts)
+                       ? std::string()
+                       : "'" + parts + "' names no parts of an intrinsic";
+          },
+          "PARTS"))
+      .Excludes(FindOption(command, "--refine-intrinsics"));
+  AddOption(command, "-e,--refine_extrinsic_config", host->values['e'],
+            "As in OpenMVG: ADJUST_ALL (default), or NONE: --no-adjust")
+      .Must(Check::OneOf({"ADJUST_ALL", "NONE"}));
+  AddOption(command, "-T,--translationAveraging", host->values['T'],
+            "--strategy by OpenMVG's number: 1 is linf, 2 l2_chordal, 3 "
+            "soft_l1; lowlap's own is the default")
+      .Must(Check(
+          [](const std::string& method) {
+            return StrategyOfMethod().count(method) > 0
+                       ? std::string()
+                       : "lowlap has the methods 1, 2 and 3, not " + method;
+          },
+          "NUMBER"))
+      .Excludes(FindOption(command, "--strategy"));
+  AddFlag(command, "-P,--prior_usage", host->priors,
+          "Refused: lowlap does not use measured positions (GPS)");
+  for (const IgnoredFlag& flag : kIgnored) {
+    AddOption(command, flag.names, host->values[flag.names[1]],
+              std::string("Ignored: ") + flag.reason);
+  }
+}
+
+// What the flags of OpenMVG mean in lowlap's.
+Status ApplyHostFlags(const HostFlags& host, const RunContext& context,
+                      SolveFlags* solve) {
+  if (host.priors) {
+    return MakeError(ErrorCode::kUnsupported,
+                     "-P: lowlap does not use measured positions (GPS); "
+                     "without it the scene has a frame and scale of its own");
+  }
+  const auto value = [&](char letter) { return host.values.at(letter); };
+  if (!value('f').empty()) {
+    solve->refine_intrinsics = *PartsToRefine(value('f'));
+  }
+  if (!value('T').empty()) solve->strategy = StrategyOfMethod().at(value('T'));
+  solve->no_adjust |= value('e') == "NONE";
+  if (solve->no_adjust && !solve->refine_intrinsics.empty()) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "-f: the bundle adjustment, which --no-adjust (-e NONE) "
+                     "leaves out, refines intrinsics");
+  }
+  for (const IgnoredFlag& flag : kIgnored) {
+    if (value(flag.names[1]).empty()) continue;
+    context.Log(LogLevel::kWarning, std::string(flag.names).substr(0, 2) +
+                                        " is ignored: " + flag.reason);
+  }
+  return {};
+}
+
+Result<int> Solve(Flags flags) {
   const RunContext context = MakeContext(flags.common);
+  LOWLAP_RETURN_IF_ERROR(ApplyHostFlags(flags.host, context, &flags.solve));
   LOWLAP_RETURN_IF_ERROR(MakeSolveOptions(flags.solve));
   // A folder that cannot be written is found before the work.
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
@@ -43,10 +171,11 @@ void AddSolve(CLI::App* program, Action* action) {
       "Solve a scene description (ours, or an OpenMVG project): scale "
       "ratios, poses, bundle adjustment");
   AddSceneInputFlags(command, &flags->input);
-  AddOption(command, "-o,--output,--outdir", flags->output,
+  AddOption(command, "-o,--output,--outdir,--output_dir", flags->output,
             "Folder for the results")
       .Required();
   AddSolveFlags(command, &flags->solve);
+  AddHostFlags(command, &flags->host);
   AddStrictFlag(command, &flags->solve.strict);
   AddCommonFlags(command, &flags->common);
   RunWhenChosen(command, flags, Solve, action);
