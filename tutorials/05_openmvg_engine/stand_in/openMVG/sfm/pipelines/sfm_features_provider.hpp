@@ -1,0 +1,2 @@
+#pragma once
+#include "openmvg_types.h"
