@@ -234,10 +234,8 @@ class Adjuster {
     const SolveRequest request{
         stage, fixed_rotations, function_tolerance, noise_,
         stage == kFinalStage && options_.compute_center_covariances};
-    Result<SolveOutcome> outcome =
-        SolveOnce(options_, request, context_, &cameras_, &state_);
-    if (!outcome) return tl::unexpected<Error>(outcome.error());
-    last_ = std::move(*outcome);
+    LOWLAP_ASSIGN_OR_RETURN(
+        last_, SolveOnce(options_, request, context_, &cameras_, &state_));
     const SolveReport& report = last_.report;
     context_.Log(LogLevel::kInfo,
                  "adjustment: " + stage + ": cost " +
@@ -264,12 +262,12 @@ class Adjuster {
     LOWLAP_RETURN_IF_ERROR(
         FollowPoses(options_, noise_.lines, context_, cameras_, &state_));
     EstimateNoise();
-    const Result<ObservationChanges> changes = UpdateObservations(
-        options_, noise_, take_new_pairs, context_, cameras_, &state_);
-    if (!changes) return tl::unexpected<Error>(changes.error());
-    return changes->total > 0 ? static_cast<double>(changes->changed) /
-                                    static_cast<double>(changes->total)
-                              : 0.0;
+    LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes,
+                            UpdateObservations(options_, noise_, take_new_pairs,
+                                               context_, cameras_, &state_));
+    return changes.total > 0 ? static_cast<double>(changes.changed) /
+                                   static_cast<double>(changes.total)
+                             : 0.0;
   }
 
   const AdjustmentOptions& options_;
@@ -303,12 +301,10 @@ Result<AdjustmentSummary> AdjustScene(Scene* scene,
   }
 
   Adjuster adjuster(options, context, *scene);
-  status = adjuster.Run();
-  if (!status) return tl::unexpected<Error>(status.error());
-  Result<AdjustmentSummary> summary = adjuster.Summarise();
-  if (!summary) return summary;
-  adjuster.WriteTo(scene, &*summary);
-  summary->seconds =
+  LOWLAP_RETURN_IF_ERROR(adjuster.Run());
+  LOWLAP_ASSIGN_OR_RETURN(AdjustmentSummary summary, adjuster.Summarise());
+  adjuster.WriteTo(scene, &summary);
+  summary.seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count();
   return summary;

@@ -5,6 +5,7 @@
 
 #include "lowlap/adjustment/internal/rounds/pairs.h"
 #include "lowlap/adjustment/internal/rounds/problem_selection.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -138,17 +139,15 @@ Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
                                               StructureState* state) {
   ObservationChanges changes;
   if (options.use_points) {
-    const Status status =
+    LOWLAP_RETURN_IF_ERROR(
         UpdateTracks(cameras, LimitsOf<PointTrackState>(options, noise.points),
                      std::vector<char>(state->points.size(), 1), context,
-                     &state->points, &changes);
-    if (!status) return tl::unexpected<Error>(status.error());
+                     &state->points, &changes));
   }
   if (!options.use_lines) return changes;
-  const Status status = UpdateTracks(
+  LOWLAP_RETURN_IF_ERROR(UpdateTracks(
       cameras, LimitsOf<LineTrackState>(options, noise.lines),
-      SolvedLines(options, cameras, *state), context, &state->lines, &changes);
-  if (!status) return tl::unexpected<Error>(status.error());
+      SolvedLines(options, cameras, *state), context, &state->lines, &changes));
   if (!options.use_coplanar) return changes;
   changes.changed += SelectPairs(options, cameras, noise.coplanar.threshold_px,
                                  take_new_pairs, state);
