@@ -119,8 +119,8 @@ void AddHostFlags(CLI::App* command, HostFlags* host) {
 }
 
 // What the flags of OpenMVG mean in lowlap's.
-Status ApplyHostFlags(const HostFlags& host, const RunContext& context,
-                      SolveFlags* solve) {
+Result<SolveFlags> WithHostFlags(SolveFlags solve, const HostFlags& host,
+                                 const RunContext& context) {
   if (host.priors) {
     return MakeError(ErrorCode::kUnsupported,
                      "-P: lowlap does not use measured positions (GPS); "
@@ -128,11 +128,11 @@ Status ApplyHostFlags(const HostFlags& host, const RunContext& context,
   }
   const auto value = [&](char letter) { return host.values.at(letter); };
   if (!value('f').empty()) {
-    solve->refine_intrinsics = *PartsToRefine(value('f'));
+    solve.refine_intrinsics = *PartsToRefine(value('f'));
   }
-  if (!value('T').empty()) solve->strategy = StrategyOfMethod().at(value('T'));
-  solve->no_adjust |= value('e') == "NONE";
-  if (solve->no_adjust && !solve->refine_intrinsics.empty()) {
+  if (!value('T').empty()) solve.strategy = StrategyOfMethod().at(value('T'));
+  solve.no_adjust |= value('e') == "NONE";
+  if (solve.no_adjust && !solve.refine_intrinsics.empty()) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "-f: the bundle adjustment, which --no-adjust (-e NONE) "
                      "leaves out, refines intrinsics");
@@ -142,13 +142,14 @@ Status ApplyHostFlags(const HostFlags& host, const RunContext& context,
     context.Log(LogLevel::kWarning, std::string(flag.names).substr(0, 2) +
                                         " is ignored: " + flag.reason);
   }
-  return {};
+  return solve;
 }
 
-Result<int> Solve(Flags flags) {
+Result<int> Solve(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
-  LOWLAP_RETURN_IF_ERROR(ApplyHostFlags(flags.host, context, &flags.solve));
-  LOWLAP_RETURN_IF_ERROR(MakeSolveOptions(flags.solve));
+  LOWLAP_ASSIGN_OR_RETURN(const SolveFlags solve,
+                          WithHostFlags(flags.solve, flags.host, context));
+  LOWLAP_RETURN_IF_ERROR(MakeSolveOptions(solve));
   // A folder that cannot be written is found before the work.
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
   StageLog stages;
@@ -158,7 +159,7 @@ Result<int> Solve(Flags flags) {
                           LoadMeasuredScene(flags.input, context, &stages));
   summary.pairs = std::move(loaded.pairs);
   RestoreGivenIntrinsics(&loaded.scene);
-  return SolveAndWrite(std::move(loaded.scene), flags.solve, std::move(summary),
+  return SolveAndWrite(std::move(loaded.scene), solve, std::move(summary),
                        &stages, context, flags.input.scene, flags.output);
 }
 
