@@ -9,6 +9,7 @@
 
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
+#include "third_party_adapters/colmap/internal/scene_format.h"
 #include "third_party_adapters/onedsfm/internal/scene_format.h"
 #include "third_party_adapters/openmvg/internal/scene_format.h"
 
@@ -19,6 +20,7 @@ namespace {
 constexpr SceneFormats (*kAdapters[])() = {
     openmvg::OpenMvgFormats,
     onedsfm::OneDSfmFormats,
+    colmap::ColmapFormats,
 };
 
 /// The format that the first bytes of a file tell; null if they tell none.

@@ -15,6 +15,9 @@ class FileSet;
 ///   openmvg-bin   .bin     what OpenMVG holds
 ///   openmvg-xml   .xml     what OpenMVG holds
 ///   1dsfm         folder   a problem of 1DSfM; read only
+///   colmap-bin    folder   a model of COLMAP
+///   colmap        folder   the same as text
+///   colmap-db     .db      a database of COLMAP; written into one there is
 SceneFormats AllSceneFormats();
 
 /// Reads a scene file or folder. An sfm_data file is told by its first bytes,

@@ -12,7 +12,7 @@ packages=(
   libopencv-dev libopencv-contrib-dev libexif-dev
   libflann-dev liblz4-dev
   nlohmann-json3-dev libcereal-dev libcli11-dev libexpected-dev
-  zlib1g-dev libxxhash-dev
+  zlib1g-dev libxxhash-dev libsqlite3-dev
   libgtest-dev libgmock-dev
   "$@"
 )

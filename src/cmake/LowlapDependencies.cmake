@@ -14,6 +14,7 @@ find_package(cereal REQUIRED)
 find_package(CLI11 REQUIRED)
 find_package(tl-expected REQUIRED)
 find_package(ZLIB 1.2.9 REQUIRED)
+find_package(SQLite3 3.40 REQUIRED)
 # xxHash is compiled into core from its header.
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 # libexif and Clp have no CMake package; they are linked by their names, as
@@ -29,4 +30,4 @@ find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 set(LOWLAP_DEVELOPMENT_PACKAGES
     libeigen3-dev libceres-dev libsuitesparse-dev coinor-libclp-dev
     libopencv-dev libopencv-contrib-dev libexif-dev libexpected-dev
-    zlib1g-dev)
+    zlib1g-dev libsqlite3-dev)

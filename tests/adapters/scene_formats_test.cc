@@ -71,7 +71,7 @@ TEST(SceneFormats, AnUnknownFormatIsAnErrorThatListsTheKnown) {
   const auto by_extension = WriteScene(TwoViews(), folder.Path("b.mat"));
   ASSERT_FALSE(by_extension.has_value());
   expect_list(by_extension.error());
-  const auto by_name = WriteScene(TwoViews(), folder.Path("b.json"), "colmap");
+  const auto by_name = WriteScene(TwoViews(), folder.Path("b.json"), "vrml");
   ASSERT_FALSE(by_name.has_value());
   expect_list(by_name.error());
   EXPECT_FALSE(std::filesystem::exists(folder.Path("b.json")));

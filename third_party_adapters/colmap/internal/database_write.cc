@@ -1,0 +1,233 @@
+#include <filesystem>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/io/internal/failure.h"
+#include "third_party_adapters/colmap/internal/camera.h"
+#include "third_party_adapters/colmap/internal/database.h"
+#include "third_party_adapters/colmap/internal/database_records.h"
+#include "third_party_adapters/colmap/internal/model_scene.h"
+
+namespace lowlap::colmap {
+namespace {
+
+// The value of two_view_geometries.config for calibrated cameras.
+constexpr std::int64_t kCalibrated = 2;
+// Databases from 4.0 on say "not set" by NULL, earlier ones by zeros.
+constexpr std::int64_t kFirstWithNull = 3140000;
+
+struct ImageRow {
+  ViewId view;
+  std::uint32_t id = 0;
+};
+
+std::vector<double> RowMajor(const Mat3& matrix) {
+  std::vector<double> numbers;
+  for (int n = 0; n < 9; ++n) numbers.push_back(matrix(n / 3, n % 3));
+  return numbers;
+}
+
+// With COLMAP's pixels.
+Mat3 CalibrationMatrix(const Intrinsic& intrinsic) {
+  const Vec2 pp = intrinsic.principal_point_px + PixelShift(intrinsic);
+  Mat3 matrix = Mat3::Identity();
+  matrix << intrinsic.fx_px, 0, pp.x(), 0, intrinsic.fy_px, pp.y(), 0, 0, 1;
+  return matrix;
+}
+
+class DatabaseWriter {
+ public:
+  DatabaseWriter(const Scene& scene, const std::string& path)
+      : scene_(scene), sqlite_(path, Sqlite::Mode::kReadWrite) {}
+
+  SceneNotes Write() {
+    for (const char* table : {"images", "keypoints", "two_view_geometries"}) {
+      if (sqlite_.HasTable(table)) continue;
+      throw Failure{Error{ErrorCode::kInvalidScene,
+                          "not a database of COLMAP: it has no such table",
+                          {},
+                          std::string("table ") + table}};
+    }
+    sqlite_.Run("BEGIN IMMEDIATE");
+    FindImages();
+    CheckKeypoints();
+    RemoveGeometries();
+    AddGeometries();
+    sqlite_.Run("COMMIT");
+    SceneNotes notes;
+    if (num_unused_ > 0) {
+      notes.push_back(std::to_string(num_unused_) +
+                      " images of the database are not in the scene; their "
+                      "pairs stay as they are");
+    }
+    return notes;
+  }
+
+ private:
+  void FindImages() {
+    std::map<std::string, std::uint32_t> by_name;
+    Statement row(sqlite_, "SELECT image_id, name FROM images", "images",
+                  "image_id");
+    while (row.Step()) by_name[row.Text(1)] = row.Unsigned(0);
+    for (const auto& [id, view] : scene_.views) {
+      const auto found = by_name.find(ImageName(view));
+      if (found == by_name.end()) {
+        row.FailRow("there is no image '" + ImageName(view) + "'",
+                    ErrorCode::kInvalidArgument);
+      }
+      image_of_[id] = found->second;
+      view_of_[found->second] = id;
+    }
+    num_unused_ = by_name.size() - view_of_.size();
+  }
+
+  // Inliers are indices of keypoints: of others they would mean nothing.
+  void CheckKeypoints() {
+    Statement row(sqlite_, "SELECT image_id, rows, cols, data FROM keypoints",
+                  "keypoints", "image_id");
+    std::map<ViewId, std::vector<std::pair<float, float>>> keypoints;
+    while (row.Step()) {
+      const auto view = view_of_.find(row.Unsigned(0));
+      if (view != view_of_.end()) {
+        keypoints[view->second] = ReadKeypoints(row, 1);
+      }
+    }
+    for (const auto& [views, pose] : scene_.relative_poses) {
+      for (const ViewId view : {views.first, views.second}) {
+        if (HasPoints(view, keypoints[view])) continue;
+        throw Failure{Error{
+            ErrorCode::kInvalidArgument,
+            "other keypoints than the points of view " +
+                std::to_string(view.value()) + " of the scene",
+            {},
+            "table keypoints, image_id " + std::to_string(image_of_.at(view))}};
+      }
+    }
+  }
+
+  bool HasPoints(ViewId view,
+                 const std::vector<std::pair<float, float>>& keypoints) const {
+    const auto features = scene_.features.find(view);
+    const Intrinsic* intrinsic = scene_.FindIntrinsic(view);
+    if (features == scene_.features.end() || intrinsic == nullptr) return false;
+    const auto& points_px = features->second.points_px;
+    const Vec2 shift = PixelShift(*intrinsic);
+    return std::equal(points_px.begin(), points_px.end(), keypoints.begin(),
+                      keypoints.end(), [&](const Vec2& ours, const auto& xy) {
+                        const Vec2 theirs = ours + shift;
+                        return static_cast<float>(theirs.x()) == xy.first &&
+                               static_cast<float>(theirs.y()) == xy.second;
+                      });
+  }
+
+  void RemoveGeometries() {
+    Statement row(sqlite_, "SELECT pair_id FROM two_view_geometries",
+                  "two_view_geometries", "pair_id");
+    std::vector<std::int64_t> removed;
+    while (row.Step()) {
+      const auto [first, second] = ImagesOfPair(row.Integer(0));
+      if (view_of_.count(first) > 0 && view_of_.count(second) > 0) {
+        removed.push_back(row.Integer(0));
+      }
+    }
+    Statement remove(sqlite_,
+                     "DELETE FROM two_view_geometries WHERE pair_id = ?",
+                     "two_view_geometries");
+    for (const std::int64_t pair : removed) {
+      remove.Bind(0, pair);
+      remove.Execute();
+    }
+  }
+
+  void AddGeometries() {
+    if (!sqlite_.HasColumn("two_view_geometries", "qvec")) {
+      for (const char* column : {"qvec", "tvec"}) {
+        sqlite_.Run("ALTER TABLE two_view_geometries ADD COLUMN " +
+                    std::string(column) + " BLOB");
+      }
+    }
+    Statement version(sqlite_, "PRAGMA user_version", "two_view_geometries");
+    const bool null_is_unset =
+        version.Step() && version.Integer(0) >= kFirstWithNull;
+    Statement insert(sqlite_,
+                     "INSERT INTO two_view_geometries(pair_id, rows, cols, "
+                     "data, config, F, E, H, qvec, tvec) "
+                     "VALUES(?, ?, 2, ?, ?, ?, ?, ?, ?, ?)",
+                     "two_view_geometries");
+    for (const auto& [views, pose] : scene_.relative_poses) {
+      AddGeometry(pose, null_is_unset, &insert);
+    }
+  }
+
+  void AddGeometry(const RelativePose& pose, bool null_is_unset,
+                   Statement* insert) const {
+    ImageRow first{pose.views.first, image_of_.at(pose.views.first)};
+    ImageRow second{pose.views.second, image_of_.at(pose.views.second)};
+    const bool is_swapped = first.id > second.id;
+    if (is_swapped) std::swap(first, second);
+    std::vector<FeatureIndex> matches;
+    for (const FeatureMatch& match : pose.point_inliers) {
+      matches.push_back(is_swapped ? match.second : match.first);
+      matches.push_back(is_swapped ? match.first : match.second);
+    }
+    const RigidTransform motion = UnitTransform(pose, first.view, second.view);
+    const Mat3 e = CrossMatrix(motion.translation) * motion.rotation;
+    const Mat3 k1 = CalibrationMatrix(*scene_.FindIntrinsic(first.view));
+    const Mat3 k2 = CalibrationMatrix(*scene_.FindIntrinsic(second.view));
+    const std::vector<double> essential = RowMajor(e);
+    const std::vector<double> fundamental =
+        RowMajor(k2.transpose().inverse() * e * k1.inverse());
+    const std::vector<double> zeros(9, 0.0);
+    const Vec4 q = QuaternionFromRotation(motion.rotation);
+    const std::vector<double> qvec(q.begin(), q.end());
+    const std::vector<double> tvec(motion.translation.begin(),
+                                   motion.translation.end());
+    insert->Bind(0, PairId(first.id, second.id));
+    insert->Bind(1, static_cast<std::int64_t>(pose.point_inliers.size()));
+    insert->BindBlob(2, Bytes(matches));
+    insert->Bind(3, kCalibrated);
+    insert->BindBlob(4, Bytes(fundamental));
+    insert->BindBlob(5, Bytes(essential));
+    if (null_is_unset) {
+      insert->BindNull(6);
+    } else {
+      insert->BindBlob(6, Bytes(zeros));
+    }
+    insert->BindBlob(7, Bytes(qvec));
+    insert->BindBlob(8, Bytes(tvec));
+    insert->Execute();
+  }
+
+  const Scene& scene_;
+  Sqlite sqlite_;
+  std::map<ViewId, std::uint32_t> image_of_;
+  std::map<std::uint32_t, ViewId> view_of_;
+  std::size_t num_unused_ = 0;
+};
+
+}  // namespace
+
+Result<SceneNotes> WriteRelativePoses(const Scene& scene,
+                                      const std::string& path) {
+  std::error_code ignored;
+  if (!std::filesystem::exists(path, ignored)) {
+    return MakeError(ErrorCode::kNotFound,
+                     "no such database; relative poses are written into one "
+                     "that COLMAP made",
+                     path);
+  }
+  if (!IsDatabase(path)) {
+    return MakeError(ErrorCode::kParse, "not an SQLite database", path);
+  }
+  if (const Status valid = ValidateScene(scene); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  Result<SceneNotes> notes =
+      Caught([&] { return DatabaseWriter(scene, path).Write(); });
+  if (!notes) notes.error().file = path;
+  return notes;
+}
+
+}  // namespace lowlap::colmap

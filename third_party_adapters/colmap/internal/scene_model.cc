@@ -1,0 +1,209 @@
+// The other half of model_scene.h: from a scene to a model.
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "lowlap/io/internal/failure.h"
+#include "third_party_adapters/colmap/internal/model_scene.h"
+
+namespace lowlap::colmap {
+namespace {
+
+double Rounded(double value, double unit) {
+  return std::nearbyint(value / unit) * unit + 0.0;  // 0 has one sign
+}
+
+// Bits after the leading one. Rounding errors of a rotation matrix reach the
+// last four of a double's 53, so these survive reading and writing.
+constexpr int kPoseBits = 47;
+
+FilePose RoundedPose(const Pose& pose) {
+  FilePose file;
+  file.rotation = QuaternionFromRotation(pose.rotation);
+  file.translation = pose.CamFromWorld().translation;
+  int exponent = 0;
+  std::frexp(file.translation.cwiseAbs().maxCoeff(), &exponent);
+  for (double& value : file.rotation) {
+    value = Rounded(value, std::ldexp(1.0, -kPoseBits));
+  }
+  // Of the two signs, that which makes the first number positive.
+  const auto first = std::find_if(file.rotation.begin(), file.rotation.end(),
+                                  [](double value) { return value != 0; });
+  if (*first < 0) file.rotation *= -1;
+  for (double& value : file.translation) {
+    value = Rounded(value, std::ldexp(1.0, exponent - kPoseBits));
+  }
+  return file;
+}
+
+// A pose that is the same after reading and rounding it again, which the first
+// rounding gives but where a number lies in the middle between two.
+FilePose StablePose(const Pose& pose) {
+  FilePose file = RoundedPose(pose);
+  for (int n = 0; n < 10; ++n) {
+    const Mat3 rotation = RotationFromQuaternion(file.rotation);
+    const FilePose again = RoundedPose(
+        {rotation, RigidTransform{rotation, file.translation}.Center()});
+    if (again.rotation == file.rotation &&
+        again.translation == file.translation) {
+      break;
+    }
+    file = again;
+  }
+  return file;
+}
+
+// COLMAP does not use the id 0.
+std::uint32_t IdShift(const Scene& scene) {
+  return scene.views.count(0) > 0 || scene.intrinsics.count(0) > 0 ? 1 : 0;
+}
+
+class Exporter {
+ public:
+  Exporter(const Scene& scene, SceneNotes* notes)
+      : scene_(scene), notes_(*notes), shift_(IdShift(scene)) {}
+
+  Model Export() {
+    AddImages();
+    AddPoints();
+    NoteRest();
+    return std::move(model_);
+  }
+
+ private:
+  void Note(std::size_t count, const char* what) {
+    if (count > 0) notes_.push_back(std::to_string(count) + " " + what);
+  }
+
+  void AddImages() {
+    std::size_t num_unposed = 0;
+    for (const auto& [id, view] : scene_.views) {
+      const Pose* pose = scene_.FindPose(id);
+      const Intrinsic* intrinsic = scene_.FindIntrinsic(id);
+      if (pose == nullptr || intrinsic == nullptr) {
+        ++num_unposed;
+        continue;
+      }
+      const std::uint32_t camera_id = view.intrinsic_id.value() + shift_;
+      if (cameras_.count(camera_id) == 0) {
+        auto camera = FromIntrinsic(*intrinsic, camera_id);
+        if (!camera) throw Failure{std::move(camera.error())};
+        cameras_[camera_id] = *ToIntrinsic(*camera);
+        model_.cameras.push_back(std::move(*camera));
+      }
+      Image image;
+      image.id = id.value() + shift_;
+      image.cam_from_world = StablePose(*pose);
+      image.camera_id = camera_id;
+      image.name = ImageName(view);
+      if (const auto features = scene_.features.find(id);
+          features != scene_.features.end()) {
+        for (const Vec2& pixel : features->second.points_px) {
+          image.points.push_back({pixel + PixelShift(*intrinsic), kNoPoint3D});
+        }
+      }
+      image_of_[id] = model_.images.size();
+      model_.images.push_back(std::move(image));
+    }
+    std::sort(model_.cameras.begin(), model_.cameras.end(),
+              [](const Camera& a, const Camera& b) { return a.id < b.id; });
+    Note(num_unposed, "views without a pose or an intrinsic were left out");
+  }
+
+  void AddPoints() {
+    std::size_t num_observations = 0, num_landmarks = 0;
+    const std::uint32_t shift = scene_.structure.count(0) > 0 ? 1 : 0;
+    for (const auto& [id, landmark] : scene_.structure) {
+      std::vector<PointObservation> kept;
+      for (const PointObservation& observation : landmark.observations) {
+        if (image_of_.count(observation.view) > 0) kept.push_back(observation);
+      }
+      num_observations += landmark.observations.size() - kept.size();
+      if (kept.size() < 2) {
+        ++num_landmarks;
+        continue;
+      }
+      Point3D point;
+      point.id = std::uint64_t{id.value()} + shift;
+      point.position = landmark.position;
+      double sum_px = 0;
+      for (const PointObservation& observation : kept) {
+        Image& image = model_.images[image_of_.at(observation.view)];
+        point.track.push_back({image.id, Place(observation, point.id, &image)});
+        sum_px += ErrorPx(image, image.points[point.track.back().point_index],
+                          landmark.position);
+      }
+      point.error_px = sum_px / static_cast<double>(kept.size());
+      model_.points.push_back(std::move(point));
+    }
+    Note(num_observations,
+         "observations from views without a pose or an intrinsic were left "
+         "out");
+    Note(num_landmarks,
+         "landmarks with fewer than two observations were left out");
+  }
+
+  // The index of an observation in POINTS2D: of its feature, if the scene has
+  // that and no other landmark took it, else at the end.
+  std::uint32_t Place(const PointObservation& observation,
+                      std::uint64_t point3d, Image* image) const {
+    const Point2D point = {
+        observation.pixel_px +
+            PixelShift(*scene_.FindIntrinsic(observation.view)),
+        point3d};
+    const auto features = scene_.features.find(observation.view);
+    const std::uint32_t index = observation.feature;
+    if (features != scene_.features.end() &&
+        index < features->second.points_px.size() &&
+        image->points[index].point3d == kNoPoint3D) {
+      image->points[index] = point;
+      return index;
+    }
+    image->points.push_back(point);
+    return static_cast<std::uint32_t>(image->points.size() - 1);
+  }
+
+  // By the numbers that are written, as COLMAP computes it.
+  double ErrorPx(const Image& image, const Point2D& point,
+                 const Vec3& position) const {
+    const Intrinsic& intrinsic = cameras_.at(image.camera_id);
+    const RigidTransform cam_from_world = {
+        RotationFromQuaternion(image.cam_from_world.rotation),
+        image.cam_from_world.translation};
+    return (intrinsic.Project(cam_from_world * position) +
+            PixelShift(intrinsic) - point.pixel_px)
+        .norm();
+  }
+
+  void NoteRest() {
+    const bool has_own_content =
+        !scene_.relative_poses.empty() || !scene_.point_tracks.empty() ||
+        !scene_.line_tracks.empty() || !scene_.scale_ratios.empty() ||
+        !scene_.line_structure.empty() || !scene_.coplanar_pairs.empty() ||
+        !scene_.control_points.empty();
+    if (has_own_content) {
+      notes_.push_back(
+          "relative poses, tracks, scale ratios, lines, coplanar pairs and "
+          "control points have no place in COLMAP's model and were left out");
+    }
+  }
+
+  const Scene& scene_;
+  SceneNotes& notes_;
+  const std::uint32_t shift_;
+  Model model_;
+  std::map<ViewId, std::size_t> image_of_;
+  std::map<std::uint32_t, Intrinsic> cameras_;  // as written
+};
+
+}  // namespace
+
+Result<Model> ModelFromScene(const Scene& scene, SceneNotes* notes) {
+  if (const Status valid = ValidateScene(scene); !valid) {
+    return tl::unexpected<Error>(valid.error());
+  }
+  return Caught([&] { return Exporter(scene, notes).Export(); });
+}
+
+}  // namespace lowlap::colmap
