@@ -1,12 +1,13 @@
 #include "cli/scene_input.h"
 
-#include <filesystem>
-#include <system_error>
+#include <map>
 #include <utility>
+#include <vector>
 
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/internal/measure/matched_points.h"
+#include "third_party_adapters/colmap/internal/database.h"
 #include "third_party_adapters/openmvg/internal/import.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -21,34 +22,51 @@ Result<std::vector<ViewId>> ExcludedViews(const Scene& scene,
   return excluded;
 }
 
-// A relative root path is meant from here, as OpenMVG reads it, or from the
-// listing's folder.
-void FindPhotographs(const std::string& listing, Scene* scene) {
-  namespace fs = std::filesystem;
-  const fs::path root(scene->root_path);
-  std::error_code ignored;
-  if (root.is_absolute() || fs::is_directory(root, ignored)) return;
-  const fs::path beside = fs::path(listing).parent_path() / root;
-  if (fs::is_directory(beside, ignored)) scene->root_path = beside.string();
+// Features and point matches of another program.
+struct Project {
+  Scene scene;
+  std::map<ViewPair, std::vector<FeatureMatch>> matches;
+};
+
+Result<Project> ReadOpenMvg(const SceneInputFlags& flags,
+                            const RunContext& context) {
+  openmvg::ImportOptions options;
+  options.match_file = flags.match_file;
+  LOWLAP_ASSIGN_OR_RETURN(
+      auto project,
+      openmvg::ImportProject(flags.scene, flags.matches_dir, options));
+  context.Log(LogLevel::kInfo, "matches from " + project.match_file);
+  if (project.num_dropped_pairs > 0) {
+    context.Log(LogLevel::kInfo,
+                std::to_string(project.num_dropped_pairs) +
+                    " pairs name views that the listing does not have");
+  }
+  return Project{std::move(project.scene), std::move(project.matches)};
 }
 
-Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
+Result<Project> ReadColmap(const SceneInputFlags& flags,
+                           const RunContext& context) {
+  LOWLAP_ASSIGN_OR_RETURN(auto database, colmap::ReadDatabase(flags.scene));
+  for (const std::string& note : database.notes) {
+    context.Log(LogLevel::kWarning, note);
+  }
+  return Project{std::move(database.scene), std::move(database.matches)};
+}
+
+// Whether there are matches to estimate relative poses from.
+bool HoldsMatches(const SceneInputFlags& flags) {
+  return !flags.matches_dir.empty() || colmap::IsDatabase(flags.scene);
+}
+
+Result<LoadedScene> EstimatePoses(const SceneInputFlags& flags,
                                   const RunContext& context, StageLog* stages) {
   LoadedScene loaded;
   MatchedPoints points;
   {
     const StageLog::Scope scope(stages, "import");
-    openmvg::ImportOptions options;
-    options.match_file = flags.match_file;
-    LOWLAP_ASSIGN_OR_RETURN(
-        auto project,
-        openmvg::ImportProject(flags.scene, flags.matches_dir, options));
-    context.Log(LogLevel::kInfo, "matches from " + project.match_file);
-    if (project.num_dropped_pairs > 0) {
-      context.Log(LogLevel::kInfo,
-                  std::to_string(project.num_dropped_pairs) +
-                      " pairs name views that the listing does not have");
-    }
+    LOWLAP_ASSIGN_OR_RETURN(auto project, flags.matches_dir.empty()
+                                              ? ReadColmap(flags, context)
+                                              : ReadOpenMvg(flags, context));
     LOWLAP_ASSIGN_OR_RETURN(const auto excluded,
                             ExcludedViews(project.scene, flags));
     loaded.scene = WithoutViews(project.scene, excluded);
@@ -59,13 +77,14 @@ Result<LoadedScene> ImportOpenMvg(const SceneInputFlags& flags,
       }
     }
   }
-  if (flags.image_lines) FindPhotographs(flags.scene, &loaded.scene);
+  PhotographUse use = PhotographUse::kNone;
+  if (!flags.images.empty()) {
+    loaded.scene.root_path = flags.images;
+    use = PhotographUse::kLines;
+  }
   LOWLAP_ASSIGN_OR_RETURN(
-      loaded.pairs,
-      RelateMatchedPoints(
-          points,
-          flags.image_lines ? PhotographUse::kLines : PhotographUse::kNone,
-          RelativePoseOptions{}, context, stages, &loaded.scene));
+      loaded.pairs, RelateMatchedPoints(points, use, RelativePoseOptions{},
+                                        context, stages, &loaded.scene));
   return loaded;
 }
 
@@ -86,18 +105,18 @@ void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
   // Required, but the message about it is ours: LoadScene.
   AddOption(command, "scene,-i,--input_file", flags->scene,
             "Scene file (.json, .lowlap, .bin, .xml), a problem "
-            "folder of 1DSfM, or an OpenMVG sfm_data file together "
-            "with -m; as the first argument or with -i");
+            "folder of 1DSfM, a database of COLMAP, or an OpenMVG sfm_data "
+            "file together with -m; as the first argument or with -i");
   Option matches =
       AddOption(command, "-m,--matchdir,--match_dir", flags->matches_dir,
                 "OpenMVG matches folder (.feat and matches.* files)");
   AddOption(command, "-M,--match_file", flags->match_file,
             "Match file in that folder; default as in OpenMVG")
       .Needs(matches);
-  AddFlag(command, "--image-lines", flags->image_lines,
-          "Of an OpenMVG project: lines as well, detected and matched in the "
-          "photographs that are found below its root path")
-      .Needs(matches);
+  AddOption(command, "--images", flags->images,
+            "The photographs of a COLMAP database, or of an OpenMVG listing "
+            "with -m: lines are detected in them and matched; without it, "
+            "points are all there is");
   AddOption(command, "--exclude", flags->exclude,
             "Views to leave out (file names or ids), separated by "
             "commas")
@@ -110,8 +129,14 @@ Result<LoadedScene> LoadScene(const SceneInputFlags& flags,
     return MakeError(ErrorCode::kInvalidArgument,
                      "the scene is missing: first argument, or -i");
   }
-  return flags.matches_dir.empty() ? ReadOwnScene(flags, context, stages)
-                                   : ImportOpenMvg(flags, context, stages);
+  if (HoldsMatches(flags)) return EstimatePoses(flags, context, stages);
+  if (!flags.images.empty()) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "--images goes with matches: a database of COLMAP, or an "
+                     "OpenMVG listing and -m",
+                     flags.scene);
+  }
+  return ReadOwnScene(flags, context, stages);
 }
 
 Result<LoadedScene> LoadMeasuredScene(const SceneInputFlags& flags,
@@ -122,10 +147,10 @@ Result<LoadedScene> LoadMeasuredScene(const SceneInputFlags& flags,
   if (loaded->scene.relative_poses.empty()) {
     return MakeError(
         ErrorCode::kInvalidScene,
-        flags.matches_dir.empty()
-            ? "holds no relative poses; for an OpenMVG listing give the "
-              "matches folder with -m"
-            : ExplainNoPose(loaded->pairs),
+        HoldsMatches(flags)
+            ? ExplainNoPose(loaded->pairs)
+            : "holds no relative poses; for an OpenMVG listing give the "
+              "matches folder with -m",
         flags.scene);
   }
   return loaded;

@@ -11,13 +11,14 @@
 
 namespace lowlap::cli {
 
-/// A scene to work on: a scene file, a problem folder of 1DSfM, or an OpenMVG
-/// listing with its matches folder. OpenMVG's flag names are understood.
+/// A scene to work on: a scene file, a problem folder of 1DSfM, a database of
+/// COLMAP, or an OpenMVG listing with its matches folder. OpenMVG's flag names
+/// are understood.
 struct SceneInputFlags {
   std::string scene;
   std::string matches_dir;
   std::string match_file;
-  bool image_lines = false;
+  std::string images;
   std::vector<std::string> exclude;
 };
 
@@ -28,8 +29,9 @@ struct LoadedScene {
   std::vector<PairReport> pairs;  // if the relative poses were estimated
 };
 
-/// Reads the scene without the excluded views. From an OpenMVG project the
-/// relative poses are estimated. kInvalidArgument if no scene is named.
+/// Reads the scene without the excluded views. From the matches of OpenMVG or
+/// COLMAP the relative poses are estimated. kInvalidArgument if no scene is
+/// named.
 Result<LoadedScene> LoadScene(const SceneInputFlags& flags,
                               const RunContext& context, StageLog* stages);
 

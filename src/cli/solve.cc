@@ -169,8 +169,8 @@ void AddSolve(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
   CLI::App* command = AddCommand(
       program, "solve",
-      "Solve a scene description (ours, or an OpenMVG project): scale "
-      "ratios, poses, bundle adjustment");
+      "Solve a scene description (ours, an OpenMVG project, or a COLMAP "
+      "database): scale ratios, poses, bundle adjustment");
   AddSceneInputFlags(command, &flags->input);
   AddOption(command, "-o,--output,--outdir,--output_dir", flags->output,
             "Folder for the results")

@@ -77,10 +77,9 @@ TEST_F(OpenMvgEngineData, UsesTheLinesOfThePhotographs) {
   const auto points = PosesOfEngine(&*host, Rotations::kLowlap);
   host->scene.s_root_path = Path("strecha/Herz-Jesus-P8/images");
   const auto lines = PosesOfEngine(&*host, Rotations::kLowlap);
-  // The root path of the listing is relative to its folder.
-  const Scene scene =
-      SolvedByCommand("--image-lines --no-adjust -i " + listing + " -m " +
-                      matches + " -M matches.e.bin");
+  const Scene scene = SolvedByCommand("--images " + host->scene.s_root_path +
+                                      " --no-adjust -i " + listing + " -m " +
+                                      matches + " -M matches.e.bin");
   EXPECT_EQ(lines, scene.poses);
   EXPECT_EQ(lines.size(), 8u);
   EXPECT_NE(lines, points);

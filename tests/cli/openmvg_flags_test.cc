@@ -92,7 +92,6 @@ TEST_F(OpenMvgFlags, AreRefusedWhereLowlapDoesNotDoIt) {
   ExpectRefused("-f NONE --refine-intrinsics focal", "excludes");
   ExpectRefused("-f ADJUST_ALL -e NONE", "-f: the bundle adjustment");
   ExpectRefused("-e ADJUST_ROTATION", "ADJUST_ROTATION");
-  ExpectRefused("--image-lines", "requires --matchdir");
 }
 
 }  // namespace

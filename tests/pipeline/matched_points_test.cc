@@ -90,7 +90,8 @@ TEST_F(MatchedPointsTest, AddsTheLinesOfThePhotographs) {
 }
 
 TEST_F(MatchedPointsTest, NeedsNoPhotographs) {
-  Scene without = Related(*points_, PhotographUse::kLines, "no such folder");
+  Scene without =
+      Related(*points_, PhotographUse::kLinesIfThere, "no such folder");
   EXPECT_THAT(log_, Contains(HasSubstr("no photographs, points alone: ")));
   without.root_path = scene_->root_path;
   EXPECT_TRUE(without == Related(*points_, PhotographUse::kNone));

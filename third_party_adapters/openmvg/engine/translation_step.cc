@@ -126,10 +126,11 @@ Result<TranslationStepResult> RunTranslationStep(
   }
   const MatchedPoints points = SelectMatches(&input);
   Scene scene = std::move(input.scene);
-  const auto pairs = RelateMatchedPoints(
-      points,
-      options.use_photographs ? PhotographUse::kLines : PhotographUse::kNone,
-      options.relative_poses, context, nullptr, &scene);
+  const auto pairs =
+      RelateMatchedPoints(points,
+                          options.use_photographs ? PhotographUse::kLinesIfThere
+                                                  : PhotographUse::kNone,
+                          options.relative_poses, context, nullptr, &scene);
   if (!pairs) return tl::unexpected<Error>(pairs.error());
   if (scene.relative_poses.empty()) {
     return MakeError(ErrorCode::kInsufficientData, ExplainNoPose(*pairs));

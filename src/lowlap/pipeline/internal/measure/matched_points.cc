@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/features.h"
 #include "lowlap/matching/internal/matching.h"
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
@@ -12,13 +13,16 @@ namespace {
 
 // Segments of the photographs that there are, also in scene->features.
 Result<std::map<ViewId, DetectedFeatures>> DetectSegments(
-    const RunContext& context, Scene* scene) {
+    PhotographUse use, const RunContext& context, Scene* scene) {
   FeatureOptions options;
   options.detect_points = false;
   std::map<ViewId, Error> failed;
   auto detected = DetectFeatures(*scene, options, context, &failed);
   if (!detected) return detected;
   if (detected->empty() && !failed.empty()) {
+    if (use == PhotographUse::kLines) {
+      return tl::unexpected<Error>(failed.begin()->second);
+    }
     context.Log(LogLevel::kInfo, "no photographs, points alone: " +
                                      failed.begin()->second.ToString());
     return detected;
@@ -44,9 +48,9 @@ Status MatchSegments(const std::map<ViewId, DetectedFeatures>& detected,
   }
   MatchOptions options;
   options.match_points = false;
-  auto lines = MatchFeatures(detected, pairs, options, context);
-  if (!lines) return tl::unexpected<Error>(lines.error());
-  for (auto& [pair, of_pair] : *lines) {
+  LOWLAP_ASSIGN_OR_RETURN(auto lines,
+                          MatchFeatures(detected, pairs, options, context));
+  for (auto& [pair, of_pair] : lines) {
     matches->at(pair).lines = std::move(of_pair.lines);
   }
   return {};
@@ -63,16 +67,13 @@ Result<std::vector<PairReport>> RelateMatchedPoints(
     matches[pair].points = of_pair;
   }
   std::map<ViewId, DetectedFeatures> detected;
-  if (use == PhotographUse::kLines) {
+  if (use != PhotographUse::kNone) {
     {
       const StageLog::Scope scope(stages, "features");
-      auto segments = DetectSegments(context, scene);
-      if (!segments) return tl::unexpected<Error>(segments.error());
-      detected = std::move(*segments);
+      LOWLAP_ASSIGN_OR_RETURN(detected, DetectSegments(use, context, scene));
     }
     const StageLog::Scope scope(stages, "matching");
-    const Status matched = MatchSegments(detected, context, &matches);
-    if (!matched) return tl::unexpected<Error>(matched.error());
+    LOWLAP_RETURN_IF_ERROR(MatchSegments(detected, context, &matches));
   }
   const StageLog::Scope scope(stages, "relative poses");
   RelativePoseOptions of_points = options;

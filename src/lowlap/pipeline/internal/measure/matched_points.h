@@ -23,14 +23,16 @@ struct MatchedPoints {
 
 enum class PhotographUse {
   kNone,
-  /// Lines are detected and matched in the photographs (Scene::ImagePath) that
-  /// there are.
+  /// Lines are detected and matched in the photographs (Scene::ImagePath).
   kLines,
+  /// The same, if there are any.
+  kLinesIfThere,
 };
 
 /// From the points of another program to relative poses and tracks
 /// (EstimateRelativePoses). Views whose photograph is missing or unusable have
-/// points alone; the log names them.
+/// points alone; the log names them. Errors: those of EstimateRelativePoses;
+/// that of the first photograph if none is usable, with kLines.
 Result<std::vector<PairReport>> RelateMatchedPoints(
     const MatchedPoints& points, PhotographUse use,
     const RelativePoseOptions& options, const RunContext& context,
