@@ -1,10 +1,24 @@
-#include "lowlap/io/internal/transfer.h"
+#include "lowlap/io/internal/binary_record.h"
 #include "third_party_adapters/colmap/internal/model.h"
 
 namespace lowlap::colmap {
 namespace {
 
 // Each function serves ByteWriter (with const data) and ByteReader.
+
+template <class Archive, class Matrix>
+void TransferMatrix(Archive& archive, Matrix& matrix) {
+  BinaryRecord<Archive>(archive).Item(matrix);
+}
+
+/// The number of items, then each; `min_bytes` is the least size of an item.
+template <class Archive, class Vector, class Transfer>
+void TransferVector(Archive& archive, Vector& items, std::size_t min_bytes,
+                    const Transfer& transfer) {
+  const std::size_t size = archive.Length(items.size(), min_bytes);
+  if constexpr (Archive::kReads) items.resize(size);
+  for (auto& item : items) transfer(archive, item);
+}
 
 template <class Archive, class Integer>
 void TransferSigned(Archive& archive, Integer& value) {
@@ -89,8 +103,9 @@ void TransferRig(Archive& archive, OneRig& rig) {
     auto& sensor = rig.sensors[n];
     TransferSensor(archive, sensor.sensor);
     if (n == 0) continue;  // the reference
-    TransferOptional(archive, sensor.sensor_from_rig,
-                     [](auto& a, auto& pose) { TransferPose(a, pose); });
+    BinaryRecord<Archive>(archive).Optional(
+        "", sensor.sensor_from_rig,
+        [&](auto&, auto& pose) { TransferPose(archive, pose); });
   }
 }
 
