@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/io/internal/failure.h"
 #include "third_party_adapters/colmap/internal/camera.h"
@@ -221,9 +222,7 @@ Result<SceneNotes> WriteRelativePoses(const Scene& scene,
   if (!IsDatabase(path)) {
     return MakeError(ErrorCode::kParse, "not an SQLite database", path);
   }
-  if (const Status valid = ValidateScene(scene); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateScene(scene));
   Result<SceneNotes> notes =
       Caught([&] { return DatabaseWriter(scene, path).Write(); });
   if (!notes) notes.error().file = path;

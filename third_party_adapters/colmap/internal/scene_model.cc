@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/failure.h"
 #include "third_party_adapters/colmap/internal/model_scene.h"
 
@@ -200,9 +201,7 @@ class Exporter {
 }  // namespace
 
 Result<Model> ModelFromScene(const Scene& scene, SceneNotes* notes) {
-  if (const Status valid = ValidateScene(scene); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateScene(scene));
   return Caught([&] { return Exporter(scene, notes).Export(); });
 }
 

@@ -4,6 +4,7 @@
 
 #include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/pipeline/internal/given_rotations.h"
 #include "lowlap/pipeline/internal/measure/matched_points.h"
@@ -121,9 +122,7 @@ Result<PoseSummary> Solve(const TranslationStepInput& input,
 Result<TranslationStepResult> RunTranslationStep(
     TranslationStepInput input, const TranslationStepOptions& options,
     const RunContext& context) {
-  if (const Status valid = Check(input, options); !valid) {
-    return tl::unexpected<Error>(valid.error());
-  }
+  LOWLAP_RETURN_IF_ERROR(Check(input, options));
   const MatchedPoints points = SelectMatches(&input);
   Scene scene = std::move(input.scene);
   const auto pairs =

@@ -173,9 +173,7 @@ Result<std::vector<Part>> SolveGroup(Part group,
   for (const std::vector<std::size_t>& views : GroupViewsByTracks(
            cleaned.views.size(), cleaned.tracks, options.min_views_per_track,
            options.min_shared_points)) {
-    if (const Status go_on = ask(); !go_on) {
-      return tl::unexpected<Error>(go_on.error());
-    }
+    LOWLAP_RETURN_IF_ERROR(ask());
     Part part = Restrict(cleaned, views, options.min_views_per_track,
                          [](std::size_t, std::size_t) { return true; });
     LOWLAP_RETURN_IF_ERROR(solve(&part));

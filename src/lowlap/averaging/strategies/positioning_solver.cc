@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "lowlap/averaging/strategies/internal/block_matrix.h"
+#include "lowlap/averaging/internal/block_matrix.h"
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/core/internal/propagate.h"

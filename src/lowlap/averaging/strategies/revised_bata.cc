@@ -3,8 +3,8 @@
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
 
-#include "lowlap/averaging/internal/minimise.h"
 #include "lowlap/averaging/strategies/internal/bata.h"
+#include "lowlap/averaging/strategies/internal/minimise.h"
 #include "lowlap/averaging/strategies/internal/revised_lud.h"
 
 namespace lowlap {

@@ -27,7 +27,7 @@ namespace lowlap {
 /// The ends of an interval are found by regula falsi to 1e-10 in log tau from
 /// the stationary points of the error, which is taken as monotone in between.
 /// Tolerance: the returned log10 NFA is never above that of any candidate's
-/// ratio, and within 1 % (0.02 near 0) of that of any ratio (tests/scale).
+/// ratio, and within 1 % (0.05 near 0) of that of any ratio (tests/scale).
 ///
 /// There must be a hypothesis in [low, high].
 RatioOptimum SweepRatios(const RatioSupport& support,

@@ -1,6 +1,8 @@
-#include "lowlap/averaging/internal/minimise.h"
+#include "lowlap/averaging/strategies/internal/minimise.h"
 
 #include <ceres/solver.h>
+
+#include <algorithm>
 
 #include "lowlap/averaging/internal/cancellation.h"
 
@@ -40,7 +42,8 @@ Result<int> Minimise(const RunContext& context, int max_iterations,
   ceres::Solver::Summary summary;
   ceres::Solve(options, problem, &summary);
   if (!asking.status()) return tl::unexpected<Error>(asking.status().error());
-  return static_cast<int>(summary.iterations.size());
+  // The first is the start.
+  return std::max(0, static_cast<int>(summary.iterations.size()) - 1);
 }
 
 }  // namespace lowlap

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/strategies/internal/block_matrix.h"
+#include "lowlap/averaging/internal/block_matrix.h"
 
 #include <gtest/gtest.h>
 
