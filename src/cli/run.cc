@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -7,14 +6,12 @@
 #include "cli/command.h"
 #include "cli/solve_flags.h"
 #include "cli/truth.h"
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/adjustment/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"
-#include "lowlap/pipeline/internal/measure/image_measurements.h"
-#include "lowlap/pipeline/internal/output/output_folder.h"
-#include "lowlap/pipeline/measure_images.h"
-#include "third_party_adapters/scene_formats.h"
-#include "third_party_adapters/strecha/internal/strecha.h"
+#include "lowlap/pipeline/measure_and_refine.h"
+#include "lowlap/pipeline/run_output.h"
+#include "third_party_adapters/camera_files.h"
 
 namespace lowlap::cli {
 namespace {
@@ -39,59 +36,11 @@ bool IsNamed(const char* name, const std::vector<std::string>& names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// A calibration matrix, or the intrinsics of a scene file.
 Result<IntrinsicSource> ReadIntrinsics(const RunFlags& flags) {
+  if (!flags.intrinsics.empty()) return ReadIntrinsicSource(flags.intrinsics);
   IntrinsicSource source;
   source.focal_px = flags.focal_px;
-  if (flags.intrinsics.empty()) return source;
-  auto scene = ReadScene(flags.intrinsics);
-  if (scene) {
-    source.scene = std::move(*scene);
-    return source;
-  }
-  if (scene.error().code != ErrorCode::kUnsupported) {
-    return tl::unexpected<Error>(scene.error());
-  }
-  LOWLAP_ASSIGN_OR_RETURN(source.calibration,
-                          strecha::ReadCalibrationMatrix(flags.intrinsics));
   return source;
-}
-
-// Relative poses and, where asked for, intrinsics: relative poses from a wrong
-// focal length are wrong themselves. If a first solution moves the intrinsics
-// by more than a pixel, they are estimated once more with the refined ones.
-Result<std::vector<PairReport>> Measure(const RunFlags& flags,
-                                        const MeasurementOptions& front_end,
-                                        SolveOptions options,
-                                        const RunContext& context,
-                                        StageLog* stages, Scene* scene,
-                                        std::map<ViewId, Error>* failed) {
-  LOWLAP_ASSIGN_OR_RETURN(const auto measurements,
-                          MatchImages(*scene, front_end, context, stages));
-  *failed = measurements.failed;
-  auto pairs = RelatePairs(measurements, front_end, context, stages, scene);
-  if (!pairs || !options.adjust || flags.solve.refine_intrinsics.empty()) {
-    return pairs;
-  }
-  Scene first = *scene;
-  LOWLAP_RETURN_IF_ERROR(SetRefinement(flags.solve.refine_intrinsics, &first,
-                                       &options.adjustment));
-  const auto solved = SolveScene(&first, options, context, stages);
-  if (!solved && solved.error().code == ErrorCode::kCancelled) {
-    return tl::unexpected<Error>(solved.error());
-  }
-  constexpr double kLargeShiftPx = 1;
-  if (!solved || LargestIntrinsicShiftPx(first) <= kLargeShiftPx) {
-    return pairs;
-  }
-  context.Log(LogLevel::kInfo,
-              "relative poses once more, with refined intrinsics");
-  for (const std::string& line : DescribeIntrinsicChanges(first)) {
-    context.Log(LogLevel::kInfo, line);
-  }
-  scene->intrinsics = first.intrinsics;
-  scene->given_intrinsics = first.given_intrinsics;
-  return RelatePairs(measurements, front_end, context, stages, scene);
 }
 
 Result<int> Run(const RunFlags& flags) {
@@ -100,6 +49,8 @@ Result<int> Run(const RunFlags& flags) {
   LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeSolveOptions(flags.solve));
   LOWLAP_ASSIGN_OR_RETURN(const auto scale,
                           MakeScaleOptions(flags.solve.scale));
+  LOWLAP_ASSIGN_OR_RETURN(const auto refinement,
+                          ParseRefinement(flags.solve.refine_intrinsics));
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
   LOWLAP_ASSIGN_OR_RETURN(const auto intrinsics, ReadIntrinsics(flags));
   std::vector<std::string> notes;
@@ -136,28 +87,19 @@ Result<int> Run(const RunFlags& flags) {
   StageLog stages;
   RunSummary summary;
   summary.command = "run";
-  std::map<ViewId, Error> failed;
-  auto pairs =
-      Measure(flags, front_end, options, context, &stages, &scene, &failed);
-  if (!pairs) {
+  auto report = MeasureAndRefine(&scene, front_end, options, refinement,
+                                 context, &stages);
+  if (!report) {
     if (IsInterrupted() && !flags.no_cache) {
       context.Log(LogLevel::kInfo, "what was measured is kept in " +
                                        front_end.cache_folder +
                                        "; the same command goes on from there");
     }
-    return tl::unexpected<Error>(pairs.error());
+    if (report.error().file.empty()) report.error().file = flags.images;
+    return tl::unexpected<Error>(report.error());
   }
-  summary.unrelated = FindUnrelatedViews(*pairs, failed);
-  for (const UnrelatedView& view : summary.unrelated) {
-    context.Log(LogLevel::kWarning,
-                scene.views.at(view.view).filename +
-                    " has no relative pose: " + view.reason);
-  }
-  if (scene.relative_poses.empty()) {
-    return MakeError(ErrorCode::kInsufficientData, ExplainNoPose(*pairs),
-                     flags.images);
-  }
-  summary.pairs = std::move(*pairs);
+  summary.pairs = std::move(report->pairs);
+  summary.unrelated = std::move(report->unrelated);
   return SolveAndWrite(std::move(scene), flags.solve, std::move(summary),
                        &stages, context, flags.images, flags.output);
 }

@@ -1,46 +1,20 @@
 #include "cli/solve_flags.h"
 
-#include <algorithm>
 #include <cstdio>
 #include <map>
-#include <sstream>
 #include <utility>
 
 #include "cli/command.h"
 #include "cli/truth.h"
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/adjustment/intrinsic_refinement.h"
 #include "lowlap/averaging/averager_registry.h"
-#include "lowlap/averaging/internal/pose_warnings.h"
+#include "lowlap/averaging/pose_warnings.h"
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/internal/output/output_folder.h"
+#include "lowlap/pipeline/run_output.h"
 
 namespace lowlap::cli {
 namespace {
-
-struct Kinds {
-  bool points = false;
-  bool lines = false;
-  bool coplanar = false;
-};
-
-Result<Kinds> ParseKinds(const std::vector<std::string>& names) {
-  Kinds kinds;
-  for (const std::string& name : names) {
-    if (name == "points") {
-      kinds.points = true;
-    } else if (name == "lines") {
-      kinds.lines = true;
-    } else if (name == "coplanar") {
-      kinds.coplanar = true;
-    } else {
-      return MakeError(ErrorCode::kInvalidArgument,
-                       "unknown kind of feature '" + name +
-                           "'; known: points, lines, coplanar");
-    }
-  }
-  return kinds;
-}
 
 void PrintPoses(const PoseSummary& poses, const Scene& scene) {
   std::printf("cameras placed: %d/%d\n", poses.num_placed, poses.num_views);
@@ -202,15 +176,6 @@ void AddStrictFlag(CLI::App* command, bool* strict) {
           "doubtful; the results are written all the same");
 }
 
-Status SetAdjustedFeatures(const std::vector<std::string>& features,
-                           AdjustmentOptions* options) {
-  LOWLAP_ASSIGN_OR_RETURN(const auto kinds, ParseKinds(features));
-  options->use_points = kinds.points;
-  options->use_lines = kinds.lines || kinds.coplanar;
-  options->use_coplanar = kinds.coplanar;
-  return {};
-}
-
 Option AddRefinementFlag(CLI::App* command, std::string* parts) {
   return AddOption(command, "--refine-intrinsics", *parts,
                    "Free these parts of every intrinsic in the bundle "
@@ -221,27 +186,6 @@ Option AddRefinementFlag(CLI::App* command, std::string* parts) {
                    "it")
       .ValueIsOptional()
       .ShowDefault("focal,distortion");
-}
-
-Result<IntrinsicRefinement> ParseRefinement(const std::string& parts) {
-  IntrinsicRefinement refinement;
-  std::istringstream list(parts);
-  for (std::string part; std::getline(list, part, ',');) {
-    const bool all = part == "all";
-    const bool known = all || part == "focal" || part == "aspect" ||
-                       part == "principal-point" || part == "distortion";
-    if (!known && !part.empty()) {
-      return MakeError(ErrorCode::kInvalidArgument,
-                       "--refine-intrinsics knows no '" + part +
-                           "'; known: focal, aspect, principal-point, "
-                           "distortion, all");
-    }
-    refinement.focal |= all || part == "focal";
-    refinement.aspect_ratio |= all || part == "aspect";
-    refinement.principal_point |= all || part == "principal-point";
-    refinement.distortion |= all || part == "distortion";
-  }
-  return refinement;
 }
 
 Status SetRefinement(const std::string& parts, Scene* scene,

@@ -8,7 +8,7 @@
 #include "cli/command_line.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/result.h"
-#include "lowlap/pipeline/internal/output/summary_json.h"
+#include "lowlap/pipeline/run_output.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
 
@@ -46,11 +46,6 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
 void AddAdjustFlags(CLI::App* command, SolveFlags* flags);
 /// --principal-point-stddev
 void AddPrincipalPointFlag(CLI::App* command, double* stddev);
-
-/// Sets the enabled kinds of `options` (points, lines, coplanar pairs);
-/// coplanar pairs need lines.
-Status SetAdjustedFeatures(const std::vector<std::string>& features,
-                           AdjustmentOptions* options);
 
 /// --strategy, of the built-in AveragerRegistry, which the help lists.
 void AddStrategyFlag(CLI::App* command, std::string* strategy);

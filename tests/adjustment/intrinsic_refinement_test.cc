@@ -1,4 +1,4 @@
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/adjustment/intrinsic_refinement.h"
 
 #include <ceres/manifold_test_utils.h>
 #include <gmock/gmock.h>
@@ -18,6 +18,7 @@ using test::TestScene;
 using test::TestSceneOptions;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using testing::IsError;
 using testing::IsOk;
 
 // Builds structure with the intrinsics as they are, then refines them.
@@ -38,6 +39,33 @@ TEST(SubspaceManifoldTest, IsAManifold) {
   ASSERT_TRUE(manifold.Plus(x.data(), delta.data(), y.data()));
   using namespace ceres;  // NOLINT: the macro names its matchers so
   EXPECT_THAT_MANIFOLD_INVARIANTS_HOLD(manifold, x, delta, y, 1e-9);
+}
+
+TEST(ParseRefinementTest, IsTheInverseOfDescribeParts) {
+  for (const char* parts : {"", "focal", "aspect,distortion",
+                            "focal,aspect,principal-point,distortion"}) {
+    const auto refinement = ParseRefinement(parts);
+    ASSERT_THAT(refinement, IsOk());
+    EXPECT_EQ(DescribeParts(*refinement), parts);
+  }
+  EXPECT_EQ(DescribeParts(Others(*ParseRefinement("all"))), "");
+  EXPECT_THAT(ParseRefinement("focal,shape"),
+              IsError(ErrorCode::kInvalidArgument, "shape"));
+}
+
+TEST(SetAdjustedFeaturesTest, CoplanarPairsTakeTheirLinesIn) {
+  AdjustmentOptions options;
+  ASSERT_THAT(SetAdjustedFeatures({"coplanar"}, &options), IsOk());
+  EXPECT_FALSE(options.use_points);
+  EXPECT_TRUE(options.use_lines);
+  EXPECT_TRUE(options.use_coplanar);
+  ASSERT_THAT(SetAdjustedFeatures({"points", "lines"}, &options), IsOk());
+  EXPECT_TRUE(options.use_points);
+  EXPECT_FALSE(options.use_coplanar);
+  const AdjustmentOptions before = options;
+  EXPECT_THAT(SetAdjustedFeatures({"points", "planes"}, &options),
+              IsError(ErrorCode::kInvalidArgument, "planes"));
+  EXPECT_EQ(options.use_lines, before.use_lines);
 }
 
 TEST(RefineAllIntrinsicsTest, PinholesGetADistortionToRefine) {

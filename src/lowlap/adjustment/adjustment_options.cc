@@ -1,5 +1,6 @@
 #include "lowlap/adjustment/adjustment_options.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "lowlap/core/internal/requirement.h"
@@ -36,6 +37,24 @@ Status StructureOptions::Validate() const {
        {max_relative_line_depth_stddev, "max_relative_line_depth_stddev"},
        {min_two_view_line_overlap, "min_two_view_line_overlap"},
        {min_coplanar_angle_deg, "min_coplanar_angle_deg"}});
+}
+
+Status SetAdjustedFeatures(const std::vector<std::string>& features,
+                           AdjustmentOptions* options) {
+  const auto has = [&](const char* name) {
+    return std::find(features.begin(), features.end(), name) != features.end();
+  };
+  for (const std::string& name : features) {
+    if (name != "points" && name != "lines" && name != "coplanar") {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "unknown kind of feature '" + name +
+                           "'; known: points, lines, coplanar");
+    }
+  }
+  options->use_points = has("points");
+  options->use_coplanar = has("coplanar");
+  options->use_lines = has("lines") || options->use_coplanar;
+  return {};
 }
 
 }  // namespace lowlap

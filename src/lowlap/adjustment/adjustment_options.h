@@ -1,6 +1,8 @@
 #pragma once
 
 #include <map>
+#include <string>
+#include <vector>
 
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
@@ -126,5 +128,11 @@ struct AdjustmentOptions {
   /// kInvalidArgument for values without a meaning.
   Status Validate() const;
 };
+
+/// The kinds of features that the adjustment uses, by name: points, lines,
+/// coplanar (pairs, which need lines and take them in). kInvalidArgument for
+/// another name.
+Status SetAdjustedFeatures(const std::vector<std::string>& features,
+                           AdjustmentOptions* options);
 
 }  // namespace lowlap

@@ -55,6 +55,13 @@ struct PairReport {
   double log10_nfa = 0;
 };
 
+/// A view without any relative pose.
+struct UnrelatedView {
+  ViewId view = kInvalidId;
+  bool no_parallax = false;  // so are all its pairs that the points explain
+  std::string reason;
+};
+
 /// From photographs to measurements: detects features in the images of all
 /// views (Scene::ImagePath), matches the selected pairs, and fills
 /// scene->features, relative_poses and tracks, with the intrinsics that the

@@ -14,13 +14,6 @@ namespace lowlap {
 /// the one with the most matches was not.
 std::string ExplainNoPose(const std::vector<PairReport>& pairs);
 
-/// A view without any relative pose.
-struct UnrelatedView {
-  ViewId view = kInvalidId;
-  bool no_parallax = false;  // so are all its pairs that the points explain
-  std::string reason;
-};
-
 /// The views of the pairs (and those of `failed`, whose images could not be
 /// used) that no accepted pair holds, by id, each with why: what is wrong with
 /// its image; "no parallax", if a pair of it was refused for that; or the

@@ -12,6 +12,7 @@
 #include "lowlap/io/internal/ply.h"
 #include "lowlap/io/internal/scene_binary.h"
 #include "lowlap/pipeline/internal/output/run_report.h"
+#include "lowlap/pipeline/internal/output/summary_json.h"
 
 namespace lowlap {
 namespace fs = std::filesystem;

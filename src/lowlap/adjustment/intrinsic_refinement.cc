@@ -1,8 +1,9 @@
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/adjustment/intrinsic_refinement.h"
 
 #include <algorithm>
 #include <cstdio>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 namespace lowlap {
@@ -105,6 +106,27 @@ std::string DescribeParts(const IntrinsicRefinement& refinement) {
     if (named) text += (text.empty() ? "" : ",") + std::string(name);
   }
   return text;
+}
+
+Result<IntrinsicRefinement> ParseRefinement(const std::string& parts) {
+  IntrinsicRefinement refinement;
+  std::istringstream list(parts);
+  for (std::string part; std::getline(list, part, ',');) {
+    const bool all = part == "all";
+    const bool known = all || part == "focal" || part == "aspect" ||
+                       part == "principal-point" || part == "distortion";
+    if (!known && !part.empty()) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "intrinsics have no part '" + part +
+                           "'; known: focal, aspect, principal-point, "
+                           "distortion, all");
+    }
+    refinement.focal |= all || part == "focal";
+    refinement.aspect_ratio |= all || part == "aspect";
+    refinement.principal_point |= all || part == "principal-point";
+    refinement.distortion |= all || part == "distortion";
+  }
+  return refinement;
 }
 
 std::vector<std::string> DescribeCalibrationPreferences(

@@ -5,6 +5,7 @@
 
 #include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/adjustment/adjustment_summary.h"
+#include "lowlap/core/result.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -31,6 +32,9 @@ std::vector<std::string> DescribeIntrinsicChanges(const Scene& scene);
 
 /// "focal,aspect", as --refine-intrinsics takes it; empty for none.
 std::string DescribeParts(const IntrinsicRefinement& refinement);
+/// Back from it; "all" is known, too. kInvalidArgument, with what is known, for
+/// another word.
+Result<IntrinsicRefinement> ParseRefinement(const std::string& parts);
 /// What is not named.
 IntrinsicRefinement Others(const IntrinsicRefinement& refinement);
 

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/pipeline/measure_images.h"
+#include "lowlap/pipeline/solve_scene.h"
+#include "lowlap/pipeline/stage_log.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// Everything a solving command has to say about its run.
+struct RunSummary {
+  std::string command;
+  std::vector<PairReport> pairs;
+  std::vector<UnrelatedView> unrelated;
+  std::optional<SolveResult> solve;
+  std::optional<PoseEvaluation> evaluation_before_adjustment;
+  std::optional<PoseEvaluation> evaluation;
+  std::vector<StageCost> stages;
+};
+
+/// Whether results can be put into the folder: it is one that can be written
+/// to, or can be made. Makes nothing; for asking before long work. kIo if a
+/// file is in the way or a folder cannot be written to.
+Status CheckOutputFolder(const std::string& folder);
+
+/// Makes the folder and writes what every solving command leaves, as a FileSet:
+/// sfm_data.json (OpenMVG loads it), scene.lowlap (everything), cloud.ply
+/// (points, lines, cameras), report.html (for a person) and summary.json (for
+/// a program). A relative root_path is made absolute, since the files move away
+/// from what it was relative to.
+Status WriteOutputs(Scene scene, const RunSummary& summary,
+                    const std::string& folder);
+
+}  // namespace lowlap

@@ -1,0 +1,62 @@
+#include "third_party_adapters/camera_files.h"
+
+#include <filesystem>
+#include <system_error>
+#include <utility>
+
+#include "lowlap/core/internal/propagate.h"
+#include "third_party_adapters/onedsfm/internal/problem.h"
+#include "third_party_adapters/scene_formats.h"
+#include "third_party_adapters/strecha/internal/strecha.h"
+
+namespace lowlap {
+namespace {
+
+Result<GroundTruth> ReadTruth(const std::string& path, const Scene& scene) {
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(path, ignored)) {
+    LOWLAP_ASSIGN_OR_RETURN(const Scene solved, ReadScene(path));
+    return GroundTruthFromScene(solved, scene);
+  }
+  if (onedsfm::IsProblemFolder(path)) return onedsfm::ReadTruePoses(path);
+  LOWLAP_ASSIGN_OR_RETURN(const auto poses, strecha::ReadGroundTruth(path));
+  return GroundTruthByName(scene, poses);
+}
+
+}  // namespace
+
+Result<IntrinsicSource> ReadIntrinsicSource(const std::string& path) {
+  IntrinsicSource source;
+  auto scene = ReadScene(path);
+  if (scene) {
+    source.scene = std::move(*scene);
+    return source;
+  }
+  if (scene.error().code != ErrorCode::kUnsupported) {
+    return tl::unexpected<Error>(scene.error());
+  }
+  LOWLAP_ASSIGN_OR_RETURN(source.calibration,
+                          strecha::ReadCalibrationMatrix(path));
+  return source;
+}
+
+Result<GroundTruth> ReadGroundTruth(const std::string& path,
+                                    const Scene& scene) {
+  auto truth = ReadTruth(path, scene);
+  if (!truth) {
+    if (truth.error().file.empty()) truth.error().file = path;
+    return truth;
+  }
+  for (const auto& entry : *truth) {
+    if (scene.views.count(entry.first) > 0) return truth;
+  }
+  // A truth that says nothing about the scene is a mistake of the caller.
+  return MakeError(
+      ErrorCode::kInsufficientData,
+      truth->empty()
+          ? "holds no camera poses to compare with"
+          : "no view of the scene has the name or the id of a true camera",
+      path);
+}
+
+}  // namespace lowlap
