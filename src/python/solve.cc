@@ -1,0 +1,281 @@
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/pipeline/image_collection.h"
+#include "lowlap/pipeline/measure_and_refine.h"
+#include "lowlap/pipeline/run_output.h"
+#include "lowlap/pipeline/solve_scene.h"
+#include "python/keywords.h"
+
+namespace lowlap::python {
+namespace {
+
+struct Solution {
+  std::shared_ptr<Scene> scene;
+  RunSummary summary;
+
+  const PoseSummary& poses() const { return summary.solve->poses; }
+};
+
+// Solves solution->scene, evaluates it and writes what is asked for.
+void SolveInPlace(const SolveArguments& arguments, Call* call, StageLog* stages,
+                  Solution* solution) {
+  Scene* scene = solution->scene.get();
+  RunSummary& summary = solution->summary;
+  const auto truth = TruthOf(arguments.truth, *scene);
+  SolveOptions options = arguments.options;
+  RefineAllIntrinsics(arguments.refinement, scene, &options.adjustment);
+  summary.solve = call->Run(
+      [&] { return SolveScene(scene, options, call->context(), stages); });
+  if (truth) {
+    if (summary.solve->adjustment) {
+      summary.evaluation_before_adjustment = EvaluatePoses(
+          scene->views, summary.solve->poses_before_adjustment, *truth);
+    }
+    summary.evaluation = EvaluatePoses(*scene, *truth);
+  }
+  summary.stages = stages->stages();
+  if (arguments.output.empty()) return;
+  call->Run([&] { return WriteOutputs(*scene, summary, arguments.output); });
+}
+
+void CheckOutput(const std::string& output) {
+  // A folder that cannot be written is found before the work.
+  if (!output.empty()) RaiseIfError(CheckOutputFolder(output));
+}
+
+Solution Solve(const py::object& scene_or_path, const py::kwargs& kwargs) {
+  Keywords keywords("solve", kwargs);
+  const auto call = TakeCall(&keywords);
+  const SolveArguments arguments = TakeSolveArguments(&keywords, call.get());
+  keywords.Finish();
+  CheckOutput(arguments.output);
+  Solution solution;
+  solution.scene = std::make_shared<Scene>(*MeasuredSceneOf(scene_or_path));
+  solution.summary.command = "solve";
+  RestoreGivenIntrinsics(solution.scene.get());
+  StageLog stages;
+  SolveInPlace(arguments, call.get(), &stages, &solution);
+  return solution;
+}
+
+Solution Run(const std::filesystem::path& images, const py::object& intrinsics,
+             const py::kwargs& kwargs) {
+  Keywords keywords("run", kwargs);
+  const auto call = TakeCall(&keywords);
+  const SolveArguments arguments = TakeSolveArguments(&keywords, call.get());
+  const MeasurementOptions measurement =
+      TakeMeasurementOptions(&keywords, arguments.scale);
+  std::optional<double> focal_px;
+  keywords.Take("focal", &focal_px);
+  std::vector<std::string> exclude;
+  keywords.TakeWords("exclude", &exclude);
+  keywords.Finish();
+  CheckOutput(arguments.output);
+  const IntrinsicSource source = IntrinsicsOf(intrinsics, focal_px);
+
+  const RunContext& context = call->context();
+  const std::string folder = images.string();
+  std::vector<std::string> notes;
+  Solution solution;
+  solution.scene = std::make_shared<Scene>(call->Run(
+      [&] { return SceneFromImages(folder, source, exclude, &notes); }));
+  for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
+  // True cameras that do not fit are found before the work, too.
+  TruthOf(arguments.truth, *solution.scene);
+  StageLog stages;
+  ImageReport report = call->Run([&] {
+    auto measured =
+        MeasureAndRefine(solution.scene.get(), measurement, arguments.options,
+                         arguments.refinement, context, &stages);
+    if (!measured && measured.error().file.empty()) {
+      measured.error().file = folder;
+    }
+    return measured;
+  });
+  solution.summary.command = "run";
+  solution.summary.pairs = std::move(report.pairs);
+  solution.summary.unrelated = std::move(report.unrelated);
+  SolveInPlace(arguments, call.get(), &stages, &solution);
+  return solution;
+}
+
+std::vector<std::string> CalibrationNotes(const Solution& solution) {
+  std::vector<std::string> notes = DescribeIntrinsicChanges(*solution.scene);
+  if (const auto& adjustment = solution.summary.solve->adjustment) {
+    for (std::string& line : DescribeCalibrationPreferences(*adjustment)) {
+      notes.push_back(std::move(line));
+    }
+  }
+  return notes;
+}
+
+void BindSummaries(py::module_& module) {
+  py::class_<StageCost>(module, "StageCost")
+      .def_readonly("name", &StageCost::name)
+      .def_readonly("wall_s", &StageCost::wall_s)
+      .def_readonly("cpu_s", &StageCost::cpu_s);
+
+  py::class_<PairReport>(module, "PairReport", "What became of a pair.")
+      .def_readonly("views", &PairReport::views)
+      .def_readonly("accepted", &PairReport::accepted)
+      .def_readonly("no_parallax", &PairReport::no_parallax)
+      .def_readonly("reason", &PairReport::reason)
+      .def_readonly("num_point_matches", &PairReport::num_point_matches)
+      .def_readonly("num_line_matches", &PairReport::num_line_matches)
+      .def_readonly("num_point_inliers", &PairReport::num_point_inliers)
+      .def_readonly("num_line_inliers", &PairReport::num_line_inliers)
+      .def_readonly("log10_nfa", &PairReport::log10_nfa);
+
+  py::class_<UnrelatedView>(module, "UnrelatedView",
+                            "A view without any relative pose, and why.")
+      .def_readonly("view", &UnrelatedView::view)
+      .def_readonly("no_parallax", &UnrelatedView::no_parallax)
+      .def_readonly("reason", &UnrelatedView::reason);
+
+  py::class_<OutlierEdge>(module, "OutlierEdge",
+                          "A relative pose that was left out, and why.")
+      .def_readonly("views", &OutlierEdge::views)
+      .def_property_readonly("reason",
+                             [](const OutlierEdge& edge) {
+                               return OutlierReasonName(edge.reason);
+                             })
+      .def_readonly("error_deg", &OutlierEdge::error_deg);
+
+  py::class_<ReliabilityWarning>(module, "ReliabilityWarning",
+                                 "Views whose place is doubtful, and why.")
+      .def_property_readonly("reason",
+                             [](const ReliabilityWarning& warning) {
+                               return WarningReasonName(warning.reason);
+                             })
+      .def_readonly("views", &ReliabilityWarning::views)
+      .def_readonly("against", &ReliabilityWarning::against)
+      .def_readonly("ratios", &ReliabilityWarning::ratios)
+      .def_readonly("share", &ReliabilityWarning::share);
+
+  py::class_<KindAdjustment>(module, "KindAdjustment",
+                             "One kind of residual in the bundle adjustment.")
+      .def_readonly("landmarks", &KindAdjustment::landmarks)
+      .def_readonly("observations_used", &KindAdjustment::observations_used)
+      .def_readonly("observations_dropped",
+                    &KindAdjustment::observations_dropped)
+      .def_readonly("initial_rmse_px", &KindAdjustment::initial_rmse_px)
+      .def_readonly("final_rmse_px", &KindAdjustment::final_rmse_px)
+      .def_readonly("stddev_px", &KindAdjustment::stddev_px)
+      .def_readonly("threshold_px", &KindAdjustment::threshold_px);
+
+  py::class_<AdjustmentSummary>(module, "AdjustmentSummary")
+      .def_readonly("initial_cost", &AdjustmentSummary::initial_cost)
+      .def_readonly("final_cost", &AdjustmentSummary::final_cost)
+      .def_readonly("points", &AdjustmentSummary::points)
+      .def_readonly("lines", &AdjustmentSummary::lines)
+      .def_readonly("coplanar", &AdjustmentSummary::coplanar)
+      .def_readonly("iterations", &AdjustmentSummary::iterations)
+      .def_readonly("outlier_rounds", &AdjustmentSummary::outlier_rounds)
+      .def_readonly("converged", &AdjustmentSummary::converged);
+}
+
+constexpr char kSolveDoc[] =
+    "From measurements to a calibrated scene: scale ratios, rotations, poses,\n"
+    "structure, bundle adjustment. The scene that is given stays as it is.\n\n"
+    "Options, all by keyword, as the flags of `lowlap solve`:\n"
+    "  features, coplanar_points, criterion, nfa, threshold: the scale "
+    "ratios;\n"
+    "  strategy: NAME[:key=value,...] or a TranslationAverager;\n"
+    "  adjust_features, no_adjust, refine_intrinsics (True, or parts),\n"
+    "  principal_point_stddev: the bundle adjustment;\n"
+    "  gt: true cameras to evaluate against, never used for solving;\n"
+    "  output: a folder for what the command writes;\n"
+    "  threads, seed;\n"
+    "  progress(stage, done, total): return False to stop;\n"
+    "  log(level, message).";
+
+constexpr char kRunDoc[] =
+    "From a folder of photographs to a calibrated scene.\n\n"
+    "intrinsics: the path of K.txt or of a scene file, a scene, or the 3x3\n"
+    "calibration matrix; without it and `focal`: from EXIF data.\n"
+    "Options, all by keyword, as the flags of `lowlap run`: those of solve(),\n"
+    "and focal, pairs, matcher, exclude, two_view, refine_points, cache (a\n"
+    "folder of features and matches to use again; none if not given).";
+
+}  // namespace
+
+void BindSolve(py::module_& module) {
+  BindSummaries(module);
+  // The summary of the averaging, from a solution.
+  const auto poses = [](auto member) {
+    return [member](const Solution& s) { return s.poses().*member; };
+  };
+  py::class_<Solution>(module, "Solution", "What solve() and run() return.")
+      .def_readonly("scene", &Solution::scene)
+      .def_property_readonly("num_views", poses(&PoseSummary::num_views))
+      .def_property_readonly("num_placed", poses(&PoseSummary::num_placed))
+      .def_property_readonly("unplaced", poses(&PoseSummary::unplaced))
+      .def_property_readonly("components", poses(&PoseSummary::components),
+                             "Views by common scale; the first have poses.")
+      .def_property_readonly("outlier_edges",
+                             poses(&PoseSummary::outlier_edges))
+      .def_property_readonly("weak_ratios", poses(&PoseSummary::weak_ratios))
+      .def_property_readonly("reliability_warnings",
+                             poses(&PoseSummary::reliability_warnings))
+      .def_property_readonly(
+          "is_firm",
+          [](const Solution& s) {
+            return s.poses().num_placed == s.poses().num_views &&
+                   !s.poses().IsDoubtful();
+          },
+          "All views are placed, and nothing contradicts any of them.")
+      .def_property_readonly(
+          "warnings",
+          [](const Solution& s) { return PoseWarnings(s.poses(), *s.scene); },
+          "What to know before relying on the poses, a sentence each.")
+      .def_property_readonly(
+          "calibration_notes", &CalibrationNotes,
+          "What became of the intrinsics, and which the images prefer.")
+      .def_property_readonly(
+          "adjustment",
+          [](const Solution& s) { return s.summary.solve->adjustment; })
+      .def_property_readonly("poses_before_adjustment",
+                             [](const Solution& s) {
+                               return s.summary.solve->poses_before_adjustment;
+                             })
+      .def_property_readonly(
+          "evaluation", [](const Solution& s) { return s.summary.evaluation; },
+          "Errors against `gt`, or None.")
+      .def_property_readonly("evaluation_before_adjustment",
+                             [](const Solution& s) {
+                               return s.summary.evaluation_before_adjustment;
+                             })
+      .def_property_readonly(
+          "pairs", [](const Solution& s) { return s.summary.pairs; },
+          "Of run(): what became of every pair.")
+      .def_property_readonly(
+          "unrelated_views",
+          [](const Solution& s) { return s.summary.unrelated; })
+      .def_property_readonly("costs",
+                             [](const Solution& s) { return s.summary.stages; })
+      .def(
+          "write",
+          [](const Solution& s, const std::filesystem::path& folder) {
+            const Status written =
+                WriteOutputs(*s.scene, s.summary, folder.string());
+            RaiseIfError(written);
+          },
+          py::arg("folder"),
+          "What the command leaves: report.html, sfm_data.json, scene.lowlap,\n"
+          "cloud.ply, summary.json.")
+      .def("__repr__", [](const Solution& s) {
+        return "<lowlap.Solution: " + std::to_string(s.poses().num_placed) +
+               " of " + std::to_string(s.poses().num_views) + " views placed>";
+      });
+  module.def("solve", &Solve, py::arg("scene"), kSolveDoc);
+  module.def("run", &Run, py::arg("images"), py::arg("intrinsics") = py::none(),
+             kRunDoc);
+}
+
+}  // namespace lowlap::python
