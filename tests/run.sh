@@ -32,7 +32,9 @@ jobs=$(nproc)
 export CCACHE_SLOPPINESS=pch_defines,time_macros
 
 step "Packages"
-tools=(ccache clang-format doxygen dpkg-dev)
+tools=(ccache clang-format doxygen dpkg-dev
+       pybind11-dev python3-dev python3-numpy python3-pip python3-setuptools
+       python3-wheel)
 if $tidy; then tools+=(clang-tidy clang-tools); fi
 bash tutorials/install_dependencies.sh "${tools[@]}"
 
@@ -44,7 +46,8 @@ find src tests third_party_adapters tutorials \
 step "Configuring"
 cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
-  -DLOWLAP_WARNINGS_AS_ERRORS=ON -DLOWLAP_BUILD_EXAMPLES=ON
+  -DLOWLAP_WARNINGS_AS_ERRORS=ON -DLOWLAP_BUILD_EXAMPLES=ON \
+  -DLOWLAP_BUILD_PYTHON=ON -DPython_EXECUTABLE=/usr/bin/python3
 
 step "Building with $jobs jobs"
 cmake --build "$build" --parallel "$jobs"
