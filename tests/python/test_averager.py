@@ -32,6 +32,19 @@ class AveragerTest(unittest.TestCase):
         self.assertEqual(solution.num_placed, 8)
         self.assertLess(solution.evaluation.position.max, 1e-5)
 
+    def test_may_stand_on_a_built_in_one(self):
+        class Standing(lowlap.TranslationAverager):
+            def name(self):
+                return "standing"
+
+            def solve(self, problem):
+                return lowlap.averager("graph").solve(problem)
+
+        graph, standing = lowlap.compare(self.scene, None, ["graph", Standing()]).results
+        self.assertEqual(list(graph.poses), list(standing.poses))
+        for id, pose in graph.poses.items():
+            np.testing.assert_array_equal(standing.poses[id].center, pose.center)
+
     def test_works_with_filters(self):
         comparison = lowlap.compare(self.scene, None,
                                     [LeastSquares(), "1dsfm+least_squares"])
