@@ -1,0 +1,71 @@
+#include "lowlap/pipeline/measure_and_refine.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lowlap/pipeline/image_collection.h"
+#include "support/data_folder.h"
+#include "support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using testing::IsError;
+using testing::IsOk;
+
+// Photographs of the room with a focal length that is 15 % off.
+Scene RoomWithWrongFocalLength() {
+  IntrinsicSource source;
+  source.focal_px = 850;
+  return *SceneFromImages(SourceFolder() + "/sfm_data/samples/room/images",
+                          source, {});
+}
+
+MeasurementOptions ChainOfPhotographs() {
+  MeasurementOptions options;
+  options.pairs = "chain";
+  options.cache_folder = ::testing::TempDir() + "/measure_and_refine_cache";
+  return options;
+}
+
+TEST(MeasureAndRefine, MeasuresWithTheIntrinsicsThatASolutionPrefers) {
+  const Scene given = RoomWithWrongFocalLength();
+  Scene refined = given;
+  IntrinsicRefinement focal;
+  focal.focal = true;
+  ASSERT_THAT(MeasureAndRefine(&refined, ChainOfPhotographs(), SolveOptions(),
+                               focal, {}, nullptr),
+              IsOk());
+  EXPECT_EQ(refined.given_intrinsics, given.intrinsics);
+  EXPECT_NE(refined.intrinsics, given.intrinsics);
+
+  Scene measured = given;
+  measured.intrinsics = refined.intrinsics;
+  ASSERT_THAT(MeasureImages(&measured, ChainOfPhotographs(), {}, nullptr),
+              IsOk());
+  EXPECT_EQ(refined.relative_poses, measured.relative_poses);
+}
+
+TEST(MeasureAndRefine, HoldsIntrinsicsThatAreNotToBeRefined) {
+  const Scene given = RoomWithWrongFocalLength();
+  Scene held = given, measured = given;
+  const auto report = MeasureAndRefine(&held, ChainOfPhotographs(),
+                                       SolveOptions(), {}, {}, nullptr);
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->pairs.size(), given.views.size() - 1);
+  ASSERT_THAT(MeasureImages(&measured, ChainOfPhotographs(), {}, nullptr),
+              IsOk());
+  EXPECT_TRUE(held == measured);
+}
+
+TEST(MeasureAndRefine, SaysWhyNothingIsRelated) {
+  Scene scene = RoomWithWrongFocalLength();
+  MeasurementOptions options = ChainOfPhotographs();
+  options.matching.match_points = options.matching.match_lines = false;
+  EXPECT_THAT(
+      MeasureAndRefine(&scene, options, SolveOptions(), {}, {}, nullptr),
+      IsError(ErrorCode::kInsufficientData, "no pair of views"));
+}
+
+}  // namespace
+}  // namespace lowlap
