@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "cli/command.h"
+#include "cli/intrinsics_input.h"
 #include "cli/solve_flags.h"
 #include "cli/truth.h"
 #include "lowlap/adjustment/intrinsic_refinement.h"
@@ -11,7 +11,6 @@
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/measure_and_refine.h"
 #include "lowlap/pipeline/run_output.h"
-#include "third_party_adapters/camera_files.h"
 
 namespace lowlap::cli {
 namespace {
@@ -20,8 +19,7 @@ struct RunFlags {
   CommonFlags common;
   std::string images;
   std::string output;
-  std::string intrinsics;
-  std::optional<double> focal_px;
+  IntrinsicsFlags intrinsics;
   std::string pairs = "all";
   std::string matcher = "exact";
   std::vector<std::string> two_view = {"points", "lines"};
@@ -36,13 +34,6 @@ bool IsNamed(const char* name, const std::vector<std::string>& names) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-Result<IntrinsicSource> ReadIntrinsics(const RunFlags& flags) {
-  if (!flags.intrinsics.empty()) return ReadIntrinsicSource(flags.intrinsics);
-  IntrinsicSource source;
-  source.focal_px = flags.focal_px;
-  return source;
-}
-
 Result<int> Run(const RunFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   // Everything that can be refused is refused before the long work.
@@ -52,15 +43,15 @@ Result<int> Run(const RunFlags& flags) {
   LOWLAP_ASSIGN_OR_RETURN(const auto refinement,
                           ParseRefinement(flags.solve.refine_intrinsics));
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
-  LOWLAP_ASSIGN_OR_RETURN(const auto intrinsics, ReadIntrinsics(flags));
+  LOWLAP_ASSIGN_OR_RETURN(const auto intrinsics,
+                          ReadIntrinsics(flags.intrinsics));
   std::vector<std::string> notes;
   LOWLAP_ASSIGN_OR_RETURN(auto scene, SceneFromImages(flags.images, intrinsics,
                                                       flags.exclude, &notes));
   for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
   LOWLAP_RETURN_IF_ERROR(LoadGroundTruth(flags.solve.ground_truth, scene));
 
-  if (flags.intrinsics.empty() && !flags.focal_px &&
-      flags.solve.refine_intrinsics.empty()) {
+  if (!flags.intrinsics.AreGiven() && flags.solve.refine_intrinsics.empty()) {
     context.Log(LogLevel::kInfo,
                 "focal lengths are those of the EXIF data, a few percent off "
                 "as a rule; --refine-intrinsics adjusts them");
@@ -116,16 +107,7 @@ void AddRun(CLI::App* program, Action* action) {
       .Required();
   AddOption(command, "-o,--output", flags->output, "Folder for the results")
       .Required();
-  Option matrix = AddOption(
-      command, "--intrinsics", flags->intrinsics,
-      "K.txt: the 3x3 calibration matrix of all photographs, in pixels "
-      "(fx and fy are both used); or a scene file whose views, by file name, "
-      "have intrinsics of any model. Without it and --focal: from EXIF data");
-  Option focal =
-      AddOption(command, "--focal", flags->focal_px,
-                "Focal length in pixels; principal point in the middle")
-          .Must(Check::Positive());
-  matrix.Excludes(focal);
+  AddIntrinsicsFlags(command, &flags->intrinsics);
   AddOption(command, "--pairs", flags->pairs,
             "Pairs to match: all, chain, cycle, window:N, auto (those "
             "that look alike), or a file with two view names or ids a "
