@@ -160,7 +160,7 @@ class Agreement {
     // As DiagnosisOptions::max_stddev: less does not make a ratio useless.
     constexpr double kTenth = 0.1;
     for (const auto& [ratio, error] : errors) {
-      const double stddev = std::max(ratio->log_ratio_stddev, 1e-3);
+      const double stddev = std::max(ratio->log_ratio_stddev, kRatioErrorFloor);
       const bool agrees =
           error <= std::max(options_.reach * scale, kTenth / stddev);
       (agrees ? agreeing_ratios_ : rejected_ratios_).push_back(*ratio);

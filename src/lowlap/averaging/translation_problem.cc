@@ -10,10 +10,11 @@ namespace lowlap {
 namespace {
 
 constexpr double kDefaultDirectionRad = 0.02;
-constexpr double kRatioFloor = 1e-3;
 constexpr double kWeakRatioFloor = 0.2;
 
 bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
+
+}  // namespace
 
 double DirectionStddev(const RelativePose& pose) {
   if (!pose.covariance) return kDefaultDirectionRad;
@@ -22,8 +23,6 @@ double DirectionStddev(const RelativePose& pose) {
   return std::sqrt(std::max(variance, 0.0) +
                    kPoseErrorFloorRad * kPoseErrorFloorRad);
 }
-
-}  // namespace
 
 TranslationProblem MakeTranslationProblem(
     const Scene& scene, const std::map<ViewId, Mat3>& cam_from_world,
@@ -72,8 +71,9 @@ TranslationProblem MakeTranslationProblem(
     measurement.reference = reference->second;
     measurement.target = target->second;
     measurement.log_ratio = ratio.log_ratio;
-    measurement.stddev = std::hypot(
-        ratio.log_ratio_stddev, is_meaningful ? kRatioFloor : kWeakRatioFloor);
+    measurement.stddev =
+        std::hypot(ratio.log_ratio_stddev,
+                   is_meaningful ? kRatioErrorFloor : kWeakRatioFloor);
     measurement.log10_nfa = ratio.log10_nfa;
     problem.ratios.push_back(measurement);
   }

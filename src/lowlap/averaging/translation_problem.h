@@ -18,6 +18,12 @@ namespace lowlap {
 /// whatever a covariance says: matches share systematic errors (calibration,
 /// texture) that it does not know.
 inline constexpr double kPoseErrorFloorRad = 5e-4;
+/// Nor are log ratios, for the same reason.
+inline constexpr double kRatioErrorFloor = 1e-3;
+
+/// Standard deviation of the direction about each axis across it, in radians:
+/// as stated, with the floor; a default if unknown.
+double DirectionStddev(const RelativePose& pose);
 
 /// A measured direction between two camera centres, with unknown length:
 ///   C_second - C_first = length direction_in_world,  length > 0.

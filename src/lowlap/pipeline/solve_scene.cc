@@ -174,20 +174,10 @@ Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
   return refinement;
 }
 
-Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
-                               const RunContext& context, StageLog* stages) {
-  LOWLAP_RETURN_IF_ERROR(options.Validate());
-  SolveResult result;
-  LOWLAP_ASSIGN_OR_RETURN(auto start,
-                          StartSolution(scene, options, context, stages));
-  LOWLAP_ASSIGN_OR_RETURN(
-      result.ratios,
-      EstimateBelievedRatios(scene, start, options, context, stages));
-  result.motions = std::move(start.motions);
-  LOWLAP_ASSIGN_OR_RETURN(
-      result.poses,
-      ComposePoses(scene, start.rotations, options.poses, context, stages));
-  result.poses_before_adjustment = scene->poses;
+Status FinishSolution(Scene* scene, const SolveOptions& options,
+                      const RunContext& context, StageLog* stages,
+                      SolveResult* result) {
+  result->poses_before_adjustment = scene->poses;
   auto refinement = RefineSolution(scene, options, context, stages);
   if (!refinement && options.adjust &&
       (refinement.error().code == ErrorCode::kInsufficientData ||
@@ -201,11 +191,29 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
     refinement = RefineSolution(scene, structure_only, context, stages);
   }
   if (!refinement) return tl::unexpected<Error>(refinement.error());
-  result.structure = std::move(refinement->structure);
-  result.adjustment = std::move(refinement->adjustment);
+  result->structure = std::move(refinement->structure);
+  result->adjustment = std::move(refinement->adjustment);
   for (ReliabilityWarning& doubt : FindLostFeatures(*scene)) {
-    result.poses.reliability_warnings.push_back(std::move(doubt));
+    result->poses.reliability_warnings.push_back(std::move(doubt));
   }
+  return {};
+}
+
+Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
+                               const RunContext& context, StageLog* stages) {
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
+  SolveResult result;
+  LOWLAP_ASSIGN_OR_RETURN(auto start,
+                          StartSolution(scene, options, context, stages));
+  LOWLAP_ASSIGN_OR_RETURN(
+      result.ratios,
+      EstimateBelievedRatios(scene, start, options, context, stages));
+  result.motions = std::move(start.motions);
+  LOWLAP_ASSIGN_OR_RETURN(
+      result.poses,
+      ComposePoses(scene, start.rotations, options.poses, context, stages));
+  LOWLAP_RETURN_IF_ERROR(
+      FinishSolution(scene, options, context, stages, &result));
   return result;
 }
 

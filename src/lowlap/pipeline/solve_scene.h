@@ -92,16 +92,22 @@ struct Refinement {
 Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
                                   const RunContext& context, StageLog* stages);
 
+/// RefineSolution as SolveScene does it: `result`, which holds what became of
+/// the poses, is completed. Where there is nothing to adjust (a graph without
+/// features, views without intrinsics), or the adjustment finds no solution,
+/// the poses stay as they are, with a warning in the log. Views that lost most
+/// of their features are added to PoseSummary::reliability_warnings
+/// (FindLostFeatures).
+Status FinishSolution(Scene* scene, const SolveOptions& options,
+                      const RunContext& context, StageLog* stages,
+                      SolveResult* result);
+
 /// From measurements to a calibrated scene: choice between alternative motions
 /// (DecideHypotheses), rotations and the choice of relative poses, ratios of
 /// the triplets of those believed, absolute poses, structure, bundle
-/// adjustment. Where there is nothing to adjust (a graph without features,
-/// views without intrinsics), or the adjustment finds no solution, the poses
-/// stay as they are, with a warning in the log. Views that lost most of their
-/// features in the end are added to PoseSummary::reliability_warnings
-/// (FindLostFeatures). Reads intrinsics, features, relative poses and tracks;
-/// settles alternatives and replaces scale ratios, poses and structure. Errors
-/// leave the scene in an intermediate state: keep a copy if you need it.
+/// adjustment (FinishSolution). Reads intrinsics, features, relative poses and
+/// tracks; settles alternatives and replaces scale ratios, poses and structure.
+/// Errors leave the scene in an intermediate state: keep a copy if you need it.
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
                                const RunContext& context, StageLog* stages);
 

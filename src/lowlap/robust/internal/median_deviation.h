@@ -21,6 +21,10 @@ inline constexpr double kMedianOfNorm<3> = 1.5381722545;
 template <int kDimension>
 inline constexpr double kLowerQuartileOfNorm = 0;
 template <>
+inline constexpr double kLowerQuartileOfNorm<1> = 0.3186393640;
+template <>
+inline constexpr double kLowerQuartileOfNorm<2> = 0.7585276164;
+template <>
 inline constexpr double kLowerQuartileOfNorm<3> = 1.1011507177;
 
 }  // namespace lowlap
