@@ -1,0 +1,282 @@
+#include "lowlap/merge/internal/rigid_pieces.h"
+
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "lowlap/averaging/internal/sparse_solver.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
+#include "lowlap/core/internal/propagate.h"
+#include "lowlap/merge/internal/signed_clusters.h"
+#include "lowlap/scene/view_graph.h"
+
+namespace lowlap {
+namespace {
+
+// The log ratio of two baselines at a camera, as a linear function of the
+// movements of three centres.
+struct LogRatioGradient {
+  std::array<Eigen::Index, 3> rows;  // of first, middle, last
+  std::array<Vec3, 3> slopes;
+};
+
+class Firmness {
+ public:
+  Firmness(const std::map<ViewId, Pose>& poses, const ViewGraph& graph,
+           const RunContext& context)
+      : solver_(context) {
+    Vec3 mean = Vec3::Zero();
+    double length = 0;
+    for (const ViewPair& views : graph.pairs()) {
+      length += (poses.at(views.first).center - poses.at(views.second).center)
+                    .norm() /
+                static_cast<double>(graph.pairs().size());
+    }
+    for (const ViewId view : graph.views()) {
+      row_.emplace(view, static_cast<Eigen::Index>(3 * row_.size()));
+      centers_.emplace(view, poses.at(view).center / length);
+      mean += centers_.at(view) / static_cast<double>(graph.views().size());
+    }
+    double spread = 0;
+    for (const auto& entry : centers_) {
+      spread += (entry.second - mean).squaredNorm();
+    }
+    constexpr double kFreeFactor = 10;
+    const double prior = 1 / (kFreeFactor * kFreeFactor * spread);
+    for (Eigen::Index r = 0; r < NumRows(); ++r) {
+      entries_.emplace_back(r, r, prior);
+    }
+  }
+
+  void AddDirection(const ViewPair& views, double stddev_rad) {
+    const Vec3 baseline = centers_.at(views.second) - centers_.at(views.first);
+    const double length = baseline.norm();
+    const Vec3 unit = baseline / length;
+    const Mat3 block = (Mat3::Identity() - unit * unit.transpose()) /
+                       std::pow(length * stddev_rad, 2);
+    const Eigen::Index a = row_.at(views.first), b = row_.at(views.second);
+    Add(a, a, block);
+    Add(b, b, block);
+    Add(a, b, -block);
+    Add(b, a, -block);
+  }
+
+  void AddRatio(const ViewTriplet& views, double stddev) {
+    const LogRatioGradient g = GradientOf(views);
+    for (std::size_t a = 0; a < 3; ++a) {
+      for (std::size_t b = 0; b < 3; ++b) {
+        Add(g.rows[a], g.rows[b],
+            g.slopes[a] * g.slopes[b].transpose() / (stddev * stddev));
+      }
+    }
+  }
+
+  /// The standard deviations of log ratios.
+  Result<std::vector<double>> Deviations(
+      const std::vector<ViewTriplet>& triplets) {
+    Eigen::SparseMatrix<double> information(NumRows(), NumRows());
+    information.setFromTriplets(entries_.begin(), entries_.end());
+    Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(
+        NumRows(), static_cast<Eigen::Index>(triplets.size()));
+    for (std::size_t t = 0; t < triplets.size(); ++t) {
+      const LogRatioGradient g = GradientOf(triplets[t]);
+      for (std::size_t n = 0; n < 3; ++n) {
+        gradients.block<3, 1>(g.rows[n], static_cast<Eigen::Index>(t)) +=
+            g.slopes[n];
+      }
+    }
+    LOWLAP_ASSIGN_OR_RETURN(const auto solved,
+                            solver_.Solve(information, gradients));
+    std::vector<double> deviations;
+    for (Eigen::Index t = 0; t < gradients.cols(); ++t) {
+      deviations.push_back(
+          std::sqrt(std::max(0.0, gradients.col(t).dot(solved.col(t)))));
+    }
+    return deviations;
+  }
+
+ private:
+  Eigen::Index NumRows() const {
+    return static_cast<Eigen::Index>(3 * row_.size());
+  }
+
+  // The lower triangle.
+  void Add(Eigen::Index a, Eigen::Index b, const Mat3& block) {
+    for (int r = 0; r < 3; ++r) {
+      for (int c = 0; c < 3; ++c) {
+        if (a + r >= b + c) entries_.emplace_back(a + r, b + c, block(r, c));
+      }
+    }
+  }
+
+  LogRatioGradient GradientOf(const ViewTriplet& views) const {
+    const Vec3 from = centers_.at(views.middle) - centers_.at(views.first);
+    const Vec3 to = centers_.at(views.last) - centers_.at(views.middle);
+    const Vec3 of_from = from / from.squaredNorm();
+    const Vec3 of_to = to / to.squaredNorm();
+    return {{row_.at(views.first), row_.at(views.middle), row_.at(views.last)},
+            {of_from, -of_from - of_to, of_to}};
+  }
+
+  std::map<ViewId, Eigen::Index> row_;
+  std::map<ViewId, Vec3> centers_;  // the mean baseline is 1
+  std::vector<Eigen::Triplet<double>> entries_;
+  SparseSolver solver_;
+};
+
+// A cluster of baselines, and the evidence between it and each other one.
+struct Cluster {
+  std::set<ViewPair> pairs;
+  std::set<ViewId> views;
+  std::map<std::size_t, double> evidence;  // by label
+};
+
+std::map<std::size_t, Cluster> ClustersOf(
+    const ViewGraph& graph, const std::vector<std::size_t>& labels,
+    const std::vector<SignedLink>& links) {
+  std::map<std::size_t, Cluster> clusters;
+  for (std::size_t e = 0; e < labels.size(); ++e) {
+    const ViewPair& views = graph.pairs()[e];
+    Cluster& cluster = clusters[labels[e]];
+    cluster.pairs.insert(views);
+    cluster.views.insert({views.first, views.second});
+  }
+  for (const SignedLink& link : links) {
+    const std::size_t a = labels[link.first], b = labels[link.second];
+    if (a == b) continue;
+    clusters[a].evidence[b] += link.evidence;
+    clusters[b].evidence[a] += link.evidence;
+  }
+  return clusters;
+}
+
+std::size_t CountShared(const std::set<ViewId>& a, const std::set<ViewId>& b) {
+  return static_cast<std::size_t>(std::count_if(
+      a.begin(), a.end(), [&](ViewId view) { return b.count(view) > 0; }));
+}
+
+// Two pieces of one model that share two views have one scale, that of the
+// distance between these. So either they are one, or, if evidence says that
+// they are not, one of them is none: baselines that span the gap between
+// others, too straight to tell how wide it is, bear each other out and nothing
+// else.
+std::vector<RigidPiece> PiecesOf(std::map<std::size_t, Cluster> clusters) {
+  std::vector<std::size_t> labels;
+  for (const auto& [label, cluster] : clusters) {
+    if (cluster.views.size() >= 3) labels.push_back(label);
+  }
+  std::stable_sort(
+      labels.begin(), labels.end(), [&](std::size_t a, std::size_t b) {
+        return clusters.at(a).pairs.size() > clusters.at(b).pairs.size();
+      });
+  std::vector<Cluster*> accepted;
+  for (const std::size_t label : labels) {
+    Cluster& cluster = clusters.at(label);
+    const auto same = std::find_if(
+        accepted.begin(), accepted.end(), [&](const Cluster* larger) {
+          return CountShared(cluster.views, larger->views) >= 2;
+        });
+    if (same == accepted.end()) {
+      accepted.push_back(&cluster);
+      continue;
+    }
+    Cluster& larger = **same;
+    const auto between = larger.evidence.find(label);
+    if (between != larger.evidence.end() && between->second < 0) continue;
+    larger.pairs.insert(cluster.pairs.begin(), cluster.pairs.end());
+    larger.views.insert(cluster.views.begin(), cluster.views.end());
+    for (const auto& [other, value] : cluster.evidence) {
+      larger.evidence[other] += value;
+    }
+  }
+  std::vector<RigidPiece> pieces;
+  for (const Cluster* cluster : accepted) {
+    pieces.push_back({{cluster->views.begin(), cluster->views.end()},
+                      {cluster->pairs.begin(), cluster->pairs.end()}});
+  }
+  std::stable_sort(pieces.begin(), pieces.end(),
+                   [](const RigidPiece& a, const RigidPiece& b) {
+                     return a.views.size() > b.views.size();
+                   });
+  return pieces;
+}
+
+}  // namespace
+
+Result<std::vector<RigidPiece>> FindRigidPieces(
+    const std::map<ViewId, Pose>& poses,
+    const std::vector<PairAgreement>& pairs,
+    const std::vector<RatioAgreement>& ratios, double reach,
+    const RunContext& context) {
+  std::vector<ViewPair> agreeing;
+  for (const PairAgreement& pair : pairs) {
+    if (pair.Agrees()) agreeing.push_back(pair.views);
+  }
+  if (agreeing.empty()) return std::vector<RigidPiece>();
+  const ViewGraph graph(agreeing);
+  Firmness firmness(poses, graph, context);
+  for (const PairAgreement& pair : pairs) {
+    if (pair.Agrees()) {
+      firmness.AddDirection(pair.views, pair.direction_limit_rad / reach);
+    }
+  }
+  for (const RatioAgreement& ratio : ratios) {
+    const ViewTriplet& views = ratio.views;
+    if (ratio.Agrees() && graph.FindPair(views.first, views.middle) &&
+        graph.FindPair(views.middle, views.last)) {
+      firmness.AddRatio(views, ratio.limit / reach);
+    }
+  }
+
+  std::map<ViewTriplet, const RatioAgreement*> measured;
+  for (const RatioAgreement& ratio : ratios) {
+    measured.emplace(ratio.views, &ratio);
+  }
+  const double firm = DiagnosisOptions().max_stddev;
+  std::vector<SignedLink> links;
+  std::vector<ViewTriplet> asked;
+  const auto link = [&](const ViewTriplet& views, double sign) {
+    const auto found = measured.find(views);
+    const double evidence =
+        found == measured.end()
+            ? 1
+            : 1 + std::log1p(std::max(0.0, -found->second->log10_nfa));
+    links.push_back({*graph.FindPair(views.first, views.middle),
+                     *graph.FindPair(views.middle, views.last),
+                     sign * evidence});
+  };
+  for (const ViewTriplet& views : FindTriplets(graph)) {
+    const auto found = measured.find(views);
+    if (found == measured.end()) {
+      asked.push_back(views);
+    } else if (!found->second->Agrees()) {
+      link(views, -1);
+    } else if (found->second->limit <= reach * firm) {
+      link(views, 1);
+    } else {
+      asked.push_back(views);
+    }
+  }
+  constexpr std::size_t kAtOnce = 256;
+  for (std::size_t next = 0; next < asked.size(); next += kAtOnce) {
+    if (!context.Progress("rigid pieces", next, asked.size())) {
+      return MakeError(ErrorCode::kCancelled, "stopped on request", {},
+                       "rigid pieces");
+    }
+    const std::vector<ViewTriplet> some(
+        asked.begin() + next,
+        asked.begin() + std::min(next + kAtOnce, asked.size()));
+    LOWLAP_ASSIGN_OR_RETURN(const auto deviations, firmness.Deviations(some));
+    for (std::size_t n = 0; n < some.size(); ++n) {
+      if (deviations[n] <= firm) link(some[n], 1);
+    }
+  }
+  const std::vector<std::size_t> labels =
+      ClusterByLinks(graph.pairs().size(), links);
+  return PiecesOf(ClustersOf(graph, labels, links));
+}
+
+}  // namespace lowlap

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/merge/merge_models.h"
+
+namespace lowlap {
+
+/// The rigid pieces of cameras, by the relative poses that agree with them and
+/// by all ratios between these; see CheckModel.
+///
+/// With the deviations s = limit / reach of directions and ratios, what agrees
+/// has to first order in the centres the information
+///   H = sum_e (I - u u^T) / (L s)^2 + sum_r g g^T / s^2 + I / (10^2 sum |X|^2)
+/// (u, L: direction and length of a baseline, g: gradient of a log ratio; the
+/// last term leaves what nothing fixes with a deviation of more than a factor
+/// of two). It fixes a log ratio if g^T H^-1 g is below a tenth squared: then
+/// the two baselines belong together with the evidence 1, or, if their ratio
+/// was measured, with that of this: 1 + log(1 - log10 NFA). So much is also the
+/// evidence of a ratio that contradicts. A baseline that is nearly straight on
+/// from two others fixes nothing, however well it agrees; where it still seems
+/// to, the ratios overrule it.
+///
+/// Most views first, of three views at least. Errors: kCancelled; kNumerical if
+/// the equations cannot be solved.
+Result<std::vector<RigidPiece>> FindRigidPieces(
+    const std::map<ViewId, Pose>& poses,
+    const std::vector<PairAgreement>& pairs,
+    const std::vector<RatioAgreement>& ratios, double reach,
+    const RunContext& context);
+
+}  // namespace lowlap

@@ -1,0 +1,151 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <iterator>
+
+#include "lowlap/geometry/internal/rotation.h"
+#include "merge/parts.h"
+#include "support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAreArray;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::SizeIs;
+
+Similarity SomeFrame() {
+  Similarity frame;
+  frame.scale = 3.7;
+  frame.rotation = RotationFromAngleAxis(Vec3(0.3, -1.1, 0.8));
+  frame.translation = Vec3(5, -2, 11);
+  return frame;
+}
+
+ModelCheck Check(const SyntheticScene& made, const PartialModel& model) {
+  const auto check =
+      CheckModel(made.scene, model, SolveOptions(), RunContext());
+  EXPECT_THAT(check, testing::IsOk());
+  return check ? *check : ModelCheck();
+}
+
+class CheckModelTest : public ::testing::TestWithParam<std::uint64_t> {
+ protected:
+  SyntheticScene made_ = NoisyChain(GetParam());
+};
+
+TEST_P(CheckModelTest, BearsOutAModelThatIsRight) {
+  PartialModel model = PartOf(made_.true_poses, Range(0, 8));
+  model.poses = Moved(model.poses, SomeFrame());
+  const ModelCheck check = Check(made_, model);
+  EXPECT_TRUE(check.IsWhole());
+  EXPECT_THAT(DescribeCheck(model, check, made_.scene),
+              ElementsAreArray({HasSubstr("bear out all of it")}));
+}
+
+// Every direction that does not cross the camera is right.
+TEST_P(CheckModelTest, CutsWhereAPartHasAnotherScale) {
+  const PartialModel model =
+      Glued(PartOf(made_.true_poses, Range(0, 8)), 5, 1.6, Mat3::Identity());
+  const ModelCheck check = Check(made_, model);
+  ASSERT_THAT(check.pieces, SizeIs(2));
+  EXPECT_THAT(check.pieces[0].views, ElementsAreArray(Range(0, 4)));
+  EXPECT_THAT(check.pieces[1].views, ElementsAreArray(Range(4, 8)));
+  EXPECT_THAT(check.unconfirmed, IsEmpty());
+  EXPECT_THAT(DescribeCheck(model, check, made_.scene),
+              Contains(AllOf(HasSubstr("which meet in 000004.png, are not one"),
+                             HasSubstr("1.6"), HasSubstr("too large"))));
+}
+
+TEST_P(CheckModelTest, CutsWhereAPartIsTurned) {
+  const PartialModel model =
+      Glued(PartOf(made_.true_poses, Range(0, 8)), 5, 1,
+            RotationFromAngleAxis(RadFromDeg(20) * Vec3::UnitY()));
+  const ModelCheck check = Check(made_, model);
+  ASSERT_THAT(check.pieces, SizeIs(2));
+  EXPECT_THAT(check.pieces[0].views, ElementsAreArray(Range(0, 4)));
+  EXPECT_THAT(check.pieces[1].views, ElementsAreArray(Range(5, 8)));
+  EXPECT_THAT(DescribeCheck(model, check, made_.scene),
+              Contains(AllOf(HasSubstr("are not one"),
+                             HasSubstr("3 of 3 relative poses between them"))));
+}
+
+TEST_P(CheckModelTest, NamesACameraThatIsElsewhere) {
+  PartialModel model = PartOf(made_.true_poses, Range(0, 8));
+  model.poses.at(8).center += Vec3(1, 0.5, -1);
+  const ModelCheck check = Check(made_, model);
+  ASSERT_THAT(check.pieces, SizeIs(1));
+  EXPECT_THAT(check.unconfirmed, ElementsAreArray(Range(8, 8)));
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, CheckModelTest, ::testing::Values(0, 1, 2));
+
+// Nothing contradicts the model, but nothing that was measured has to do with
+// the scale across view 4 either.
+TEST(CheckModel, CutsWhereNothingTiesScales) {
+  SyntheticScene made = NoisyChain(0);
+  auto& pairs = made.scene.relative_poses;
+  for (auto pair = pairs.begin(); pair != pairs.end();) {
+    const bool across = pair->first.first < 4 && pair->first.second > 4;
+    pair = across ? pairs.erase(pair) : std::next(pair);
+  }
+  made.scene.features.clear();
+  for (auto& entry : pairs) {
+    entry.second.point_inliers.clear();
+    entry.second.line_inliers.clear();
+  }
+  const PartialModel model = PartOf(made.true_poses, Range(0, 8));
+  const ModelCheck check = Check(made, model);
+  for (const RigidPiece& piece : check.pieces) {
+    EXPECT_TRUE(piece.views.back() <= 4 || piece.views.front() >= 4);
+  }
+  EXPECT_THAT(DescribeCheck(model, check, made.scene),
+              Contains(HasSubstr("which meet in 000004.png, are not one: "
+                                 "nothing that was measured ties")));
+}
+
+TEST(CheckModel, WithoutMeasurementsNothingIsBorneOut) {
+  SyntheticScene made = NoisyChain(0);
+  made.scene.relative_poses.clear();
+  const ModelCheck check = Check(made, PartOf(made.true_poses, Range(0, 8)));
+  EXPECT_THAT(check.pieces, IsEmpty());
+  EXPECT_THAT(check.unconfirmed, SizeIs(9));
+}
+
+TEST(MatchModel, FindsViewsByImageName) {
+  const SyntheticScene made = NoisyChain(0);
+  Scene model;
+  for (const std::uint32_t view : {2, 5}) {
+    const std::uint32_t id = 70 - view;  // the model numbers them by itself
+    model.views[id] = made.scene.views.at(view);
+    model.views[id].local_path = "undistorted/images";
+    model.views[id].pose_id = id;
+    model.poses[id].center = Vec3(view, 0, 0);
+  }
+  const auto matched = MatchModel(made.scene, model, "model.json");
+  ASSERT_THAT(matched, testing::IsOk());
+  ASSERT_THAT(matched->poses, SizeIs(2));
+  EXPECT_EQ(matched->poses.at(2).center.x(), 2);
+  EXPECT_EQ(matched->poses.at(5).center.x(), 5);
+}
+
+TEST(MatchModel, SaysWhatIsWrong) {
+  const SyntheticScene made = NoisyChain(0);
+  Scene model = made.scene;
+  EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
+              testing::IsError(ErrorCode::kInsufficientData, "model.json: "));
+  model.poses = TrueSolution(made).poses;
+  for (auto& entry : model.views) entry.second.filename += ".other.png";
+  EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
+              testing::IsError(ErrorCode::kInsufficientData,
+                               "is an image of the measured scene"));
+  for (auto& entry : model.views) entry.second.filename = "one.png";
+  EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
+              testing::IsError(ErrorCode::kInvalidScene, "one.png"));
+}
+
+}  // namespace
+}  // namespace lowlap
