@@ -51,6 +51,7 @@ void RunWhenChosen(CLI::App* command, const std::shared_ptr<Flags>& flags,
 // Each adds one command to the program; `action` is set if it is chosen.
 void AddRun(CLI::App* program, Action* action);
 void AddSolve(CLI::App* program, Action* action);
+void AddMerge(CLI::App* program, Action* action);
 void AddAblate(CLI::App* program, Action* action);
 void AddCompare(CLI::App* program, Action* action);
 void AddScales(CLI::App* program, Action* action);

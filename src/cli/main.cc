@@ -30,6 +30,7 @@ int main(int argc, char** argv) {
   lowlap::cli::Action action;
   lowlap::cli::AddRun(&program, &action);
   lowlap::cli::AddSolve(&program, &action);
+  lowlap::cli::AddMerge(&program, &action);
   lowlap::cli::AddCompare(&program, &action);
   lowlap::cli::AddAblate(&program, &action);
   lowlap::cli::AddScales(&program, &action);

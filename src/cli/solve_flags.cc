@@ -232,14 +232,14 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
 Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
                           RunSummary summary, StageLog* stages,
                           const RunContext& context, const std::string& input,
-                          const std::string& output) {
+                          const std::string& output, const Solver& solver) {
   LOWLAP_ASSIGN_OR_RETURN(auto options, MakeSolveOptions(flags));
   LOWLAP_ASSIGN_OR_RETURN(const auto truth,
                           LoadGroundTruth(flags.ground_truth, scene));
   LOWLAP_RETURN_IF_ERROR(
       SetRefinement(flags.refine_intrinsics, &scene, &options.adjustment));
 
-  auto result = SolveScene(&scene, options, context, stages);
+  auto result = solver(&scene, options, context, stages);
   if (!result) {
     if (result.error().file.empty()) result.error().file = input;
     return tl::unexpected<Error>(result.error());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -67,6 +68,9 @@ void PrintCalibration(const Scene& scene, const AdjustmentOptions& options,
 /// --strict, of the commands that SolveAndWrite.
 void AddStrictFlag(CLI::App* command, bool* strict);
 
+using Solver = std::function<Result<SolveResult>(Scene*, const SolveOptions&,
+                                                 const RunContext&, StageLog*)>;
+
 /// Solves a measured scene, writes the output folder, prints what a person
 /// wants to know, and returns the exit code: with `strict` 2 if a camera is
 /// doubtful or not placed. `input` is what the scene came
@@ -74,6 +78,7 @@ void AddStrictFlag(CLI::App* command, bool* strict);
 Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
                           RunSummary summary, StageLog* stages,
                           const RunContext& context, const std::string& input,
-                          const std::string& output);
+                          const std::string& output,
+                          const Solver& solver = SolveScene);
 
 }  // namespace lowlap::cli

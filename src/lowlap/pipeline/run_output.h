@@ -18,6 +18,8 @@ struct RunSummary {
   std::string command;
   std::vector<PairReport> pairs;
   std::vector<UnrelatedView> unrelated;
+  /// What a command has to say beyond that, for people.
+  std::vector<std::string> notes;
   std::optional<SolveResult> solve;
   std::optional<PoseEvaluation> evaluation_before_adjustment;
   std::optional<PoseEvaluation> evaluation;

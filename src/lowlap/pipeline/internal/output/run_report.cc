@@ -112,6 +112,9 @@ ReportContent MakeReport(const RunSummary& summary, const Scene& scene) {
     content.warnings.push_back(NameOf(scene, view.view) +
                                " has no relative pose: " + view.reason);
   }
+  for (const std::string& note : summary.notes) {
+    content.warnings.push_back(note);
+  }
   if (summary.solve) AddSolve(*summary.solve, scene, &content);
   if (summary.evaluation && summary.evaluation->position.count > 0) {
     content.figures.emplace_back("mean position error",

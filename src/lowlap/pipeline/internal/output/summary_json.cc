@@ -210,6 +210,7 @@ std::string ToJson(const RunSummary& summary, const Scene& scene) {
                                        {"no_parallax", view.no_parallax},
                                        {"reason", view.reason}});
   }
+  if (!summary.notes.empty()) json["notes"] = summary.notes;
   if (summary.solve) json["solve"] = SolveJson(*summary.solve);
   if (summary.evaluation_before_adjustment) {
     json["evaluation_before_adjustment"] =
