@@ -1,4 +1,4 @@
-#include "third_party_adapters/camera_files.h"
+#include "third_party_adapters/internal/camera_files.h"
 
 #include <filesystem>
 #include <system_error>

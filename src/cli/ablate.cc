@@ -7,7 +7,7 @@
 #include "cli/truth.h"
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/run_output.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
 #include "lowlap/study/internal/ablation.h"
 
 namespace lowlap::cli {

@@ -6,9 +6,9 @@
 #include "cli/solve_flags.h"
 #include "cli/truth.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/run_output.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {

@@ -7,7 +7,7 @@
 #include "cli/solve_flags.h"
 #include "cli/truth.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/run_output.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
 #include "lowlap/study/compare_strategies.h"
 
 namespace lowlap::cli {

@@ -5,10 +5,10 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/diagnosis_output.h"
+#include "lowlap/pipeline/internal/output/diagnosis_output.h"
 #include "lowlap/scale/scale_ratios.h"
 
 namespace lowlap::cli {

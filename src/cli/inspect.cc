@@ -4,7 +4,7 @@
 
 #include "cli/command.h"
 #include "cli/scene_input.h"
-#include "lowlap/averaging/rigidity/rigidity.h"
+#include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"

@@ -1,6 +1,6 @@
 #include "cli/intrinsics_input.h"
 
-#include "third_party_adapters/camera_files.h"
+#include "third_party_adapters/internal/camera_files.h"
 
 namespace lowlap::cli {
 

@@ -6,11 +6,11 @@
 #include "cli/intrinsics_input.h"
 #include "cli/solve_flags.h"
 #include "cli/truth.h"
-#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"
-#include "lowlap/pipeline/measure_and_refine.h"
-#include "lowlap/pipeline/run_output.h"
+#include "lowlap/pipeline/internal/measure/measure_and_refine.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
 
 namespace lowlap::cli {
 namespace {

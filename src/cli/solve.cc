@@ -8,9 +8,9 @@
 #include "cli/command.h"
 #include "cli/scene_input.h"
 #include "cli/solve_flags.h"
-#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/run_output.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
 
 namespace lowlap::cli {
 namespace {

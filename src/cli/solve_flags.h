@@ -9,7 +9,7 @@
 #include "cli/command_line.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/result.h"
-#include "lowlap/pipeline/run_output.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
 

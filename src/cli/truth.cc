@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/propagate.h"
-#include "third_party_adapters/camera_files.h"
+#include "third_party_adapters/internal/camera_files.h"
 
 namespace lowlap::cli {
 

@@ -1,10 +1,10 @@
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 
 #include <memory>
 #include <utility>
 #include <vector>
 
-#include "lowlap/pipeline/diagnosis_output.h"
+#include "lowlap/pipeline/internal/output/diagnosis_output.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "python/keywords.h"
 

@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <sstream>
 
-#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
 #include "python/averager.h"
-#include "third_party_adapters/camera_files.h"
+#include "third_party_adapters/internal/camera_files.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::python {

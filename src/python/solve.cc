@@ -4,11 +4,11 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/adjustment/intrinsic_refinement.h"
-#include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/pipeline/image_collection.h"
-#include "lowlap/pipeline/measure_and_refine.h"
-#include "lowlap/pipeline/run_output.h"
+#include "lowlap/pipeline/internal/measure/measure_and_refine.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "python/keywords.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"
 

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/averaging/internal/pose_warnings.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

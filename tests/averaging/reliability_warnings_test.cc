@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/averaging/scene_poses.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 

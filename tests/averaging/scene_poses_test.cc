@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/synthetic/synthetic_scene.h"

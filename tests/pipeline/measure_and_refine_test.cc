@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/measure_and_refine.h"
+#include "lowlap/pipeline/internal/measure/measure_and_refine.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
 #include "lowlap/study/internal/subset_runs.h"

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/averaging/internal/pose_warnings.h"
 
 #include "lowlap/core/internal/format.h"
 

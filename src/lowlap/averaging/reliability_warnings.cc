@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
 #include "lowlap/core/internal/median.h"
 #include "lowlap/geometry/internal/rotation.h"

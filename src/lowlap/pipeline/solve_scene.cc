@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lowlap/averaging/internal/reliability_warnings.h"
-#include "lowlap/averaging/rigidity/rigidity.h"
+#include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/scale/scale_ratios.h"

@@ -1,4 +1,4 @@
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 
 #include <algorithm>
 #include <cmath>

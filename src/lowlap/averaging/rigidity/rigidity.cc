@@ -1,4 +1,4 @@
-#include "lowlap/averaging/rigidity/rigidity.h"
+#include "lowlap/averaging/rigidity/internal/rigidity.h"
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 
 namespace lowlap {
 

@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/diagnosis_output.h"
+#include "lowlap/pipeline/internal/output/diagnosis_output.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
-#include "lowlap/pipeline/run_output.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
 
 namespace lowlap {
 

@@ -3,8 +3,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "lowlap/adjustment/intrinsic_refinement.h"
-#include "lowlap/averaging/pose_warnings.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/pipeline/internal/output/ratio_table.h"
 
 namespace lowlap {

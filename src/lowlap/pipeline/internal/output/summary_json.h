@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/averaging/rigidity/rigidity.h"
-#include "lowlap/pipeline/run_output.h"
+#include "lowlap/averaging/rigidity/internal/rigidity.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "lowlap/averaging/rigidity/rigidity.h"
+#include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
 #include "lowlap/scene/scene.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "lowlap/averaging/rigidity/diagnosis.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {

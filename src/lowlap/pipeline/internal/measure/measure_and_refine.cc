@@ -1,8 +1,8 @@
-#include "lowlap/pipeline/measure_and_refine.h"
+#include "lowlap/pipeline/internal/measure/measure_and_refine.h"
 
 #include <string>
 
-#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/measure/image_measurements.h"
 #include "lowlap/pipeline/internal/measure/pair_report.h"

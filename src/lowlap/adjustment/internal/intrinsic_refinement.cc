@@ -1,4 +1,4 @@
-#include "lowlap/adjustment/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 
 #include <algorithm>
 #include <cstdio>
