@@ -2,9 +2,9 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "cli/scene_input.h"
-#include "cli/solve_flags.h"
-#include "cli/truth.h"
+#include "cli/flags/scene_input.h"
+#include "cli/flags/solve_flags.h"
+#include "cli/flags/truth.h"
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/solve_flags.h"
-#include "cli/truth.h"
+#include "cli/flags/solve_flags.h"
+#include "cli/flags/truth.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "cli/command_line.h"
+#include "cli/flags/command_line.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/scene_input.h"
-#include "cli/solve_flags.h"
-#include "cli/truth.h"
+#include "cli/flags/scene_input.h"
+#include "cli/flags/solve_flags.h"
+#include "cli/flags/truth.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
 #include "lowlap/study/compare_strategies.h"

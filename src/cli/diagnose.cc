@@ -3,8 +3,8 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/scene_input.h"
-#include "cli/solve_flags.h"
+#include "cli/flags/scene_input.h"
+#include "cli/flags/solve_flags.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"

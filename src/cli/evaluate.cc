@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/truth.h"
+#include "cli/flags/truth.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/evaluation/internal/line_match_errors.h"
 #include "lowlap/evaluation/internal/pair_errors.h"

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "cli/scene_input.h"
+#include "cli/flags/scene_input.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/joined.h"

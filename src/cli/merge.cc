@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/intrinsics_input.h"
-#include "cli/scene_input.h"
-#include "cli/solve_flags.h"
+#include "cli/flags/intrinsics_input.h"
+#include "cli/flags/scene_input.h"
+#include "cli/flags/solve_flags.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/evaluation/pose_errors.h"

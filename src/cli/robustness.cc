@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "cli/command.h"
-#include "cli/solve_flags.h"
+#include "cli/flags/solve_flags.h"
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"

@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/intrinsics_input.h"
-#include "cli/solve_flags.h"
-#include "cli/truth.h"
+#include "cli/flags/intrinsics_input.h"
+#include "cli/flags/solve_flags.h"
+#include "cli/flags/truth.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"

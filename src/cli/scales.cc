@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/scene_input.h"
-#include "cli/solve_flags.h"
-#include "cli/truth.h"
+#include "cli/flags/scene_input.h"
+#include "cli/flags/solve_flags.h"
+#include "cli/flags/truth.h"
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/evaluation/internal/relative_errors.h"

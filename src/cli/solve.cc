@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/scene_input.h"
-#include "cli/solve_flags.h"
+#include "cli/flags/scene_input.h"
+#include "cli/flags/solve_flags.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"

@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/scene_input.h"
-#include "cli/solve_flags.h"
-#include "cli/truth.h"
+#include "cli/flags/scene_input.h"
+#include "cli/flags/solve_flags.h"
+#include "cli/flags/truth.h"
 #include "lowlap/core/internal/hash.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/scene_binary.h"

@@ -1,4 +1,4 @@
-#include "cli/intrinsics_input.h"
+#include "cli/flags/intrinsics_input.h"
 
 #include "third_party_adapters/internal/camera_files.h"
 

@@ -1,11 +1,11 @@
-#include "cli/solve_flags.h"
+#include "cli/flags/solve_flags.h"
 
 #include <cstdio>
 #include <map>
 #include <utility>
 
 #include "cli/command.h"
-#include "cli/truth.h"
+#include "cli/flags/truth.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/averaging/internal/pose_warnings.h"

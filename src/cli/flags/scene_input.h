@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/command_line.h"
+#include "cli/flags/command_line.h"
 #include "lowlap/core/result.h"
 #include "lowlap/pipeline/internal/measure/pair_report.h"
 #include "lowlap/pipeline/stage_log.h"

@@ -3,7 +3,7 @@
 #include <optional>
 #include <string>
 
-#include "cli/command_line.h"
+#include "cli/flags/command_line.h"
 #include "lowlap/core/result.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/scene/scene.h"

@@ -1,4 +1,4 @@
-#include "cli/truth.h"
+#include "cli/flags/truth.h"
 
 #include <utility>
 

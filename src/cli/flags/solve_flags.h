@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/command_line.h"
+#include "cli/flags/command_line.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/result.h"
 #include "lowlap/pipeline/internal/output/run_output.h"

@@ -1,4 +1,4 @@
-#include "cli/scene_input.h"
+#include "cli/flags/scene_input.h"
 
 #include <map>
 #include <utility>
