@@ -146,8 +146,13 @@ class ReplacedFiles {
   }
 
   void Keep(const std::string& target) {
-    Replaced file{target, UniqueName(target + ".old"), false};
-    if (::link(target.c_str(), file.second_name->c_str()) != 0) {
+    Replaced file{target, {}, false};
+    int failed = 0;
+    do {  // a writer that was killed may have left such a name
+      file.second_name = UniqueName(target + ".old");
+      failed = ::link(target.c_str(), file.second_name->c_str());
+    } while (failed != 0 && errno == EEXIST);
+    if (failed != 0) {
       file.was_missing = errno == ENOENT;
       file.second_name.reset();
     }
