@@ -10,9 +10,11 @@ template <class Items, class TextOf>
 std::string Joined(const Items& items, const char* separator,
                    const TextOf& text_of) {
   std::string text;
+  const char* before = "";
   for (const auto& item : items) {
-    if (!text.empty()) text += separator;
+    text += before;
     text += text_of(item);
+    before = separator;
   }
   return text;
 }
