@@ -159,10 +159,42 @@ TEST(TestTriplets, OneThatFailsDoesNotLoseTheOthers) {
   EXPECT_TRUE((*ratios)[2].kinds.empty());
   EXPECT_EQ((*ratios)[2].views, kTriplets[2]);
   ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_THAT(warnings[0], ::testing::HasSubstr("2 triplets"));
+  EXPECT_THAT(warnings[0], ::testing::HasSubstr("2 of 3 triplets"));
   EXPECT_THAT(warnings[0],
               ::testing::HasSubstr(row.scene.views.at(0).filename));
   EXPECT_THAT(warnings[0], ::testing::HasSubstr("nothing converged"));
+}
+
+// Triplet 0 fails in the second round, 1 in the first, 2 in both.
+TEST(TestTriplets, TheLastTestThatDidNotFailCounts) {
+  const testing::RowOfViews row;
+  std::vector<std::string> warnings;
+  RunContext context;
+  context.log = [&](LogLevel, const std::string& text) {
+    warnings.push_back(text);
+  };
+  const auto ratios = TestTriplets<ScaleRatio>(
+      row.scene, kTriplets, FirstAndUndecided(true), context, "test",
+      [](const TripletView& view,
+         const TripletEvidence& evidence) -> Result<ScaleRatio> {
+        const bool again = evidence.num_tests == 2;
+        if (view.views == kTriplets[again ? 0 : 1] ||
+            view.views == kTriplets[2]) {
+          return MakeError(ErrorCode::kNumerical, "nothing converged");
+        }
+        ScaleRatio ratio;
+        ratio.views = view.views;
+        ratio.log_ratio = evidence.num_tests;
+        ratio.verdict = RatioVerdict::kNotMeaningful;
+        return ratio;
+      });
+  ASSERT_TRUE(ratios.has_value());
+  EXPECT_EQ((*ratios)[0].log_ratio, 1);
+  EXPECT_EQ((*ratios)[1].log_ratio, 2);
+  EXPECT_EQ((*ratios)[2].verdict, RatioVerdict::kNoCandidates);
+  EXPECT_EQ((*ratios)[2].views, kTriplets[2]);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0], ::testing::HasSubstr("2 of 3 triplets"));
 }
 
 TEST(TestTriplets, CanBeCancelledByTheTest) {

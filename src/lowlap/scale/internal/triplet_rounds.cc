@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <string>
 #include <utility>
 
 namespace lowlap {
@@ -57,17 +58,22 @@ bool IsDefined(const ScaleRatio& ratio) {
                      });
 }
 
-void WarnOfFailures(const Scene& scene, const std::vector<ViewTriplet>& failed,
-                    const std::string& first_reason,
+void WarnOfFailures(const Scene& scene,
+                    const std::vector<ViewTriplet>& triplets,
+                    const std::vector<const Error*>& failures,
                     const RunContext& context) {
-  if (failed.empty()) return;
+  const auto failed = [](const Error* error) { return error != nullptr; };
+  const auto first = std::find_if(failures.begin(), failures.end(), failed);
+  if (first == failures.end()) return;
   const auto name = [&](ViewId view) { return scene.views.at(view).filename; };
+  const ViewTriplet& views = triplets[first - failures.begin()];
   context.Log(LogLevel::kWarning,
-              std::to_string(failed.size()) +
-                  (failed.size() == 1 ? " triplet has" : " triplets have") +
-                  " no ratio since its estimation failed, first that of " +
-                  name(failed[0].first) + ", " + name(failed[0].middle) +
-                  " and " + name(failed[0].last) + ": " + first_reason);
+              "the estimation of a scale ratio failed at " +
+                  std::to_string(std::count_if(first, failures.end(), failed)) +
+                  " of " + std::to_string(triplets.size()) +
+                  " triplets, first at " + name(views.first) + ", " +
+                  name(views.middle) + " and " + name(views.last) + ": " +
+                  (*first)->ToString());
 }
 
 bool MaySpeak(const EvidenceKinds& kinds, EvidenceRound round,

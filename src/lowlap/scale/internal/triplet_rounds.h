@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,39 +37,30 @@ inline ScaleRatio& RatioOf(ScaleRatio& ratio) { return ratio; }
 /// Whether all numbers of the ratio are finite.
 bool IsDefined(const ScaleRatio& ratio);
 
-/// Warns of the triplets whose test failed, if there are any.
-void WarnOfFailures(const Scene& scene, const std::vector<ViewTriplet>& failed,
-                    const std::string& first_reason, const RunContext& context);
+/// Warns of the triplets whose last test failed, if there are any.
+void WarnOfFailures(const Scene& scene,
+                    const std::vector<ViewTriplet>& triplets,
+                    const std::vector<const Error*>& failures,
+                    const RunContext& context);
 
 /// `test` of every triplet, in parallel:
 /// Result<Outcome>(TripletView, TripletEvidence). Triplets without features
-/// have no candidates; nor have those whose test fails or gives numbers that
-/// are not finite, of which a warning tells: one does not lose the others.
-/// Errors: those of MakeTripletView, kCancelled.
+/// have no candidates. A test that fails, or gives numbers that are not finite,
+/// does not lose the others. Errors: those of MakeTripletView, kCancelled.
 template <class Outcome, class Test>
-Result<std::vector<Outcome>> TestOnce(const SceneFeatures& features,
-                                      const std::vector<ViewTriplet>& triplets,
-                                      const EvidenceKinds& kinds, int num_tests,
-                                      const RunContext& context,
-                                      const char* stage, const Test& test) {
-  const auto nothing_of = [](const ViewTriplet& views) {
-    Outcome nothing;
-    RatioOf(nothing).views = views;
-    RatioOf(nothing).verdict = RatioVerdict::kNoCandidates;
-    return nothing;
-  };
+Result<std::vector<Result<Outcome>>> TestOnce(
+    const SceneFeatures& features, const std::vector<ViewTriplet>& triplets,
+    const EvidenceKinds& kinds, int num_tests, const RunContext& context,
+    const char* stage, const Test& test) {
   const std::vector<std::size_t> order = LargestFirst(features.scene, triplets);
-  // Of a triplet that cannot be made; of one whose test fails.
   std::vector<Status> made(triplets.size());
   std::vector<Result<Outcome>> results(triplets.size());
   const Status status =
       ParallelFor(context, stage, triplets.size(), [&](std::size_t n) {
         const ViewTriplet& views = triplets[order[n]];
         Result<Outcome>& result = results[order[n]];
-        if (!features.HasAll(views)) {
-          result = nothing_of(views);
-          return;
-        }
+        RatioOf(*result).views = views;
+        if (!features.HasAll(views)) return;
         const Result<TripletView> triplet = MakeTripletView(features, views);
         if (!triplet) {
           made[order[n]] = tl::unexpected<Error>(triplet.error());
@@ -84,30 +74,20 @@ Result<std::vector<Outcome>> TestOnce(const SceneFeatures& features,
         }
       });
   if (!status) return tl::unexpected<Error>(status.error());
-  std::vector<Outcome> outcomes;
-  outcomes.reserve(results.size());
-  std::vector<ViewTriplet> failed;
-  std::string first_reason;
-  for (std::size_t n = 0; n < results.size(); ++n) {
+  for (std::size_t n = 0; n < triplets.size(); ++n) {
     if (!made[n]) return tl::unexpected<Error>(std::move(made[n].error()));
-    Result<Outcome>& result = results[n];
-    if (!result) {
-      if (result.error().code == ErrorCode::kCancelled)
-        return tl::unexpected<Error>(std::move(result.error()));
-      if (failed.empty()) first_reason = result.error().ToString();
-      failed.push_back(triplets[n]);
-      result = nothing_of(triplets[n]);
+    if (!results[n] && results[n].error().code == ErrorCode::kCancelled) {
+      return tl::unexpected<Error>(std::move(results[n].error()));
     }
-    outcomes.push_back(std::move(*result));
   }
-  WarnOfFailures(features.scene, failed, first_reason, context);
-  return outcomes;
+  return results;
 }
 
 /// The same in rounds: triplets that are not meaningful by the kinds of the
 /// first round are tested a second time, with those of kUndecided as well, if
-/// one of these may speak. Outcomes are those of the last test of each, in the
-/// order of the triplets.
+/// one of these may speak. Outcomes are those of the last test that did not
+/// fail, in the order of the triplets, without candidates if all did; a warning
+/// tells of last tests that failed.
 template <class Outcome, class Test>
 Result<std::vector<Outcome>> TestTriplets(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
@@ -117,29 +97,42 @@ Result<std::vector<Outcome>> TestTriplets(
   auto asked =
       PrepareRound(kinds, EvidenceRound::kFirst, features, triplets, context);
   if (!asked) return tl::unexpected<Error>(asked.error());
-  auto outcomes =
+  auto tested =
       TestOnce<Outcome>(features, triplets, *asked, 1, context, stage, test);
-  if (!outcomes) return outcomes;
+  if (!tested) return tl::unexpected<Error>(tested.error());
+  std::vector<const Error*> failures(triplets.size(), nullptr);
   std::vector<std::size_t> undecided;
   std::vector<ViewTriplet> undecided_triplets;
   for (std::size_t n = 0; n < triplets.size(); ++n) {
-    if (RatioOf((*outcomes)[n]).verdict != RatioVerdict::kMeaningful &&
+    Result<Outcome>& first = (*tested)[n];
+    if (!first) failures[n] = &first.error();
+    if ((!first || RatioOf(*first).verdict != RatioVerdict::kMeaningful) &&
         features.HasAll(triplets[n]) &&
         MaySpeak(kinds, EvidenceRound::kUndecided, features, triplets[n])) {
       undecided.push_back(n);
       undecided_triplets.push_back(triplets[n]);
     }
   }
-  if (undecided.empty()) return outcomes;
-  const auto more = PrepareRound(kinds, EvidenceRound::kUndecided, features,
-                                 undecided_triplets, context);
-  if (!more) return tl::unexpected<Error>(more.error());
-  asked->insert(asked->end(), more->begin(), more->end());
-  auto again = TestOnce<Outcome>(features, undecided_triplets, *asked, 2,
-                                 context, stage, test);
-  if (!again) return again;
+  Result<std::vector<Result<Outcome>>> again;
+  if (!undecided.empty()) {
+    const auto more = PrepareRound(kinds, EvidenceRound::kUndecided, features,
+                                   undecided_triplets, context);
+    if (!more) return tl::unexpected<Error>(more.error());
+    asked->insert(asked->end(), more->begin(), more->end());
+    again = TestOnce<Outcome>(features, undecided_triplets, *asked, 2, context,
+                              stage, test);
+    if (!again) return tl::unexpected<Error>(again.error());
+  }
   for (std::size_t n = 0; n < undecided.size(); ++n) {
-    (*outcomes)[undecided[n]] = std::move((*again)[n]);
+    Result<Outcome>& second = (*again)[n];
+    failures[undecided[n]] = second ? nullptr : &second.error();
+    if (second) (*tested)[undecided[n]] = std::move(second);
+  }
+  WarnOfFailures(scene, triplets, failures, context);
+  std::vector<Outcome> outcomes(triplets.size());
+  for (std::size_t n = 0; n < triplets.size(); ++n) {
+    RatioOf(outcomes[n]).views = triplets[n];
+    if ((*tested)[n]) outcomes[n] = std::move(*(*tested)[n]);
   }
   return outcomes;
 }

@@ -10,7 +10,7 @@ namespace lowlap {
 ///   min sum_e rho(|u_e - d_e| / sigma_e)
 ///     + sum_r rho((log L_target - log L_reference - log tau) / sigma_r),
 ///   u = (C_second - C_first) / L,  L = |C_second - C_first|.
-/// Levenberg-Marquardt (Minimise) with Geman and McClure's loss; the gauge
+/// Levenberg-Marquardt with Geman and McClure's loss; the gauge
 /// (translation and scale) stays where the start has it. Only edges and ratios
 /// whose views are all marked in `placed` take part; the two edges of a
 /// ratio share one view.
