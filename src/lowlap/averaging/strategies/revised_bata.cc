@@ -2,10 +2,15 @@
 
 #include <ceres/autodiff_cost_function.h>
 #include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
 
+#include <algorithm>
+
+#include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/bata.h"
-#include "lowlap/averaging/strategies/internal/minimise.h"
 #include "lowlap/averaging/strategies/internal/revised_lud.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
@@ -39,6 +44,24 @@ void FixScale(const DirectionPart& part, std::vector<Vec3>* centers) {
   for (Vec3& center : *centers) center *= scale;
 }
 
+class AskingCallback final : public ceres::IterationCallback {
+ public:
+  AskingCallback(const RunContext& context, int max_iterations)
+      : context_(context), max_iterations_(max_iterations) {}
+
+  ceres::CallbackReturnType operator()(
+      const ceres::IterationSummary& summary) override {
+    status_ = AskToGoOn(context_, summary.iteration, max_iterations_);
+    return status_ ? ceres::SOLVER_CONTINUE : ceres::SOLVER_ABORT;
+  }
+  const Status& status() const { return status_; }
+
+ private:
+  const RunContext& context_;
+  int max_iterations_;
+  Status status_;
+};
+
 }  // namespace
 
 Result<std::vector<Vec3>> SolveRevisedBata(const DirectionPart& part,
@@ -60,10 +83,22 @@ Result<std::vector<Vec3>> SolveRevisedBata(const DirectionPart& part,
   }
   problem.AddParameterBlock(centers->front().data(), 3);
   problem.SetParameterBlockConstant(centers->front().data());
-  const auto iterations =
-      Minimise(context, options.max_iterations, 1e-10, &problem);
-  if (!iterations) return tl::unexpected<Error>(iterations.error());
-  *num_iterations += *iterations;
+  ceres::Solver::Options solver;
+  solver.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
+  solver.max_num_iterations = options.max_iterations;
+  solver.function_tolerance = 1e-10;
+  solver.num_threads = 1;  // the same for any number of threads
+  solver.logging_type = ceres::SILENT;
+  AskingCallback asking(context, options.max_iterations);
+  solver.callbacks.push_back(&asking);
+  ceres::Solver::Summary summary;
+  ceres::Solve(solver, &problem, &summary);
+  LOWLAP_RETURN_IF_ERROR(asking.status());
+  if (!summary.IsSolutionUsable()) {
+    return MakeError(ErrorCode::kNumerical, summary.message, {}, "averaging");
+  }
+  *num_iterations += std::max(
+      0, static_cast<int>(summary.iterations.size()) - 1);  // but the start
   FixScale(part, &*centers);
   return centers;
 }
