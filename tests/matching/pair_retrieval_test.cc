@@ -8,6 +8,7 @@
 namespace lowlap {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 using testing::ExpectRefused;
 using ::testing::IsEmpty;
@@ -44,6 +45,30 @@ TEST(RetrievePairsTest, EveryViewFindsThePartnersItSharesMostWith) {
   // Places 0 1 2 3 4 are the views 7 9 11 8 10.
   EXPECT_THAT(*pairs, ElementsAre(ViewPair{7, 9}, ViewPair{8, 10},
                                   ViewPair{8, 11}, ViewPair{9, 11}));
+}
+
+// Among other photographs, so that a neighbour may be chance.
+TEST(RetrievePairsTest, AnIndexFindsThePartnersOfManyViews) {
+  constexpr std::size_t kViews = 40;
+  std::map<ViewId, DetectedFeatures> features;
+  for (std::size_t place = 0; place < kViews; ++place) {
+    features[static_cast<ViewId>(place)] =
+        ViewOfWall(10 * place, 10 * place + 40);
+  }
+  RetrievalOptions options;
+  options.max_partners = 2;
+  options.max_exhaustive = 0;
+  const auto pairs = RetrievePairs(features, options, RunContext());
+  ASSERT_THAT(pairs, IsOk());
+  RunContext two_threads;
+  two_threads.num_threads = 2;
+  EXPECT_EQ(*RetrievePairs(features, options, two_threads), *pairs);
+  for (std::uint32_t place = 0; place + 1 < kViews; ++place) {
+    EXPECT_THAT(*pairs, Contains(ViewPair{place, place + 1}));
+  }
+  for (const ViewPair& pair : *pairs) {
+    EXPECT_LE(pair.second.value() - pair.first.value(), 3U);
+  }
 }
 
 TEST(RetrievePairsTest, OneVoteKeepsTwoGroupsConnected) {
@@ -89,6 +114,7 @@ TEST(RetrievePairsTest, TheLargestPointsVote) {
 TEST(RetrievalOptionsTest, RejectsValuesOutOfRange) {
   ExpectRefused(&RetrievalOptions::sample_points, 1, "sample_points");
   ExpectRefused(&RetrievalOptions::max_partners, 0, "max_partners");
+  ExpectRefused(&RetrievalOptions::max_exhaustive, -1, "max_exhaustive");
   ExpectRefused(&RetrievalOptions::max_ratio, 0, "max_ratio");
 }
 

@@ -17,7 +17,9 @@ namespace {
 
 using testing::IsOk;
 
-TEST(PairsAuto, FindTheNeighboursOfARoom) {
+class PairsAuto : public ::testing::TestWithParam<int> {};
+
+TEST_P(PairsAuto, FindTheNeighboursOfARoom) {
   const std::string images = DataFolder() + "/rooms/study/images";
   if (!std::filesystem::exists(images)) GTEST_SKIP() << "skipped: no data";
   IntrinsicSource source;
@@ -30,6 +32,7 @@ TEST(PairsAuto, FindTheNeighboursOfARoom) {
   options.matching.match_lines = false;
   // With the default, everybody's partners are everybody in so small a set.
   options.retrieval.max_partners = 4;
+  options.retrieval.max_exhaustive = GetParam();
   StageLog stages;
   const auto measured = MatchImages(*scene, options, RunContext(), &stages);
   ASSERT_THAT(measured, IsOk());
@@ -43,6 +46,9 @@ TEST(PairsAuto, FindTheNeighboursOfARoom) {
         << views.first << " and " << views.second;
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(ExactlyAndByIndex, PairsAuto,
+                         ::testing::Values(350, 0));
 
 }  // namespace
 }  // namespace lowlap

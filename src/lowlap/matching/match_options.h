@@ -58,8 +58,12 @@ struct MatchOptions {
 };
 
 struct RetrievalOptions {
-  /// Points per view that are compared; the cost grows with the square.
+  /// Points per view that are compared.
   int sample_points = 500;
+  /// Up to so many views, every one is compared with every other one, exactly;
+  /// of more, the points are looked up in one index of all, which takes less
+  /// time from there on (benchmark PairRetrieval).
+  int max_exhaustive = 350;
   /// Partners that every view proposes; the pairs are those that either of
   /// their views proposes.
   int max_partners = 12;

@@ -9,10 +9,13 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/core/internal/union_find.h"
+#include "lowlap/matching/internal/points/approximate_nearest.h"
 #include "lowlap/matching/internal/points/point_matching.h"
 
 namespace lowlap {
 namespace {
+
+constexpr std::size_t kNeighbours = 64;
 
 struct Votes {
   std::size_t first;  // indices of views
@@ -37,11 +40,65 @@ std::vector<PointDescriptor> LargestPoints(const DetectedFeatures& view,
   return sample;
 }
 
+// One view against another, all pairs of them.
+Status VoteByMatches(const std::vector<std::vector<PointDescriptor>>& samples,
+                     const RetrievalOptions& options, const RunContext& context,
+                     std::vector<Votes>* votes) {
+  return ParallelFor(context, "pairs", votes->size(), [&](std::size_t i) {
+    Votes& vote = (*votes)[i];
+    vote.count = MatchPoints(samples[vote.first], samples[vote.second],
+                             {options.max_ratio})
+                     .size();
+  });
+}
+
+// One view against all others at once.
+Status VoteByNeighbours(
+    const std::vector<std::vector<PointDescriptor>>& samples,
+    const RetrievalOptions& options, const RunContext& context,
+    std::vector<Votes>* votes) {
+  std::vector<PointDescriptor> database;
+  std::vector<std::size_t> view_of;
+  for (std::size_t view = 0; view < samples.size(); ++view) {
+    database.insert(database.end(), samples[view].begin(), samples[view].end());
+    view_of.resize(database.size(), view);
+  }
+  const std::size_t count = std::min(kNeighbours, database.size());
+  if (count == 0) return {};
+  const ApproximateIndex index(database);
+  // Of every view the votes for every other one.
+  std::vector<std::vector<std::size_t>> cast(
+      samples.size(), std::vector<std::size_t>(samples.size(), 0));
+  const Status done =
+      ParallelFor(context, "pairs", samples.size(), [&](std::size_t view) {
+        const auto neighbours = index.Search(samples[view], count);
+        std::vector<std::size_t> last(samples.size(), samples[view].size());
+        for (std::size_t n = 0; n < neighbours.size(); ++n) {
+          const std::size_t query = n / count;
+          const double chance2 =
+              neighbours[count * query + count - 1].distance2;
+          const std::size_t other = view_of[neighbours[n].index];
+          if (neighbours[n].distance2 >=
+                  options.max_ratio * options.max_ratio * chance2 ||
+              last[other] == query) {
+            continue;  // one vote of a point for a view
+          }
+          last[other] = query;
+          ++cast[view][other];
+        }
+      });
+  for (Votes& vote : *votes) {
+    vote.count = cast[vote.first][vote.second] + cast[vote.second][vote.first];
+  }
+  return done;
+}
+
 }  // namespace
 
 Status RetrievalOptions::Validate() const {
   if (Status s =
           Require({{sample_points >= 2, "sample_points must be at least 2"},
+                   {max_exhaustive >= 0, "max_exhaustive must not be negative"},
                    {max_partners >= 1, "max_partners must be at least 1"}});
       !s) {
     return s;
@@ -71,14 +128,11 @@ Result<std::vector<ViewPair>> RetrievePairs(
     samples.push_back(
         LargestPoints(view, static_cast<std::size_t>(options.sample_points)));
   }
-  const Status done =
-      ParallelFor(context, "pairs", votes.size(), [&](std::size_t i) {
-        votes[i].count =
-            MatchPoints(samples[votes[i].first], samples[votes[i].second],
-                        {options.max_ratio})
-                .size();
-      });
-  if (!done) return tl::unexpected<Error>(done.error());
+  const bool exhaustively =
+      ids.size() <= static_cast<std::size_t>(options.max_exhaustive);
+  LOWLAP_RETURN_IF_ERROR(
+      exhaustively ? VoteByMatches(samples, options, context, &votes)
+                   : VoteByNeighbours(samples, options, context, &votes));
 
   votes.erase(std::remove_if(votes.begin(), votes.end(),
                              [](const Votes& v) { return v.count == 0; }),

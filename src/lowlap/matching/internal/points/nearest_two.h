@@ -37,9 +37,7 @@ std::vector<NearestTwo> FindNearestTwoInBytes(
     const std::vector<PointDescriptor>& queries,
     const std::vector<PointDescriptor>& database);
 
-/// FindNearestTwo in a tree of k-means (FLANN; Muja & Lowe, PAMI 2014), in time
-/// that hardly grows with the database: some answers are not the nearest. The
-/// same for the same input; distances are exact.
+/// FindNearestTwo by an ApproximateIndex of the database.
 std::vector<NearestTwo> FindNearestTwoApproximately(
     const std::vector<PointDescriptor>& queries,
     const std::vector<PointDescriptor>& database);
