@@ -65,5 +65,7 @@ void AddConvert(CLI::App* program, Action* action);
 void AddValidate(CLI::App* program, Action* action);
 void AddSimulate(CLI::App* program, Action* action);
 void AddRobustness(CLI::App* program, Action* action);
+void AddManual(CLI::App* program, Action* action);
+void AddCompletion(CLI::App* program, Action* action);
 
 }  // namespace lowlap::cli

@@ -44,6 +44,8 @@ int main(int argc, char** argv) {
   lowlap::cli::AddValidate(&program, &action);
   lowlap::cli::AddSimulate(&program, &action);
   lowlap::cli::AddRobustness(&program, &action);
+  lowlap::cli::AddManual(&program, &action);
+  lowlap::cli::AddCompletion(&program, &action);
 
   if (argc > 1 && argv[1][0] != '-' && !HasCommand(program, argv[1])) {
     std::fprintf(stderr,
