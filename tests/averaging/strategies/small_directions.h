@@ -8,7 +8,9 @@
 #include <vector>
 
 #include "averaging/random_problem.h"
+#include "lowlap/averaging/strategies/internal/bata.h"
 #include "lowlap/averaging/strategies/internal/direction_parts.h"
+#include "lowlap/robust/internal/robust_loss.h"
 
 namespace lowlap {
 
@@ -66,6 +68,24 @@ inline SmallDirections MakeTriangle() {
         (made.centers[edge.second] - made.centers[edge.first]).normalized();
   }
   return PartOf(std::move(made));
+}
+
+/// sum rho(e) over the edges, e the sine of the angle between C_j - C_i and d_e
+/// up to a right angle, 1 beyond it and for coincident centres; rho Huber's
+/// loss, e^2 / 2 up to kAngleHuber.
+inline double AngleObjective(const DirectionPart& part,
+                             const std::vector<Vec3>& centers) {
+  double cost = 0;
+  for (const DirectionEdge& edge : part.edges) {
+    const Vec3 offset = centers[edge.second] - centers[edge.first];
+    const bool is_forward = edge.direction_in_world.dot(offset) > 0;
+    const double sine =
+        is_forward
+            ? edge.direction_in_world.cross(offset).norm() / offset.norm()
+            : 1.0;
+    cost += HuberLoss(sine, kAngleHuber);
+  }
+  return cost;
 }
 
 /// The final cost of Ceres on a small problem.

@@ -83,19 +83,4 @@ Result<std::vector<Vec3>> SolveBata(const DirectionPart& part,
   return centers;
 }
 
-double AngleObjective(const DirectionPart& part,
-                      const std::vector<Vec3>& centers) {
-  double cost = 0;
-  for (const DirectionEdge& edge : part.edges) {
-    const Vec3 offset = centers[edge.second] - centers[edge.first];
-    const bool is_forward = edge.direction_in_world.dot(offset) > 0;
-    const double sine =
-        is_forward
-            ? edge.direction_in_world.cross(offset).norm() / offset.norm()
-            : 1.0;
-    cost += HuberLoss(sine, kAngleHuber);
-  }
-  return cost;
-}
-
 }  // namespace lowlap

@@ -40,12 +40,6 @@ Result<std::vector<Vec3>> SolveBata(const DirectionPart& part,
                                     const RunContext& context,
                                     int* num_iterations);
 
-/// sum rho(e) over the edges, e the sine of the angle between C_j - C_i and d_e
-/// up to a right angle, 1 beyond it and for coincident centres; rho Huber's
-/// loss, e^2 / 2 up to kAngleHuber.
-double AngleObjective(const DirectionPart& part,
-                      const std::vector<Vec3>& centers);
-
 /// The turn of Huber's loss, a sine: that of the published program.
 inline constexpr double kAngleHuber = 0.1;
 
