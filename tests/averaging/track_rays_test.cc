@@ -46,6 +46,16 @@ class TrackRaysTest : public ::testing::Test {
   std::vector<Vec3> centers_, points_;
 };
 
+TEST(TracksOfViews, AreThoseThatEnoughViewsObserve) {
+  std::vector<TrackRays> tracks(3);
+  tracks[0].observations = {{2}, {0}};
+  tracks[1].observations = {{0}, {2}, {3}};
+  tracks[2].observations = {{3}};
+  using Views = std::vector<std::vector<std::size_t>>;
+  EXPECT_EQ(TracksOfViews(tracks, 4), (Views{{0, 1}, {}, {0, 1}, {1, 2}}));
+  EXPECT_EQ(TracksOfViews(tracks, 4, 3), (Views{{1}, {}, {1}, {1}}));
+}
+
 TEST_F(TrackRaysTest, RaysPointFromTheCentresToThePoints) {
   const auto tracks = MakeTrackRays(scene_, views_, rotations_);
   ASSERT_EQ(tracks.size(), 30u);

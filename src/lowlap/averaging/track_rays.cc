@@ -86,4 +86,17 @@ std::vector<TrackRays> MakeTrackRays(const Scene& scene,
   return tracks;
 }
 
+std::vector<std::vector<std::size_t>> TracksOfViews(
+    const std::vector<TrackRays>& tracks, std::size_t num_views,
+    std::size_t min_views) {
+  std::vector<std::vector<std::size_t>> tracks_of_view(num_views);
+  for (std::size_t t = 0; t < tracks.size(); ++t) {
+    if (tracks[t].observations.size() < min_views) continue;
+    for (const RayObservation& seen : tracks[t].observations) {
+      tracks_of_view[seen.view].push_back(t);
+    }
+  }
+  return tracks_of_view;
+}
+
 }  // namespace lowlap

@@ -30,4 +30,10 @@ std::vector<TrackRays> MakeTrackRays(const Scene& scene,
                                      const std::vector<ViewPair>& excluded = {},
                                      std::size_t max_per_view = 1000);
 
+/// For each of `num_views` views the tracks that observe it, ascending; those
+/// of less than `min_views` observations are left out.
+std::vector<std::vector<std::size_t>> TracksOfViews(
+    const std::vector<TrackRays>& tracks, std::size_t num_views,
+    std::size_t min_views = 1);
+
 }  // namespace lowlap

@@ -8,6 +8,7 @@
 #include "lowlap/averaging/internal/block_matrix.h"
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
+#include "lowlap/averaging/internal/track_rays.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/robust/internal/robust_loss.h"
 
@@ -17,7 +18,8 @@ namespace {
 constexpr double kLeastScale = 1e-6;
 
 // Tracks that are worked through between two questions to the host: some
-// hundredths of a second.
+// hundredths of a second (AnswerToStop/global_positioning/town, scale averaging
+// benchmark).
 constexpr std::size_t kTracksPerQuestion = 4096;
 
 // Asks the host in a loop over tracks, now and then.
@@ -42,12 +44,7 @@ class TrackAsker {
 // Each pair once: common points are many.
 std::vector<BlockMatrix::Place> PairsOfCenters(
     const std::vector<TrackRays>& tracks, std::size_t num_centers) {
-  std::vector<std::vector<std::size_t>> tracks_of_view(num_centers);
-  for (std::size_t k = 0; k < tracks.size(); ++k) {
-    for (const RayObservation& seen : tracks[k].observations) {
-      tracks_of_view[seen.view].push_back(k);
-    }
-  }
+  const auto tracks_of_view = TracksOfViews(tracks, num_centers);
   std::vector<BlockMatrix::Place> places;
   std::vector<std::size_t> last_met(num_centers, num_centers);
   for (std::size_t view = 0; view < num_centers; ++view) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "lowlap/averaging/internal/track_rays.h"
+
 namespace lowlap {
 namespace {
 
@@ -13,16 +15,10 @@ struct Seed {
 };
 
 // Those that share enough, by views.
-std::vector<Seed> FindSeeds(std::size_t num_views,
-                            const std::vector<TrackRays>& tracks,
-                            std::size_t min_views, std::size_t min_points) {
-  std::vector<std::vector<std::size_t>> tracks_of_view(num_views);
-  for (std::size_t t = 0; t < tracks.size(); ++t) {
-    if (tracks[t].observations.size() < min_views) continue;
-    for (const RayObservation& seen : tracks[t].observations) {
-      tracks_of_view[seen.view].push_back(t);
-    }
-  }
+std::vector<Seed> FindSeeds(
+    const std::vector<std::vector<std::size_t>>& tracks_of_view,
+    const std::vector<TrackRays>& tracks, std::size_t min_points) {
+  const std::size_t num_views = tracks_of_view.size();
   std::vector<Seed> seeds;
   std::vector<std::size_t> count(num_views, 0), met;
   for (std::size_t view = 0; view < num_views; ++view) {
@@ -48,20 +44,13 @@ std::vector<Seed> FindSeeds(std::size_t num_views,
 /// Grows one group after the other; what a group left is told by its stamp.
 class GroupGrower {
  public:
-  GroupGrower(std::size_t num_views, const std::vector<TrackRays>& tracks,
-              std::size_t min_views, std::size_t min_points)
-      : tracks_(tracks),
+  GroupGrower(const std::vector<std::vector<std::size_t>>& tracks_of_view,
+              const std::vector<TrackRays>& tracks, std::size_t min_points)
+      : tracks_of_view_(tracks_of_view),
+        tracks_(tracks),
         min_points_(min_points),
-        tracks_of_view_(num_views),
-        views_(num_views),
-        sightings_(tracks.size()) {
-    for (std::size_t t = 0; t < tracks.size(); ++t) {
-      if (tracks[t].observations.size() < min_views) continue;
-      for (const RayObservation& seen : tracks[t].observations) {
-        tracks_of_view_[seen.view].push_back(t);
-      }
-    }
-  }
+        views_(tracks_of_view.size()),
+        sightings_(tracks.size()) {}
 
   std::vector<std::size_t> Grow(std::size_t first, std::size_t second) {
     ++stamp_;
@@ -102,9 +91,9 @@ class GroupGrower {
     }
   }
 
+  const std::vector<std::vector<std::size_t>>& tracks_of_view_;
   const std::vector<TrackRays>& tracks_;
   std::size_t min_points_;
-  std::vector<std::vector<std::size_t>> tracks_of_view_;
   std::vector<ViewState> views_;
   std::vector<Sightings> sightings_;
   std::vector<std::size_t> group_;
@@ -116,12 +105,13 @@ class GroupGrower {
 std::vector<std::vector<std::size_t>> GroupViewsByTracks(
     std::size_t num_views, const std::vector<TrackRays>& tracks,
     std::size_t min_views, std::size_t min_points) {
-  std::vector<Seed> seeds = FindSeeds(num_views, tracks, min_views, min_points);
+  const auto tracks_of_view = TracksOfViews(tracks, num_views, min_views);
+  std::vector<Seed> seeds = FindSeeds(tracks_of_view, tracks, min_points);
   std::stable_sort(
       seeds.begin(), seeds.end(),
       [](const Seed& a, const Seed& b) { return a.num_shared > b.num_shared; });
 
-  GroupGrower grower(num_views, tracks, min_views, min_points);
+  GroupGrower grower(tracks_of_view, tracks, min_points);
   std::vector<std::vector<std::size_t>> groups;
   std::vector<std::vector<std::size_t>> groups_of_view(num_views);
   for (const Seed& seed : seeds) {
