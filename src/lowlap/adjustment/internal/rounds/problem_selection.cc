@@ -37,10 +37,6 @@ void MoveComponent(const Component& component, const Eigen::Quaterniond& turn,
   }
 }
 
-double UnitOf(const Component& component) {
-  return component.baseline > 0 ? component.baseline : 1;
-}
-
 }  // namespace
 
 std::vector<int> ViewsOf(const LineTrackState& line) {
@@ -155,7 +151,7 @@ void EnterComponentFrame(const Component& component, CameraSet* cameras,
   MoveComponent(
       component, turn,
       [&](const Vec3& x) -> Vec3 {
-        return turn * (x - saved_reference->center) / UnitOf(component);
+        return turn * (x - saved_reference->center) / component.Unit();
       },
       cameras, state);
 }
@@ -167,7 +163,7 @@ void LeaveComponentFrame(const Component& component,
   MoveComponent(
       component, turn,
       [&](const Vec3& y) -> Vec3 {
-        return UnitOf(component) * (turn * y) + saved_reference.center;
+        return component.Unit() * (turn * y) + saved_reference.center;
       },
       cameras, state);
   cameras->poses[component.reference] = saved_reference;

@@ -34,6 +34,9 @@ struct Component {
   int reference = -1;   // the pose that is held: that with most observations
   int partner = -1;     // the pose farthest from it
   double baseline = 0;  // their distance; 0 if all centres coincide
+
+  /// The length of 1 in the component's frame.
+  double Unit() const { return baseline > 0 ? baseline : 1; }
 };
 
 /// Components of at least two poses. Every selected landmark is in one.

@@ -91,7 +91,6 @@ std::map<PoseId, Mat3> CenterCovariances(
   std::map<PoseId, Mat3> result;
   for (std::size_t n = 0; n < components.size(); ++n) {
     const Component& component = components[n];
-    const double unit = component.baseline > 0 ? component.baseline : 1;
     const Mat3 world_from_frame =
         saved_references[n].cam_from_world.toRotationMatrix().transpose();
     for (const int pose : component.poses) {
@@ -99,8 +98,8 @@ std::map<PoseId, Mat3> CenterCovariances(
       const int column = linearised.KeptColumn(center);
       if (column < 0) continue;
       const int size = problem.ParameterBlockTangentSize(center);
-      const Eigen::MatrixXd to_world =
-          unit * world_from_frame * TangentToAmbient(problem, center);
+      const Eigen::MatrixXd to_world = component.Unit() * world_from_frame *
+                                       TangentToAmbient(problem, center);
       result[cameras.poses[pose].id] =
           to_world * covariance.block(column, column, size, size) *
           to_world.transpose();
