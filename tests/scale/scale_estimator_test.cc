@@ -252,6 +252,12 @@ TEST(ScaleEstimator, BadInputIsAnError) {
   view = triplet.view;
   view.geometry.cami_from_camj.rotation(0, 0) = std::nan("");
   EXPECT_THAT(error_of(view), ::testing::HasSubstr("rotation"));
+  // What three times the tolerance of a scene allows is an inverse's rounding.
+  view = triplet.view;
+  view.geometry.camk_from_camj.translation *= 1 + 2.9 * kUnitTolerance;
+  EXPECT_EQ(error_of(view), "");
+  view.geometry.camk_from_camj.translation *= 1 + 0.2 * kUnitTolerance;
+  EXPECT_THAT(error_of(view), ::testing::HasSubstr("unit direction"));
   view = triplet.view;
   view.geometry.focal_j_px = 0;
   EXPECT_THAT(error_of(view), ::testing::HasSubstr("focal"));

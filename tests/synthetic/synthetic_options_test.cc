@@ -56,6 +56,9 @@ TEST(SyntheticOptions, EveryBadValueIsNamed) {
                [](Options* o) { o->twin_baseline_m = -0.1; });
   expect_named("width_px", [](Options* o) { o->width_px = 0; });
   expect_named("focal_px", [](Options* o) { o->focal_px = 0; });
+  expect_named("focal_px", [](Options* o) {
+    o->focal_px = std::numeric_limits<double>::infinity();
+  });
   for (const char* pairs : {"", "ring", "window", "window:", "window:0",
                             "window:2x", "window:-1"}) {
     expect_named("pairs", [=](Options* o) { o->pairs = pairs; });

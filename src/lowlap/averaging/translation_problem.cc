@@ -5,14 +5,14 @@
 #include <set>
 
 #include "lowlap/averaging/internal/track_rays.h"
+#include "lowlap/core/internal/requirement.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {
 
 constexpr double kDefaultDirectionRad = 0.02;
 constexpr double kWeakRatioFloor = 0.2;
-
-bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
 
 }  // namespace
 
@@ -100,7 +100,7 @@ Status ValidateProblem(const TranslationProblem& problem) {
         edge.second >= problem.views.size() || edge.first == edge.second) {
       return invalid("an edge does not join two views");
     }
-    if (!(std::abs(edge.direction_in_world.norm() - 1) < 1e-6) ||
+    if (!(std::abs(edge.direction_in_world.norm() - 1) <= kUnitTolerance) ||
         !IsPositive(edge.stddev_rad)) {
       return invalid("an edge needs a unit direction and a deviation");
     }
@@ -119,7 +119,7 @@ Status ValidateProblem(const TranslationProblem& problem) {
   for (const TrackRays& track : problem.tracks) {
     for (const RayObservation& seen : track.observations) {
       if (seen.view >= problem.views.size() ||
-          !(std::abs(seen.ray_in_world.norm() - 1) < 1e-6)) {
+          !(std::abs(seen.ray_in_world.norm() - 1) <= kUnitTolerance)) {
         return invalid("a track needs unit rays of its views");
       }
     }

@@ -112,7 +112,8 @@ Result<TranslationEstimate> TranslationScaleEstimator::Estimate(
   LOWLAP_RETURN_IF_ERROR(ValidateScene(scene_));
   LOWLAP_RETURN_IF_ERROR(options_.Validate());
   for (const auto& [view, rotation] : cam_from_world_) {
-    if (scene_.views.count(view) == 0 || !(RotationDefect(rotation) < 1e-6)) {
+    if (scene_.views.count(view) == 0 ||
+        !(RotationDefect(rotation) <= kUnitTolerance)) {
       return MakeError(ErrorCode::kInvalidScene,
                        "the rotation of " + Name(view) +
                            " is of an unknown view, or is no rotation");

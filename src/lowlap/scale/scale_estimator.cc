@@ -18,11 +18,9 @@
 namespace lowlap {
 namespace {
 
-bool IsPositive(double value) { return std::isfinite(value) && value > 0; }
-
-// Wider than what a valid scene keeps to, since relative poses are inverted.
+// The inverse of a relative pose within the tolerance is within three times it.
 bool IsUnitTransform(const RigidTransform& transform) {
-  constexpr double kTolerance = 1e-5;
+  constexpr double kTolerance = 3 * kUnitTolerance;
   return RotationDefect(transform.rotation) <= kTolerance &&
          std::abs(transform.translation.norm() - 1.0) <= kTolerance;
 }

@@ -72,7 +72,7 @@ Status ValidateCameras(const Scene& scene, const ViewTable&) {
     if (used_poses.count(id) == 0) {
       return Invalid("no view uses this pose", place);
     }
-    if (!(RotationDefect(pose.rotation) <= kTolerance)) {
+    if (!(RotationDefect(pose.rotation) <= kUnitTolerance)) {
       return Invalid("is not a rotation matrix", place + ".rotation");
     }
     if (!pose.center.allFinite()) {

@@ -70,7 +70,7 @@ Status ValidateMatches(const std::vector<FeatureMatch>& matches,
 // Of a relative pose, or of an alternative to it.
 template <class Motion>
 Status ValidateMotion(const Motion& motion, const std::string& place) {
-  if (!(RotationDefect(motion.rotation) <= kTolerance)) {
+  if (!(RotationDefect(motion.rotation) <= kUnitTolerance)) {
     return Invalid("is not a rotation matrix", place + ".rotation");
   }
   if (!IsUnit(motion.direction)) {
@@ -84,7 +84,7 @@ Status ValidateMotion(const Motion& motion, const std::string& place) {
   const double asymmetry =
       (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
   if (!covariance.allFinite() || covariance.diagonal().minCoeff() < 0 ||
-      !(asymmetry <= kTolerance * covariance.cwiseAbs().maxCoeff())) {
+      !(asymmetry <= kUnitTolerance * covariance.cwiseAbs().maxCoeff())) {
     return Invalid("must be finite and symmetric, without a negative variance",
                    place + ".covariance");
   }

@@ -140,7 +140,7 @@ Status ValidateLine(const ViewTable& views, const LineLandmark& landmark) {
   }
   if (!line.moment.allFinite()) return Invalid("must be finite", ".moment");
   if (!(std::abs(line.moment.dot(line.direction)) <=
-        kTolerance * std::max(1.0, line.moment.norm()))) {
+        kUnitTolerance * std::max(1.0, line.moment.norm()))) {
     return Invalid("is not orthogonal to the direction", ".moment");
   }
   if (!landmark.start.allFinite()) return Invalid("must be finite", ".start");

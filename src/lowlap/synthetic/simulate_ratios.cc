@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lowlap/core/internal/random.h"
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -41,7 +42,7 @@ Status SimulatedRatioOptions::Validate() const {
   const auto invalid = [](const char* message) {
     return MakeError(ErrorCode::kInvalidArgument, message);
   };
-  if (!(log_stddev > 0) || !std::isfinite(log_stddev)) {
+  if (!IsPositive(log_stddev)) {
     return invalid("log_stddev must be finite and positive");
   }
   if (!(wrong_share >= 0 && wrong_share <= 1)) {

@@ -1,8 +1,8 @@
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/synthetic/internal/pair_graph.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
@@ -76,22 +76,17 @@ Status SyntheticOptions::Validate() const {
       return Invalid(std::string(name) + " must be in [0, 1]");
     }
   }
-  const std::pair<const char*, double> noises[] = {
-      {"noise_px", noise_px},
-      {"rotation_noise_deg", rotation_noise_deg},
-      {"direction_noise_deg", direction_noise_deg},
-      {"pose_noise_factor", pose_noise_factor},
-      {"off_line_m", off_line_m},
-      {"twin_baseline_m", twin_baseline_m}};
-  for (const auto& [name, value] : noises) {
-    if (!(value >= 0) || !std::isfinite(value)) {
-      return Invalid(std::string(name) + " must be finite and not negative");
-    }
-  }
+  LOWLAP_RETURN_IF_ERROR(
+      RequireNotNegative({{noise_px, "noise_px"},
+                          {rotation_noise_deg, "rotation_noise_deg"},
+                          {direction_noise_deg, "direction_noise_deg"},
+                          {pose_noise_factor, "pose_noise_factor"},
+                          {off_line_m, "off_line_m"},
+                          {twin_baseline_m, "twin_baseline_m"}}));
   if (width_px < 16 || height_px < 16) {
     return Invalid("width_px and height_px must be at least 16");
   }
-  if (!(focal_px > 0) || !std::isfinite(focal_px)) {
+  if (!IsPositive(focal_px)) {
     return Invalid("focal_px must be finite and positive");
   }
   return {};

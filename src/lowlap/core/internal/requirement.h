@@ -24,6 +24,10 @@ inline Status Require(std::initializer_list<Requirement> requirements) {
   return {};
 }
 
+inline bool IsPositive(double value) {
+  return value > 0 && std::isfinite(value);
+}
+
 struct NamedNumber {
   double value = 0;
   std::string name;

@@ -26,6 +26,10 @@ Mat3 NearestRotation(const Mat3& m);
 /// is not finite.
 double RotationDefect(const Mat3& m);
 
+/// How far a given matrix may be from a rotation (RotationDefect), and a given
+/// direction from unit length.
+inline constexpr double kUnitTolerance = 1e-6;
+
 /// Two unit vectors that complete the unit vector d to an orthonormal basis;
 /// returned as columns.
 Eigen::Matrix<double, 3, 2> TangentBasis(const Vec3& d);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -36,11 +37,8 @@ Status ValidateTracks(const Scene& scene, const ViewTable& views);
 Status ValidateScaleRatios(const Scene& scene, const ViewTable& views);
 Status ValidateLineStructure(const Scene& scene, const ViewTable& views);
 
-/// How far from a rotation, or from unit length, a value may be.
-inline constexpr double kTolerance = 1e-6;
-
 inline bool IsUnit(const Vec3& v) {
-  return std::abs(v.norm() - 1) <= kTolerance;  // false for NaN
+  return std::abs(v.norm() - 1) <= kUnitTolerance;  // false for NaN
 }
 
 inline tl::unexpected<Error> Invalid(std::string message, std::string place) {
