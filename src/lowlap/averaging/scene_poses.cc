@@ -4,12 +4,11 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
-#include "lowlap/core/internal/median.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/robust/internal/median_deviation.h"
 
 namespace lowlap {
 namespace {
@@ -39,17 +38,12 @@ std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
         {&edge, AngleBetween(baseline, edge.direction_in_world)});
     angles.push_back(residuals.back().angle_rad);
   }
-  if (*sigma_rad == 0) {
-    *sigma_rad =
-        std::max(Median(angles) / kMedianOfNorm<2>, kPoseErrorFloorRad);
-  }
+  if (*sigma_rad == 0) *sigma_rad = ResidualStddev<2>(std::move(angles));
+  const ErrorLimits limits = LimitsOf(options);
   std::vector<OutlierEdge> outliers;
   for (const Residual& residual : residuals) {
     const DirectionEdge& edge = *residual.edge;
-    const double own = std::max(*sigma_rad, edge.stddev_rad);
-    if (residual.angle_rad >
-        std::max(options.outlier_reach * own,
-                 3 * RadFromDeg(options.least_false_deg))) {
+    if (residual.angle_rad > limits.DirectionRad(*sigma_rad, edge.stddev_rad)) {
       outliers.push_back(
           {ViewPair{problem.views[edge.first], problem.views[edge.second]},
            OutlierReason::kDirection, DegFromRad(residual.angle_rad)});

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <set>
 
+#include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/rotations/internal/bridges.h"
 #include "lowlap/averaging/rotations/internal/rotation_averaging.h"
 #include "lowlap/averaging/translation_problem.h"
 #include "lowlap/core/internal/median.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -25,13 +25,9 @@ double EvidenceOf(const RelativePose& pose) {
 class SceneRotationSolver {
  public:
   SceneRotationSolver(const Scene& scene,
-                      const RotationAveragingOptions& options, double reach,
-                      double least_false_rad, const RunContext& context)
-      : scene_(scene),
-        options_(options),
-        context_(context),
-        reach_(reach),
-        least_false_rad_(least_false_rad) {
+                      const RotationAveragingOptions& options,
+                      const ErrorLimits& limits, const RunContext& context)
+      : scene_(scene), options_(options), context_(context), limits_(limits) {
     for (const auto& entry : scene.relative_poses) kept_.insert(entry.first);
   }
 
@@ -95,8 +91,7 @@ class SceneRotationSolver {
           near.push_back(r);
         }
       }
-      sigma_ = std::max(Median(std::move(near)) / kMedianOfNorm<3>,
-                        kPoseErrorFloorRad);
+      sigma_ = ResidualStddev<3>(std::move(near));
     }
     result_.median_residual_rad = Median(solved.residuals_rad);
     return {};
@@ -121,8 +116,8 @@ class SceneRotationSolver {
     bool changed = false;
     for (const ViewPair& views : graph_.pairs()) {
       if (settled_.count(views) > 0) continue;
-      const double own = std::max(sigma_, RotationStddev(PoseOf(views)));
-      if (ResidualRad(views) > std::max(reach_ * own, least_false_rad_)) {
+      if (ResidualRad(views) >
+          limits_.RotationRad(sigma_, RotationStddev(PoseOf(views)))) {
         LeaveOut(views, OutlierReason::kRotation);
         changed = true;
       }
@@ -163,7 +158,7 @@ class SceneRotationSolver {
     loop.expected_deg = DegFromRad(std::sqrt(variance));
     kept_.insert(closing);
     outliers_.erase(closing);
-    if (loop.closing_deg > reach_ * loop.expected_deg) {
+    if (loop.closing_deg > limits_.reach * loop.expected_deg) {
       loop.left_out = *std::min_element(
           loop.edges.begin(), loop.edges.end(),
           [&](const ViewPair& a, const ViewPair& b) {
@@ -219,8 +214,7 @@ class SceneRotationSolver {
   const Scene& scene_;
   const RotationAveragingOptions& options_;
   const RunContext& context_;
-  const double reach_;
-  const double least_false_rad_;
+  const ErrorLimits limits_;
 
   std::set<ViewPair> kept_;
   std::map<ViewPair, OutlierEdge> outliers_;
@@ -273,7 +267,7 @@ Result<SceneRotations> AverageSceneRotations(
     return MakeError(ErrorCode::kInsufficientData,
                      "the scene has no relative pose to build on");
   }
-  return SceneRotationSolver(scene, options, outlier_reach, least_false_rad,
+  return SceneRotationSolver(scene, options, {outlier_reach, least_false_rad},
                              context)
       .Solve();
 }

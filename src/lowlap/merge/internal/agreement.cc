@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 #include "lowlap/averaging/rotations/scene_rotations.h"
@@ -94,7 +95,6 @@ std::vector<PairAgreement> ComparePairs(
     const std::map<ViewPair, RelativePose>& relative_poses,
     const std::map<ViewId, Pose>& poses, const PoseOptions& options) {
   const double shortest = ShortestBaseline(poses);
-  const double least_rotation = RadFromDeg(options.least_false_deg);
   std::vector<PairAgreement> pairs;
   std::vector<double> rotations, rotation_stddevs, directions,
       direction_stddevs;
@@ -129,12 +129,12 @@ std::vector<PairAgreement> ComparePairs(
       DeviationOf<3>(rotations, rotation_stddevs, reach);
   const double direction_stddev =
       DeviationOf<2>(directions, direction_stddevs, reach);
+  const ErrorLimits limits = LimitsOf(options);
   for (std::size_t n = 0; n < pairs.size(); ++n) {
-    pairs[n].rotation_limit_rad = std::max(
-        reach * std::max(rotation_stddev, rotation_stddevs[n]), least_rotation);
+    pairs[n].rotation_limit_rad =
+        limits.RotationRad(rotation_stddev, rotation_stddevs[n]);
     pairs[n].direction_limit_rad =
-        std::max(reach * std::max(direction_stddev, direction_stddevs[n]),
-                 3 * least_rotation);
+        limits.DirectionRad(direction_stddev, direction_stddevs[n]);
   }
   return pairs;
 }

@@ -1,13 +1,12 @@
 #include "lowlap/pipeline/internal/given_rotations.h"
 
-#include <algorithm>
 #include <utility>
 #include <vector>
 
+#include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 #include "lowlap/core/internal/median.h"
 #include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/robust/internal/median_deviation.h"
 
 namespace lowlap {
 namespace {
@@ -47,13 +46,11 @@ SceneRotations Compare(const std::map<ViewId, Mat3>& cam_from_world,
     ++entry;
   }
   rotations.median_residual_rad = Median(residuals_rad);
-  const double sigma_rad = std::max(
-      rotations.median_residual_rad / kMedianOfNorm<3>, kPoseErrorFloorRad);
+  const double sigma_rad = ResidualStddev<3>(std::move(residuals_rad));
+  const ErrorLimits limits = LimitsOf(options);
   for (const auto& [views, pose] : poses) {
     const double residual_rad = ResidualRad(pose, cam_from_world);
-    const double own_rad = std::max(sigma_rad, RotationStddev(pose));
-    if (residual_rad > std::max(options.outlier_reach * own_rad,
-                                RadFromDeg(options.least_false_deg))) {
+    if (residual_rad > limits.RotationRad(sigma_rad, RotationStddev(pose))) {
       rotations.outliers.push_back(
           {views, OutlierReason::kRotation, DegFromRad(residual_rad)});
     }
