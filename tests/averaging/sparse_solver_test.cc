@@ -94,6 +94,16 @@ TEST_P(SparseSolverOfSize, IsTheSameSolverForOtherValuesAndPatterns) {
   }
 }
 
+TEST_P(SparseSolverOfSize, FactorizesOnceForManyRightHandSides) {
+  SparseSolver solver;
+  const Matrix lower = Path(GetParam(), 1);
+  ASSERT_TRUE(solver.Factorize(lower));
+  for (const int columns : {1, 3}) {
+    const Eigen::MatrixXd rhs = RandomMatrix(GetParam(), columns, 14);
+    EXPECT_EQ(*solver.Solve(rhs), *SparseSolver().Solve(lower, rhs));
+  }
+}
+
 TEST_P(SparseSolverOfSize, RefusesWhatIsSingularOrNotFinite) {
   SparseSolver solver;
   Matrix lower = Path(GetParam(), 9);

@@ -71,23 +71,24 @@ class Pattern {
   std::vector<Matrix::StorageIndex> outer_, inner_;
 };
 
-tl::unexpected<Error> Unsolvable(const Matrix& lower) {
+tl::unexpected<Error> Unsolvable(Eigen::Index num_unknowns) {
   return MakeError(ErrorCode::kNumerical, "a sparse system of " +
-                                              std::to_string(lower.rows()) +
+                                              std::to_string(num_unknowns) +
                                               " unknowns could not be solved");
 }
 
 template <class Solver>
-Result<Eigen::MatrixXd> SolveWith(const Matrix& lower,
-                                  const Eigen::MatrixXd& rhs, Solver* solver) {
+Status FactorizeWith(const Matrix& lower, Solver* solver) {
   solver->factorize(lower);
-  if (solver->info() == Eigen::Success) {
-    Eigen::MatrixXd solution = solver->solve(rhs);
-    if (solver->info() == Eigen::Success && solution.allFinite()) {
-      return solution;
-    }
-  }
-  return Unsolvable(lower);
+  if (solver->info() == Eigen::Success) return {};
+  return Unsolvable(lower.rows());
+}
+
+template <class Solver>
+Result<Eigen::MatrixXd> SolveWith(const Eigen::MatrixXd& rhs, Solver* solver) {
+  Eigen::MatrixXd solution = solver->solve(rhs);
+  if (solver->info() == Eigen::Success && solution.allFinite()) return solution;
+  return Unsolvable(rhs.rows());
 }
 
 // One right hand side, from `x`, preconditioned by the diagonal. Returns the
@@ -139,7 +140,7 @@ Result<Eigen::MatrixXd> SolveByGradients(const Matrix& lower,
     LOWLAP_ASSIGN_OR_RETURN(const auto error,
                             RunGradients(lower, rhs.col(c), context, &column));
     if (!column.allFinite() || !(error <= kWorstGradientError)) {
-      return Unsolvable(lower);
+      return Unsolvable(lower.rows());
     }
     solution.col(c) = column;
   }
@@ -153,7 +154,10 @@ struct SparseSolver::Factorisation {
   Pattern pattern;
   Eigen::SimplicialLDLT<Matrix> small;
   std::unique_ptr<Cholmod> large;
+  Matrix lower;          // of what conjugate gradients solve
   Eigen::MatrixXd last;  // by conjugate gradients
+
+  bool UsesGradients() const { return large->Operations() > kMaxOperations; }
 };
 
 SparseSolver::SparseSolver(const RunContext& context)
@@ -162,13 +166,12 @@ SparseSolver::SparseSolver(const RunContext& context)
 }
 SparseSolver::~SparseSolver() = default;
 
-Result<Eigen::MatrixXd> SparseSolver::Solve(const Matrix& lower,
-                                            const Eigen::MatrixXd& rhs) {
+Status SparseSolver::Factorize(const Matrix& lower) {
   Factorisation& f = *factorisation_;
   const bool new_pattern = f.pattern.Changed(lower);
   if (lower.rows() < kLargeSystem) {
     if (new_pattern) f.small.analyzePattern(lower);
-    return SolveWith(lower, rhs, &f.small);
+    return FactorizeWith(lower, &f.small);
   }
   const OneThread one_thread;
   if (new_pattern) {
@@ -176,12 +179,25 @@ Result<Eigen::MatrixXd> SparseSolver::Solve(const Matrix& lower,
     f.large->analyzePattern(lower);
     f.last.resize(0, 0);
   }
-  if (f.large->Operations() <= kMaxOperations) {
-    return SolveWith(lower, rhs, f.large.get());
-  }
-  auto solution = SolveByGradients(lower, rhs, f.last, f.context);
+  if (!f.UsesGradients()) return FactorizeWith(lower, f.large.get());
+  f.lower = lower;
+  return {};
+}
+
+Result<Eigen::MatrixXd> SparseSolver::Solve(const Eigen::MatrixXd& rhs) {
+  Factorisation& f = *factorisation_;
+  if (rhs.rows() < kLargeSystem) return SolveWith(rhs, &f.small);
+  const OneThread one_thread;
+  if (!f.UsesGradients()) return SolveWith(rhs, f.large.get());
+  auto solution = SolveByGradients(f.lower, rhs, f.last, f.context);
   if (solution) f.last = *solution;
   return solution;
+}
+
+Result<Eigen::MatrixXd> SparseSolver::Solve(const Matrix& lower,
+                                            const Eigen::MatrixXd& rhs) {
+  LOWLAP_RETURN_IF_ERROR(Factorize(lower));
+  return Solve(rhs);
 }
 
 }  // namespace lowlap

@@ -36,6 +36,11 @@ class SparseSolver {
   Result<Eigen::MatrixXd> Solve(const Eigen::SparseMatrix<double>& lower,
                                 const Eigen::MatrixXd& rhs);
 
+  /// The same in two steps, for many right hand sides of one A. Solve may
+  /// follow a Factorize that succeeded as often as one likes.
+  Status Factorize(const Eigen::SparseMatrix<double>& lower);
+  Result<Eigen::MatrixXd> Solve(const Eigen::MatrixXd& rhs);
+
  private:
   struct Factorisation;
   std::unique_ptr<Factorisation> factorisation_;

@@ -74,11 +74,16 @@ class Firmness {
     }
   }
 
+  /// To be called after everything is added, and before Deviations.
+  Status Factorize() {
+    Eigen::SparseMatrix<double> information(NumRows(), NumRows());
+    information.setFromTriplets(entries_.begin(), entries_.end());
+    return solver_.Factorize(information);
+  }
+
   /// The standard deviations of log ratios.
   Result<std::vector<double>> Deviations(
       const std::vector<ViewTriplet>& triplets) {
-    Eigen::SparseMatrix<double> information(NumRows(), NumRows());
-    information.setFromTriplets(entries_.begin(), entries_.end());
     Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(
         NumRows(), static_cast<Eigen::Index>(triplets.size()));
     for (std::size_t t = 0; t < triplets.size(); ++t) {
@@ -89,7 +94,7 @@ class Firmness {
       }
     }
     LOWLAP_ASSIGN_OR_RETURN(const auto solved,
-                            solver_.Solve(information, gradients));
+                            solver_.Solve(gradients));
     std::vector<double> deviations;
     for (Eigen::Index t = 0; t < gradients.cols(); ++t) {
       deviations.push_back(
@@ -260,6 +265,7 @@ Result<std::vector<RigidPiece>> FindRigidPieces(
       asked.push_back(views);
     }
   }
+  LOWLAP_RETURN_IF_ERROR(firmness.Factorize());
   constexpr std::size_t kAtOnce = 256;
   for (std::size_t next = 0; next < asked.size(); next += kAtOnce) {
     if (!context.Progress("rigid pieces", next, asked.size())) {
