@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <iterator>
+#include <string>
 
 #include "lowlap/geometry/internal/rotation.h"
 #include "merge/parts.h"
@@ -136,13 +137,22 @@ TEST(MatchModel, SaysWhatIsWrong) {
   const SyntheticScene made = NoisyChain(0);
   Scene model = made.scene;
   EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
-              testing::IsError(ErrorCode::kInsufficientData, "model.json: "));
+              testing::IsError(ErrorCode::kInsufficientData,
+                               "model.json: holds no camera that is placed"));
   model.poses = TrueSolution(made).poses;
   for (auto& entry : model.views) entry.second.filename += ".other.png";
   EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
               testing::IsError(ErrorCode::kInsufficientData,
                                "is an image of the measured scene"));
-  for (auto& entry : model.views) entry.second.filename = "one.png";
+  // No folder is one of the measured scene, and the names alone do not tell.
+  for (auto& [id, view] : model.views) {
+    view.local_path = "camera" + std::to_string(id.value());
+    view.filename = "one.png";
+  }
+  EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
+              testing::IsError(ErrorCode::kInvalidScene,
+                               "model.json: two cameras are called 'one.png'"));
+  for (auto& entry : model.views) entry.second.local_path.clear();
   EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
               testing::IsError(ErrorCode::kInvalidScene, "one.png"));
 }

@@ -15,11 +15,16 @@ namespace lowlap {
 namespace {
 
 Result<SolveResult> Merge(Scene* scene, const std::vector<PartialModel>& models,
-                          const SolveOptions& options = {}) {
+                          const SolveOptions& options = {},
+                          std::vector<ScaleRatio>* measured = nullptr) {
   std::vector<ModelCheck> checks;
   for (const PartialModel& model : models) {
     auto check = CheckModel(*scene, model, options, RunContext());
     if (!check) return tl::unexpected<Error>(check.error());
+    if (measured != nullptr) {
+      measured->insert(measured->end(), check->measured_ratios.begin(),
+                       check->measured_ratios.end());
+    }
     checks.push_back(std::move(*check));
   }
   return MergeModels(scene, models, checks, options, RunContext(), nullptr);
@@ -58,6 +63,23 @@ TEST_P(MergeModelsTest, TwoPartsAndAViewThatNobodyPlacedBecomeOne) {
   EXPECT_EQ(merged->poses.num_placed, 9);
   EXPECT_LT(MeanError(made_.scene, made_), 0.02);
   EXPECT_EQ(made_.scene.relative_poses, measured);
+}
+
+// The models stand in for what was measured, but are no measurements.
+TEST_P(MergeModelsTest, LeavesTheRatiosThatWereMeasured) {
+  std::vector<ScaleRatio> measured;
+  const auto merged = Merge(&made_.scene, TwoParts(made_), {}, &measured);
+  ASSERT_THAT(merged, testing::IsOk());
+  for (const ScaleRatio& ratio : made_.scene.scale_ratios) {
+    EXPECT_EQ(ratio.FindKind("model"), nullptr);
+  }
+  ASSERT_FALSE(measured.empty());
+  for (const ScaleRatio& ratio : measured) {
+    EXPECT_THAT(made_.scene.scale_ratios, ::testing::Contains(ratio));
+  }
+  const RatioSummary summary = SummarizeRatios(made_.scene.scale_ratios);
+  EXPECT_EQ(merged->ratios.num_triplets, summary.num_triplets);
+  EXPECT_EQ(merged->ratios.num_meaningful, summary.num_meaningful);
 }
 
 // Before the adjustment, the places inside a part are those of the model.

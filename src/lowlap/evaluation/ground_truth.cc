@@ -54,7 +54,7 @@ Result<GroundTruth> GroundTruthByName(
       const auto [entry, inserted] = assigned_here.emplace(name, id);
       if (!inserted) {
         return MakeError(ErrorCode::kInvalidScene,
-                         "the true pose of '" + name + "' fits views " +
+                         "the pose of '" + name + "' fits views " +
                              std::to_string(entry->second.value()) + " and " +
                              std::to_string(id.value()) + " equally well");
       }

@@ -3,12 +3,12 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/merge/internal/agreement.h"
 #include "lowlap/merge/internal/rigid_pieces.h"
 #include "lowlap/merge/merge_models.h"
+#include "lowlap/pipeline/internal/scene_reduction.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -42,29 +42,12 @@ Result<std::map<std::string, Pose>> PosesByImage(const Scene& model,
 Result<GroundTruth> MatchByName(const Scene& measured, const Scene& model,
                                 bool with_folders) {
   LOWLAP_ASSIGN_OR_RETURN(const auto poses, PosesByImage(model, with_folders));
-  return GroundTruthByName(measured, poses);
-}
-
-// What the measured scene has of the pairs that agree, each with the motion
-// that does.
-Scene SceneOfAgreeing(const Scene& measured,
-                      const std::vector<PairAgreement>& pairs) {
-  Scene scene;
-  std::set<ViewId> views;
-  for (const PairAgreement& pair : pairs) {
-    if (!pair.Agrees()) continue;
-    views.insert({pair.views.first, pair.views.second});
-    scene.relative_poses[pair.views] =
-        WithHypothesis(measured.relative_poses.at(pair.views), pair.hypothesis);
+  auto matched = GroundTruthByName(measured, poses);
+  if (!matched && matched.error().code == ErrorCode::kInsufficientData) {
+    matched.error().message =
+        "none of its placed cameras is an image of the measured scene";
   }
-  for (const ViewId view : views) {
-    scene.views.emplace(view, measured.views.at(view));
-    const auto features = measured.features.find(view);
-    if (features != measured.features.end()) scene.features.insert(*features);
-  }
-  scene.intrinsics = measured.intrinsics;
-  scene.line_tracks = measured.line_tracks;
-  return scene;
+  return matched;
 }
 
 }  // namespace
@@ -75,18 +58,21 @@ Result<PartialModel> MatchModel(const Scene& measured, const Scene& model,
   // tell images of one name apart.
   auto matched = MatchByName(measured, model, true);
   auto by_file = MatchByName(measured, model, false);
-  if (by_file && (!matched || by_file->size() > matched->size())) {
+  const bool is_ambiguous =
+      !by_file && by_file.error().code == ErrorCode::kInvalidScene;
+  if (by_file ? !matched || by_file->size() > matched->size()
+              : !matched && is_ambiguous) {
     matched = std::move(by_file);
   }
   if (!matched) {
-    return MakeError(matched.error().code,
-                     matched.error().code == ErrorCode::kInsufficientData
-                         ? "none of its placed cameras is an image of the "
-                           "measured scene"
-                         : matched.error().message,
-                     std::move(name));
+    matched.error().file = std::move(name);
+    return tl::unexpected<Error>(matched.error());
   }
   return PartialModel{std::move(name), std::move(*matched)};
+}
+
+bool RigidPiece::Holds(ViewId a, ViewId b) const {
+  return std::binary_search(pairs.begin(), pairs.end(), OrderedPair(a, b));
 }
 
 Result<ModelCheck> CheckModel(const Scene& measured, const PartialModel& model,
@@ -96,7 +82,11 @@ Result<ModelCheck> CheckModel(const Scene& measured, const PartialModel& model,
   ModelCheck check;
   check.pairs =
       ComparePairs(measured.relative_poses, model.poses, options.poses);
-  const Scene agreeing = SceneOfAgreeing(measured, check.pairs);
+  std::map<ViewPair, std::size_t> hypotheses;
+  for (const PairAgreement& pair : check.pairs) {
+    if (pair.Agrees()) hypotheses.emplace(pair.views, pair.hypothesis);
+  }
+  const Scene agreeing = SceneOfPairs(measured, hypotheses);
   LOWLAP_ASSIGN_OR_RETURN(
       check.measured_ratios,
       EstimateScaleRatios(agreeing, FindTriplets(ViewGraph(agreeing)),

@@ -18,11 +18,6 @@ bool Holds(const std::vector<ViewId>& views, ViewId view) {
   return std::binary_search(views.begin(), views.end(), view);
 }
 
-bool HoldsPair(const RigidPiece& piece, ViewId a, ViewId b) {
-  return std::binary_search(piece.pairs.begin(), piece.pairs.end(),
-                            OrderedPair(a, b));
-}
-
 // Joins the views of one piece and those of the other, and both in neither.
 bool IsAcross(const ViewPair& pair, const RigidPiece& a, const RigidPiece& b) {
   const auto inside = [&](const RigidPiece& piece) {
@@ -62,9 +57,9 @@ std::string RatiosAcross(const ModelCheck& check, const RigidPiece& a,
   for (const RatioAgreement& ratio : check.ratios) {
     const ViewTriplet& v = ratio.views;
     const bool forward =
-        HoldsPair(a, v.first, v.middle) && HoldsPair(b, v.middle, v.last);
+        a.Holds(v.first, v.middle) && b.Holds(v.middle, v.last);
     const bool backward =
-        HoldsPair(b, v.first, v.middle) && HoldsPair(a, v.middle, v.last);
+        b.Holds(v.first, v.middle) && a.Holds(v.middle, v.last);
     if (!forward && !backward) continue;
     ++num_across;
     if (!ratio.Agrees()) errors.push_back(forward ? ratio.error : -ratio.error);

@@ -30,21 +30,36 @@ Status CheckArguments(const std::vector<PartialModel>& models,
 
 // The relative poses as they were measured, with the motions that the pieces
 // and the solution chose.
-void RestoreMeasured(const std::map<ViewPair, RelativePose>& measured,
-                     const std::vector<ModelCheck>& checks,
-                     const std::vector<TrustedPiece>& pieces, Scene* scene) {
+void RestorePoses(const std::map<ViewPair, RelativePose>& measured,
+                  const std::vector<ModelCheck>& checks,
+                  const std::vector<TrustedPiece>& pieces, Scene* scene) {
   std::set<ViewPair> restored;
   for (const TrustedPiece& trusted : pieces) {
-    const RigidPiece& piece = trusted.piece;
-    const std::set<ViewPair> inside(piece.pairs.begin(), piece.pairs.end());
     for (const PairAgreement& pair : checks[trusted.model].pairs) {
-      if (inside.count(pair.views) == 0 ||
-          !restored.insert(pair.views).second) {
-        continue;
+      if (trusted.piece.Holds(pair.views.first, pair.views.second) &&
+          restored.insert(pair.views).second) {
+        scene->relative_poses.at(pair.views) =
+            WithHypothesis(measured.at(pair.views), pair.hypothesis);
       }
-      scene->relative_poses.at(pair.views) =
-          WithHypothesis(measured.at(pair.views), pair.hypothesis);
     }
+  }
+}
+
+// Those of the pieces, which stood for the models, as they were measured.
+void RestoreRatios(const std::vector<ModelCheck>& checks,
+                   const std::vector<TrustedPiece>& pieces, Scene* scene) {
+  std::map<ViewTriplet, const ScaleRatio*> measured;
+  for (const TrustedPiece& trusted : pieces) {
+    for (const ScaleRatio& ratio : checks[trusted.model].measured_ratios) {
+      if (trusted.piece.Holds(ratio.views.first, ratio.views.middle) &&
+          trusted.piece.Holds(ratio.views.middle, ratio.views.last)) {
+        measured.emplace(ratio.views, &ratio);
+      }
+    }
+  }
+  for (ScaleRatio& ratio : scene->scale_ratios) {
+    const auto found = measured.find(ratio.views);
+    if (found != measured.end()) ratio = *found->second;
   }
 }
 
@@ -65,8 +80,7 @@ Result<SolveResult> MergeModels(Scene* scene,
   SolveResult result;
   LOWLAP_ASSIGN_OR_RETURN(auto start,
                           StartSolution(scene, merging, context, stages));
-  LOWLAP_ASSIGN_OR_RETURN(
-      result.ratios,
+  LOWLAP_RETURN_IF_ERROR(
       EstimateBelievedRatios(scene, start, merging, context, stages));
   {
     const StageLog::Scope scope(stages, "poses");
@@ -78,10 +92,12 @@ Result<SolveResult> MergeModels(Scene* scene,
     LOWLAP_RETURN_IF_ERROR(CheckTies(*scene, result.poses, models, pieces,
                                      options.poses, context));
   }
-  RestoreMeasured(measured, checks, pieces, scene);
+  RestorePoses(measured, checks, pieces, scene);
   result.motions = std::move(start.motions);
   LOWLAP_RETURN_IF_ERROR(
       FinishSolution(scene, options, context, stages, &result));
+  RestoreRatios(checks, pieces, scene);
+  result.ratios = SummarizeRatios(scene->scale_ratios);
   return result;
 }
 

@@ -58,6 +58,9 @@ struct RatioAgreement {
 struct RigidPiece {
   std::vector<ViewId> views;    // sorted
   std::vector<ViewPair> pairs;  // the relative poses that bear it out, sorted
+
+  /// Whether the relative pose of two views is among `pairs`.
+  bool Holds(ViewId a, ViewId b) const;
 };
 
 /// What measurements say about a model.
@@ -117,7 +120,7 @@ std::vector<std::string> DescribeCheck(const PartialModel& model,
 /// not, and what was measured between. Other errors: a model without any piece
 /// (kInsufficientData), those of SolveScene. Like SolveScene it leaves the
 /// scene in an intermediate state on error; afterwards the scene's relative
-/// poses are those that were measured.
+/// poses and ratios are those that were measured.
 Result<SolveResult> MergeModels(Scene* scene,
                                 const std::vector<PartialModel>& models,
                                 const std::vector<ModelCheck>& checks,

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/core/internal/joined.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -10,11 +11,8 @@ namespace lowlap {
 /// The image names of views, separated by commas.
 inline std::string NamesOf(const Scene& scene,
                            const std::vector<ViewId>& views) {
-  std::string names;
-  for (const ViewId view : views) {
-    names += (names.empty() ? "" : ", ") + scene.views.at(view).filename;
-  }
-  return names;
+  return Joined(views, ", ",
+                [&](ViewId view) { return scene.views.at(view).filename; });
 }
 
 }  // namespace lowlap

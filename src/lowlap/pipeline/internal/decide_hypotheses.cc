@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/pipeline/internal/scene_reduction.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -21,10 +22,9 @@ constexpr std::size_t kMaxTriplets = 8;
 constexpr double kDecisiveDigits = 10;
 constexpr double kDecisiveShare = 0.1;
 
-ViewPair PairOf(ViewId a, ViewId b) { return {std::min(a, b), std::max(a, b)}; }
-
 std::array<ViewPair, 2> EdgesOf(const ViewTriplet& views) {
-  return {PairOf(views.first, views.middle), PairOf(views.middle, views.last)};
+  return {OrderedPair(views.first, views.middle),
+          OrderedPair(views.middle, views.last)};
 }
 
 // The triplets through each pair that has alternatives.
@@ -57,39 +57,16 @@ struct Trial {
   std::array<std::size_t, 2> motions = {0, 0};  // of EdgesOf(views)
 };
 
-// What the scene holds of the trial's views.
-Scene SceneOf(const Scene& scene, const Trial& trial) {
-  Scene part;
-  const ViewTriplet& views = trial.views;
-  for (const ViewId id : {views.first, views.middle, views.last}) {
-    const View& view = scene.views.at(id);
-    part.views[id] = view;
-    if (const Intrinsic* intrinsic = scene.FindIntrinsic(id)) {
-      part.intrinsics[view.intrinsic_id] = *intrinsic;
-    }
-    const auto features = scene.features.find(id);
-    if (features != scene.features.end()) part.features.insert(*features);
-  }
-  for (const auto& [id, track] : scene.line_tracks) {
-    for (const FeatureRef& ref : track) {
-      if (part.views.count(ref.view) > 0) part.line_tracks[id].push_back(ref);
-    }
-  }
-  const auto edges = EdgesOf(views);
-  for (std::size_t n = 0; n < edges.size(); ++n) {
-    part.relative_poses[edges[n]] =
-        WithHypothesis(scene.relative_poses.at(edges[n]), trial.motions[n]);
-  }
-  return part;
-}
-
 // log10 NFA of the trial's ratio; 0 if there is none.
 Result<double> CostOf(const Scene& scene, const Trial& trial,
                       const ScaleEstimator& estimator) {
   RunContext serial;
   serial.num_threads = 1;
-  const auto ratios = EstimateScaleRatios(SceneOf(scene, trial), {trial.views},
-                                          estimator, serial);
+  const auto edges = EdgesOf(trial.views);
+  const auto ratios = EstimateScaleRatios(
+      SceneOfPairs(
+          scene, {{edges[0], trial.motions[0]}, {edges[1], trial.motions[1]}}),
+      {trial.views}, estimator, serial);
   if (!ratios) return tl::unexpected<Error>(ratios.error());
   const ScaleRatio& ratio = ratios->front();
   if (ratio.verdict != RatioVerdict::kMeaningful) return 0.0;

@@ -5,6 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
+
 namespace lowlap {
 namespace {
 
@@ -108,6 +110,30 @@ void KeepMatchedFeatures(Scene* scene) {
   VisitSegmentRefs(scene, [&](ViewId view, FeatureIndex* index) {
     if (segments.count(view) > 0) segments.at(view).Apply(index);
   });
+}
+
+Scene SceneOfPairs(const Scene& scene,
+                   const std::map<ViewPair, std::size_t>& hypotheses) {
+  Scene part;
+  for (const auto& [views, hypothesis] : hypotheses) {
+    part.relative_poses[views] =
+        WithHypothesis(scene.relative_poses.at(views), hypothesis);
+    for (const ViewId id : {views.first, views.second}) {
+      const View& view = scene.views.at(id);
+      if (!part.views.emplace(id, view).second) continue;
+      if (const Intrinsic* intrinsic = scene.FindIntrinsic(id)) {
+        part.intrinsics[view.intrinsic_id] = *intrinsic;
+      }
+      const auto features = scene.features.find(id);
+      if (features != scene.features.end()) part.features.insert(*features);
+    }
+  }
+  for (const auto& [id, track] : scene.line_tracks) {
+    for (const FeatureRef& ref : track) {
+      if (part.views.count(ref.view) > 0) part.line_tracks[id].push_back(ref);
+    }
+  }
+  return part;
 }
 
 void DropSolution(Scene* scene) {
