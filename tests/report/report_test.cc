@@ -48,12 +48,15 @@ TEST(FormatReport, EscapesTextAndHoldsTheTables) {
   content.title = "a <b> & c";
   content.figures.emplace_back("cameras", "3 of 4");
   content.warnings.emplace_back("<script>bad</script>");
+  content.notes.emplace_back("1 < 2");
   content.tables.push_back({"Ratios", "", {"name", "value"}, {{"x<y", "1.5"}}});
   const std::string page = FormatReport(Scene(), content);
   EXPECT_THAT(page, HasSubstr("<h1>a &lt;b&gt; &amp; c</h1>"));
   EXPECT_THAT(page, HasSubstr("3 of 4"));
   EXPECT_THAT(page, HasSubstr("<td>x&lt;y</td><td>1.5</td>"));
   EXPECT_THAT(page, Not(HasSubstr("<script>bad")));
+  EXPECT_THAT(page, HasSubstr("<ul class=\"warnings\">\n<li>&lt;script"));
+  EXPECT_THAT(page, HasSubstr("<ul class=\"notes\">\n<li>1 &lt; 2</li>"));
 }
 
 }  // namespace

@@ -9,6 +9,16 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 30000;
 
+std::string FormatList(const std::string& style,
+                       const std::vector<std::string>& lines) {
+  if (lines.empty()) return {};
+  std::string html = "<ul class=\"" + style + "\">\n";
+  for (const std::string& line : lines) {
+    html += "<li>" + EscapeMarkup(line) + "</li>\n";
+  }
+  return html + "</ul>\n";
+}
+
 std::string FormatTable(const ReportTable& table) {
   std::string html = "<h2>" + EscapeMarkup(table.title) + "</h2>\n";
   if (!table.note.empty()) html += "<p>" + EscapeMarkup(table.note) + "</p>\n";
@@ -40,14 +50,8 @@ std::string FormatReport(const Scene& scene, const ReportContent& content) {
     html += "<div><dt>" + EscapeMarkup(name) + "</dt><dd>" +
             EscapeMarkup(value) + "</dd></div>\n";
   }
-  html += "</dl>\n";
-  if (!content.warnings.empty()) {
-    html += "<ul class=\"warnings\">\n";
-    for (const std::string& warning : content.warnings) {
-      html += "<li>" + EscapeMarkup(warning) + "</li>\n";
-    }
-    html += "</ul>\n";
-  }
+  html += "</dl>\n" + FormatList("warnings", content.warnings) +
+          FormatList("notes", content.notes);
   html +=
       "<canvas id=\"drawing\"></canvas>\n"
       "<p class=\"key\">Cameras are green, points blue, lines orange. Drag to "

@@ -10,8 +10,8 @@ body { font: 15px/1.5 system-ui, sans-serif; color: var(--ink); margin: 0 auto;
 h1 { font-size: 24px; margin: 0 0 16px; }
 h2 { font-size: 17px; margin: 32px 0 4px; }
 p { color: var(--soft); margin: 0 0 8px; }
-ul.warnings { border-left: 4px solid var(--warn); color: var(--warn);
-              list-style: none; padding: 4px 12px; }
+ul { border-left: 4px solid var(--rule); list-style: none; padding: 4px 12px; }
+ul.warnings { border-color: var(--warn); color: var(--warn); }
 dl { display: flex; flex-wrap: wrap; gap: 12px; margin: 0 0 20px; }
 dl div { border: 1px solid var(--rule); border-radius: 6px; padding: 8px 14px; }
 dt { color: var(--soft); font-size: 12px; }

@@ -22,6 +22,8 @@ struct ReportContent {
   std::vector<std::pair<std::string, std::string>> figures;
   /// What a reader must not overlook (unplaced views, contradictions).
   std::vector<std::string> warnings;
+  /// What else there is to say.
+  std::vector<std::string> notes;
   std::vector<ReportTable> tables;
 };
 

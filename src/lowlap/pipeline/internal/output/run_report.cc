@@ -95,7 +95,7 @@ void AddSolve(const SolveResult& solve, const Scene& scene,
         "line RMSE", Number(solve.adjustment->lines.final_rmse_px, "%.2f px"));
     for (std::string& note :
          DescribeCalibrationPreferences(*solve.adjustment)) {
-      content->warnings.push_back(std::move(note));
+      content->notes.push_back(std::move(note));
     }
   }
   for (std::string& warning : PoseWarnings(poses, scene)) {
@@ -112,9 +112,7 @@ ReportContent MakeReport(const RunSummary& summary, const Scene& scene) {
     content.warnings.push_back(NameOf(scene, view.view) +
                                " has no relative pose: " + view.reason);
   }
-  for (const std::string& note : summary.notes) {
-    content.warnings.push_back(note);
-  }
+  content.notes = summary.notes;
   if (summary.solve) AddSolve(*summary.solve, scene, &content);
   if (summary.evaluation && summary.evaluation->position.count > 0) {
     content.figures.emplace_back("mean position error",
