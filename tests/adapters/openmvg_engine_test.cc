@@ -163,6 +163,29 @@ TEST_F(OpenMvgEngine, KeepsTheRotationsOfTheHostAndNamesWhatItCannotPlace) {
   }
 }
 
+// What cannot be adjusted is a result too, whoever found the rotations.
+TEST_F(OpenMvgEngine, FinishesTheRotationsOfTheHostAsItsOwn) {
+  TranslationStepInput input = Input();
+  TranslationStepOptions options;
+  options.use_photographs = false;
+  const auto averaged = RunTranslationStep(input, options);
+  ASSERT_THAT(averaged, IsOk());
+  for (const auto& [id, pose] : averaged->poses) {
+    input.rotations[id] = pose.rotation;
+  }
+  const auto composed = RunTranslationStep(input, options);
+  ASSERT_THAT(composed, IsOk());
+  options.solve.adjust = true;
+  const auto adjusted = RunTranslationStep(input, options);
+  ASSERT_THAT(adjusted, IsOk());
+  EXPECT_NE(adjusted->poses, composed->poses);
+  // There are no lines.
+  options.solve.adjustment.use_points = false;
+  const auto without_features = RunTranslationStep(input, options);
+  ASSERT_THAT(without_features, IsOk());
+  EXPECT_EQ(without_features->poses, composed->poses);
+}
+
 TEST_F(OpenMvgEngine, UsesThePairsOfTheRelativeRotationsAlone) {
   openMVG::rotation_averaging::RelativeRotations rotations;
   for (const auto& [pair, matches] : host_.matches.pairWise_matches_) {

@@ -50,7 +50,7 @@ Status Check(const TranslationStepInput& input,
     if (!valid) return valid;
   }
   const auto is_rotation = [](const Mat3& matrix) {
-    return RotationDefect(matrix) < 1e-6;
+    return RotationDefect(matrix) <= kUnitTolerance;
   };
   for (const auto& [pose, rotation] : input.rotations) {
     if (!is_rotation(rotation)) {
@@ -97,10 +97,11 @@ MatchedPoints SelectMatches(TranslationStepInput* input) {
 Result<PoseSummary> Solve(const TranslationStepInput& input,
                           const TranslationStepOptions& options,
                           const RunContext& context, Scene* scene) {
+  SolveResult result;
   if (input.rotations.empty()) {
-    auto result = SolveScene(scene, options.solve, context, nullptr);
-    if (!result) return tl::unexpected<Error>(result.error());
-    return std::move(result->poses);
+    LOWLAP_ASSIGN_OR_RETURN(result,
+                            SolveScene(scene, options.solve, context, nullptr));
+    return std::move(result.poses);
   }
   std::map<ViewId, Mat3> cam_from_world;
   for (const auto& [id, view] : scene->views) {
@@ -109,12 +110,12 @@ Result<PoseSummary> Solve(const TranslationStepInput& input,
       cam_from_world.emplace(id, rotation->second);
     }
   }
-  auto summary = SolveGivenRotations(cam_from_world, options.solve, context,
-                                     nullptr, scene);
-  if (!summary || !options.solve.adjust) return summary;
-  const auto refined = RefineSolution(scene, options.solve, context, nullptr);
-  if (!refined) return tl::unexpected<Error>(refined.error());
-  return summary;
+  LOWLAP_ASSIGN_OR_RETURN(
+      result.poses, SolveGivenRotations(cam_from_world, options.solve, context,
+                                        nullptr, scene));
+  LOWLAP_RETURN_IF_ERROR(
+      FinishSolution(scene, options.solve, context, nullptr, &result));
+  return std::move(result.poses);
 }
 
 }  // namespace
@@ -125,23 +126,23 @@ Result<TranslationStepResult> RunTranslationStep(
   LOWLAP_RETURN_IF_ERROR(Check(input, options));
   const MatchedPoints points = SelectMatches(&input);
   Scene scene = std::move(input.scene);
-  const auto pairs =
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto pairs,
       RelateMatchedPoints(points,
                           options.use_photographs ? PhotographUse::kLinesIfThere
                                                   : PhotographUse::kNone,
-                          options.relative_poses, context, nullptr, &scene);
-  if (!pairs) return tl::unexpected<Error>(pairs.error());
+                          options.relative_poses, context, nullptr, &scene));
   if (scene.relative_poses.empty()) {
-    return MakeError(ErrorCode::kInsufficientData, ExplainNoPose(*pairs));
+    return MakeError(ErrorCode::kInsufficientData, ExplainNoPose(pairs));
   }
-  const auto summary = Solve(input, options, context, &scene);
-  if (!summary) return tl::unexpected<Error>(summary.error());
+  LOWLAP_ASSIGN_OR_RETURN(const auto summary,
+                          Solve(input, options, context, &scene));
 
   TranslationStepResult result;
   result.poses = scene.poses;
-  result.unplaced = summary->unplaced;
-  result.warnings = PoseWarnings(*summary, scene);
-  const std::vector<ViewPair> outliers = PairsOf(summary->outlier_edges);
+  result.unplaced = summary.unplaced;
+  result.warnings = PoseWarnings(summary, scene);
+  const std::vector<ViewPair> outliers = PairsOf(summary.outlier_edges);
   for (const auto& [pair, pose] : scene.relative_poses) {
     if (scene.FindPose(pair.first) != nullptr &&
         scene.FindPose(pair.second) != nullptr &&

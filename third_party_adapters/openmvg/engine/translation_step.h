@@ -43,7 +43,8 @@ struct TranslationStepOptions {
 
   RelativePoseOptions relative_poses;
   /// The estimator of ratios and the averaging strategy. With `solve.adjust`
-  /// the poses are refined on points, lines and coplanar pairs as well.
+  /// the poses are refined on points, lines and coplanar pairs as well, as far
+  /// as there are any (FinishSolution).
   SolveOptions solve;
   /// Lines are detected and matched in the photographs that there are.
   bool use_photographs = true;
