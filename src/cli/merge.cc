@@ -5,15 +5,16 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "cli/flags/intrinsics_input.h"
+#include "cli/flags/photographs.h"
 #include "cli/flags/scene_input.h"
 #include "cli/flags/solve_flags.h"
+#include "cli/flags/truth.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/merge/merge_models.h"
-#include "lowlap/pipeline/internal/output/output_folder.h"
-#include "lowlap/pipeline/measure_images.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
+#include "third_party_adapters/colmap/internal/database.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {
@@ -23,47 +24,56 @@ struct Flags {
   CommonFlags common;
   std::vector<std::string> models;
   SceneInputFlags measured;
-  IntrinsicsFlags intrinsics;
-  std::string pairs = "all";
-  std::string cache;
+  std::string database;
+  PhotographFlags photographs;
   std::string output;
   SolveFlags solve;
 };
 
-// The measured scene, from photographs or as it was measured before.
-Result<LoadedScene> Measure(const Flags& flags, const RunContext& context,
-                            StageLog* stages) {
-  if (!flags.measured.scene.empty()) {
-    LOWLAP_ASSIGN_OR_RETURN(auto loaded,
-                            LoadMeasuredScene(flags.measured, context, stages));
-    RestoreGivenIntrinsics(&loaded.scene);
-    return loaded;
+// What was measured before.
+Result<LoadedScene> Load(const Flags& flags, const ViewCheck& check,
+                         const RunContext& context, StageLog* stages) {
+  SceneInputFlags measured = flags.measured;
+  if (!flags.database.empty()) {
+    if (!colmap::IsDatabase(flags.database)) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "--database: there is no COLMAP database",
+                       flags.database);
+    }
+    measured.scene = flags.database;
   }
-  const std::string& images = flags.measured.images;
-  if (images.empty()) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "--images (photographs) or --scene (one that was "
-                     "measured) is missing: the models alone do not say how "
-                     "they lie to one another");
-  }
-  LOWLAP_ASSIGN_OR_RETURN(const auto intrinsics,
-                          ReadIntrinsics(flags.intrinsics));
-  std::vector<std::string> notes;
-  LoadedScene loaded;
-  LOWLAP_ASSIGN_OR_RETURN(
-      loaded.scene,
-      SceneFromImages(images, intrinsics, flags.measured.exclude, &notes));
-  for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
-  MeasurementOptions options;
-  options.pairs = flags.pairs;
-  options.cache_folder = flags.cache;
-  LOWLAP_ASSIGN_OR_RETURN(
-      loaded.pairs, MeasureImages(&loaded.scene, options, context, stages));
-  if (loaded.scene.relative_poses.empty()) {
-    return MakeError(ErrorCode::kInsufficientData, ExplainNoPose(loaded.pairs),
-                     images);
-  }
+  LOWLAP_ASSIGN_OR_RETURN(auto loaded,
+                          LoadMeasuredScene(measured, context, stages, check));
+  RestoreGivenIntrinsics(&loaded.scene);
   return loaded;
+}
+
+// The measured scene, from photographs or as it was measured before.
+Result<Scene> Measure(const Flags& flags, const ViewCheck& check,
+                      const RunContext& context, StageLog* stages,
+                      RunSummary* summary) {
+  if (!flags.measured.scene.empty() || !flags.database.empty()) {
+    LOWLAP_ASSIGN_OR_RETURN(auto loaded, Load(flags, check, context, stages));
+    summary->pairs = std::move(loaded.pairs);
+    return std::move(loaded.scene);
+  }
+  PhotographFlags photographs = flags.photographs;
+  photographs.images = flags.measured.images;
+  photographs.exclude = flags.measured.exclude;
+  if (photographs.images.empty()) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "--images (photographs), --scene (one that was measured) "
+                     "or --database (of COLMAP) is missing: the models alone "
+                     "do not say how they lie to one another");
+  }
+  LOWLAP_ASSIGN_OR_RETURN(auto scene, OpenPhotographs(photographs, context));
+  LOWLAP_RETURN_IF_ERROR(check(scene));
+  LOWLAP_ASSIGN_OR_RETURN(
+      auto report,
+      MeasurePhotographs(photographs, flags.solve, context, stages, &scene));
+  summary->pairs = std::move(report.pairs);
+  summary->unrelated = std::move(report.unrelated);
+  return scene;
 }
 
 Result<std::vector<Scene>> ReadModels(const Flags& flags,
@@ -107,28 +117,32 @@ Result<int> Merge(const Flags& flags) {
   StageLog stages;
   RunSummary summary;
   summary.command = "merge";
-  LOWLAP_ASSIGN_OR_RETURN(auto loaded, Measure(flags, context, &stages));
-  summary.pairs = std::move(loaded.pairs);
-  LOWLAP_ASSIGN_OR_RETURN(const auto models,
-                          MatchModels(flags, scenes, loaded.scene, context));
+  std::vector<PartialModel> models;
+  const auto match = [&](const Scene& views) -> Status {
+    LOWLAP_RETURN_IF_ERROR(LoadGroundTruth(flags.solve.ground_truth, views));
+    LOWLAP_ASSIGN_OR_RETURN(models, MatchModels(flags, scenes, views, context));
+    return {};
+  };
+  LOWLAP_ASSIGN_OR_RETURN(auto scene,
+                          Measure(flags, match, context, &stages, &summary));
   std::vector<ModelCheck> checks;
   for (const PartialModel& model : models) {
     const StageLog::Scope scope(&stages, "model check");
     LOWLAP_ASSIGN_OR_RETURN(auto check,
-                            CheckModel(loaded.scene, model, options, context));
-    for (std::string& line : DescribeCheck(model, check, loaded.scene)) {
+                            CheckModel(scene, model, options, context));
+    for (std::string& line : DescribeCheck(model, check, scene)) {
       std::printf("%s\n", line.c_str());
       summary.notes.push_back(std::move(line));
     }
     checks.push_back(std::move(check));
   }
   std::fflush(stdout);  // before what goes to the log
-  return SolveAndWrite(std::move(loaded.scene), flags.solve, std::move(summary),
-                       &stages, context, {}, flags.output,
-                       [&](Scene* scene, const SolveOptions& solve,
+  return SolveAndWrite(std::move(scene), flags.solve, std::move(summary),
+                       &stages, context, {}, {flags.output},
+                       [&](Scene* measured, const SolveOptions& solve,
                            const RunContext& run, StageLog* log) {
-                         return MergeModels(scene, models, checks, solve, run,
-                                            log);
+                         return MergeModels(measured, models, checks, solve,
+                                            run, log);
                        });
 }
 
@@ -148,11 +162,14 @@ void AddMerge(CLI::App* program, Action* action) {
       .Required();
   AddOption(command, "--images", flags->measured.images,
             "Folder of the photographs, which are measured as by 'lowlap run'; "
-            "with a COLMAP database as --scene, its photographs");
+            "with --database or -m, where their lines are found");
   Option scene =
       AddOption(command, "--scene", flags->measured.scene,
                 "A scene that was measured: of 'lowlap run', an OpenMVG "
                 "listing with -m, or a COLMAP database");
+  Option database = AddOption(command, "--database", flags->database,
+                              "A COLMAP database, with its matches")
+                        .Excludes(scene);
   Option matches =
       AddOption(command, "-m,--matchdir", flags->measured.matches_dir,
                 "OpenMVG matches folder of --scene (.feat and matches.* files)")
@@ -160,15 +177,16 @@ void AddMerge(CLI::App* program, Action* action) {
   AddOption(command, "-M,--match_file", flags->measured.match_file,
             "Match file in that folder; default as in OpenMVG")
       .Needs(matches);
-  AddIntrinsicsFlags(command, &flags->intrinsics);
-  AddOption(command, "--pairs", flags->pairs,
-            "Pairs of --images to match: all, chain, cycle, window:N, auto "
-            "(those that look alike), or a file with two view names or ids a "
-            "line")
-      .ShowDefault();
-  AddOption(command, "--cache", flags->cache,
+  PhotographFlags& photographs = flags->photographs;
+  AddIntrinsicsFlags(command, &photographs.intrinsics);
+  AddPairsFlag(command, &photographs.pairs, "Pairs of --images to match");
+  AddOption(command, "--cache", photographs.cache,
             "Folder of features and matches of --images to use again; without "
             "it none is kept");
+  // What was measured before has pairs, matches and intrinsics of its own.
+  for (const char* name : {"--intrinsics", "--focal", "--pairs", "--cache"}) {
+    FindOption(command, name).Excludes(scene).Excludes(database);
+  }
   AddOption(command, "--exclude", flags->measured.exclude,
             "Views to leave out, separated by commas")
       .SeparatedBy(',');

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/pipeline/internal/measure/measurement_choices.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
 #include "python/averager.h"
 #include "third_party_adapters/internal/camera_files.h"
@@ -15,10 +16,6 @@ namespace {
 
 [[noreturn]] void RaiseArgument(const std::string& message) {
   Raise({ErrorCode::kInvalidArgument, message, {}, {}});
-}
-
-bool Has(const std::vector<std::string>& words, const char* word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
 }
 
 std::string PathOf(const py::object& object, const char* what) {
@@ -154,27 +151,10 @@ MeasurementOptions TakeMeasurementOptions(Keywords* keywords,
                                           const ScaleOptions& scale) {
   MeasurementOptions options;
   keywords->Take("pairs", &options.pairs);
-  PointMatcher matcher = PointMatcher::kExact;
-  keywords->TakeChoice(
-      "matcher",
-      {{"exact", PointMatcher::kExact}, {"flann", PointMatcher::kFlann}},
-      &matcher);
-  options.matching.points.matcher = matcher;
-  options.matching.relaxed_points.matcher = matcher;
-  std::vector<std::string> two_view = {"points", "lines"};
-  keywords->TakeWords("two_view", &two_view);
-  for (const std::string& word : two_view) {
-    if (word != "points" && word != "lines") {
-      RaiseArgument("two_view: '" + word + "' is not one of points, lines");
-    }
-  }
-  PairOptions& pair = options.relative_poses.pair;
-  pair.use_points = Has(two_view, "points");
-  pair.use_lines = Has(two_view, "lines");
-  const bool needs_lines =
-      pair.use_lines || scale.Asks("lines") || scale.Asks("coplanar");
-  options.features.detect_lines = needs_lines;
-  options.matching.match_lines = needs_lines;
+  MeasurementChoices choices;
+  keywords->Take("matcher", &choices.matcher);
+  keywords->TakeWords("two_view", &choices.two_view);
+  RaiseIfError(SetChoices(choices, scale, &options));
   keywords->Take("refine_points", &options.refine_points);
   if (const py::object cache = keywords->Take("cache")) {
     options.cache_folder = PathOf(cache, "cache must be a path");

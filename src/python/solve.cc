@@ -224,11 +224,7 @@ void BindSolve(py::module_& module) {
       .def_property_readonly("reliability_warnings",
                              poses(&PoseSummary::reliability_warnings))
       .def_property_readonly(
-          "is_firm",
-          [](const Solution& s) {
-            return s.poses().num_placed == s.poses().num_views &&
-                   !s.poses().IsDoubtful();
-          },
+          "is_firm", [](const Solution& s) { return s.poses().IsFirm(); },
           "All views are placed, and nothing contradicts any of them.")
       .def_property_readonly(
           "warnings",

@@ -54,6 +54,28 @@ class ColmapCommand : public Cli {
   std::string Database() const { return Path("database.db"); }
 };
 
+TEST_F(ColmapCommand, ModelsAreMergedByADatabase) {
+  for (const char* part :
+       {"1.jpg,2.jpg,3.jpg,4.jpg", "5.jpg,6.jpg,7.jpg,8.jpg"}) {
+    const Outcome solved =
+        Lowlap("solve " + Database() + " --exclude " + part + " -o " +
+               Path(std::string("without") + part[0]));
+    ASSERT_EQ(solved.exit_code, 0) << solved.output;
+  }
+  const std::string models = "merge " + Path("without1") + "/scene.lowlap " +
+                             Path("without5") + "/scene.lowlap --no-adjust ";
+  const Outcome merged =
+      Lowlap(models + "--database " + Database() + " -o " + Path("merged"));
+  ASSERT_EQ(merged.exit_code, 0) << merged.output;
+  EXPECT_THAT(merged.output, HasSubstr("cameras placed: 8/8"));
+  // As --scene takes it.
+  ASSERT_EQ(Lowlap(models + "--scene " + Database() + " -o " + Path("same"))
+                .exit_code,
+            0);
+  EXPECT_EQ(ReadText(Path("merged/scene.lowlap")),
+            ReadText(Path("same/scene.lowlap")));
+}
+
 TEST_F(ColmapCommand, ADatabaseIsSolvedAndTheResultGoesBack) {
   const Outcome solved = Lowlap("solve " + Database() + " -o " + Path("out"));
   ASSERT_EQ(solved.exit_code, 0) << solved.output;

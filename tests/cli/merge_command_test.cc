@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <string>
 
 #include "cli_fixture.h"
@@ -51,8 +52,10 @@ TEST_F(MergeCommand, MakesOneModelOfTwo) {
   const std::string summary = ReadText(Path("merged/summary.json"));
   EXPECT_THAT(summary, AllOf(HasSubstr("\"command\": \"merge\""),
                              HasSubstr("bear out all of it")));
-  EXPECT_THAT(ReadText(Path("merged/report.html")),
-              HasSubstr("bear out all of it"));
+  const std::string report = ReadText(Path("merged/report.html"));
+  EXPECT_THAT(report, AllOf(HasSubstr("<ul class=\"notes\">"),
+                            HasSubstr("bear out all of it"),
+                            Not(HasSubstr("<ul class=\"warnings\">"))));
 }
 
 // Without view 4 and all that sees past it, nothing joins the two.
@@ -84,6 +87,58 @@ TEST_F(MergeCommand, NeedsMeasurements) {
                                  Path("room.lowlap") + " -o " + Path("merged"));
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_THAT(missing.output, HasSubstr("missing.json"));
+}
+
+// What was measured has pairs, matches and intrinsics of its own.
+TEST_F(MergeCommand, RefusesFlagsOfPhotographsForWhatWasMeasured) {
+  Write("K.txt", "1000 0 320\n0 1000 240\n0 0 1\n");
+  for (const std::string& flag :
+       {std::string("--pairs chain"), "--cache " + Path("cache"),
+        std::string("--focal 1000"), "--intrinsics " + Path("K.txt")}) {
+    for (const std::string& measured :
+         {"--scene " + Path("room.lowlap"), "--database " + Path("a.db")}) {
+      const Outcome refused = Merge(measured + " " + flag);
+      EXPECT_NE(refused.exit_code, 0);
+      EXPECT_THAT(refused.output,
+                  HasSubstr(measured.substr(0, measured.find(' ')) +
+                            " excludes " + flag.substr(0, flag.find(' '))));
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(Path("merged")));
+}
+
+TEST_F(MergeCommand, RefusesASceneAndADatabaseAtOnceAndWhatIsNone) {
+  const Outcome both =
+      Merge("--scene " + Path("room.lowlap") + " --database " + Path("a.db"));
+  EXPECT_NE(both.exit_code, 0);
+  EXPECT_THAT(both.output, HasSubstr("--scene excludes --database"));
+  const Outcome none = Merge("--database " + Path("room.lowlap"));
+  EXPECT_EQ(none.exit_code, 1);
+  EXPECT_THAT(
+      none.output,
+      HasSubstr("room.lowlap: --database: there is no COLMAP database"));
+  const Outcome missing = Merge("--database " + Path("missing.db"));
+  EXPECT_EQ(missing.exit_code, 1);
+  EXPECT_THAT(missing.output, HasSubstr("missing.db"));
+}
+
+// Blank photographs hold nothing to measure: what is said is about what was
+// read before.
+TEST_F(MergeCommand, ReadsTruthAndModelsBeforeItMeasures) {
+  std::filesystem::create_directories(Path("images"));
+  for (const char* name : {"images/000002.pgm", "images/000006.pgm"}) {
+    Write(name, "P5\n64 48\n255\n" + std::string(64 * 48, 'x'));
+  }
+  const std::string images = "--images " + Path("images") + " --focal 60 ";
+  EXPECT_THAT(Merge(images + "--gt " + Path("missing.json")).output,
+              HasSubstr("missing.json: no such"));
+  EXPECT_THAT(Merge(images).output,
+              Not(HasSubstr("image of the measured scene")));
+  std::filesystem::rename(Path("images/000002.pgm"), Path("images/a.pgm"));
+  std::filesystem::rename(Path("images/000006.pgm"), Path("images/b.pgm"));
+  EXPECT_THAT(Merge(images).output,
+              HasSubstr("first/scene.lowlap: none of its placed cameras is an "
+                        "image of the measured scene"));
 }
 
 TEST_F(MergeCommand, NamesAModelOfOtherPhotographs) {

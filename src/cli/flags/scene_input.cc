@@ -59,7 +59,8 @@ bool HoldsMatches(const SceneInputFlags& flags) {
 }
 
 Result<LoadedScene> EstimatePoses(const SceneInputFlags& flags,
-                                  const RunContext& context, StageLog* stages) {
+                                  const RunContext& context, StageLog* stages,
+                                  const ViewCheck& check) {
   LoadedScene loaded;
   MatchedPoints points;
   {
@@ -77,6 +78,7 @@ Result<LoadedScene> EstimatePoses(const SceneInputFlags& flags,
       }
     }
   }
+  if (check) LOWLAP_RETURN_IF_ERROR(check(loaded.scene));
   PhotographUse use = PhotographUse::kNone;
   if (!flags.images.empty()) {
     loaded.scene.root_path = flags.images;
@@ -89,14 +91,16 @@ Result<LoadedScene> EstimatePoses(const SceneInputFlags& flags,
 }
 
 Result<LoadedScene> ReadOwnScene(const SceneInputFlags& flags,
-                                 const RunContext& context, StageLog* stages) {
+                                 const RunContext& context, StageLog* stages,
+                                 const ViewCheck& check) {
   const StageLog::Scope scope(stages, "read");
   SceneNotes notes;
   LOWLAP_ASSIGN_OR_RETURN(auto scene, ReadScene(flags.scene, &notes));
   for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
   LOWLAP_ASSIGN_OR_RETURN(const auto excluded, ExcludedViews(scene, flags));
-  return LoadedScene{
-      excluded.empty() ? std::move(scene) : WithoutViews(scene, excluded), {}};
+  if (!excluded.empty()) scene = WithoutViews(scene, excluded);
+  if (check) LOWLAP_RETURN_IF_ERROR(check(scene));
+  return LoadedScene{std::move(scene), {}};
 }
 
 }  // namespace
@@ -124,25 +128,27 @@ void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
 }
 
 Result<LoadedScene> LoadScene(const SceneInputFlags& flags,
-                              const RunContext& context, StageLog* stages) {
+                              const RunContext& context, StageLog* stages,
+                              const ViewCheck& check) {
   if (flags.scene.empty()) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "the scene is missing: first argument, or -i");
   }
-  if (HoldsMatches(flags)) return EstimatePoses(flags, context, stages);
+  if (HoldsMatches(flags)) return EstimatePoses(flags, context, stages, check);
   if (!flags.images.empty()) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "--images goes with matches: a database of COLMAP, or an "
                      "OpenMVG listing and -m",
                      flags.scene);
   }
-  return ReadOwnScene(flags, context, stages);
+  return ReadOwnScene(flags, context, stages, check);
 }
 
 Result<LoadedScene> LoadMeasuredScene(const SceneInputFlags& flags,
                                       const RunContext& context,
-                                      StageLog* stages) {
-  auto loaded = LoadScene(flags, context, stages);
+                                      StageLog* stages,
+                                      const ViewCheck& check) {
+  auto loaded = LoadScene(flags, context, stages, check);
   if (!loaded) return loaded;
   if (loaded->scene.relative_poses.empty()) {
     return MakeError(

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -29,15 +30,20 @@ struct LoadedScene {
   std::vector<PairReport> pairs;  // if the relative poses were estimated
 };
 
+/// What is asked of a scene as soon as its views are known, before long work.
+using ViewCheck = std::function<Status(const Scene&)>;
+
 /// Reads the scene without the excluded views. From the matches of OpenMVG or
-/// COLMAP the relative poses are estimated. kInvalidArgument if no scene is
-/// named.
+/// COLMAP the relative poses are estimated, if `check`, which may be null,
+/// finds nothing. kInvalidArgument if no scene is named.
 Result<LoadedScene> LoadScene(const SceneInputFlags& flags,
-                              const RunContext& context, StageLog* stages);
+                              const RunContext& context, StageLog* stages,
+                              const ViewCheck& check = nullptr);
 
 /// The same; kInvalidScene if there are no relative poses in the end.
 Result<LoadedScene> LoadMeasuredScene(const SceneInputFlags& flags,
                                       const RunContext& context,
-                                      StageLog* stages);
+                                      StageLog* stages,
+                                      const ViewCheck& check = nullptr);
 
 }  // namespace lowlap::cli

@@ -85,6 +85,8 @@ struct PoseSummary {
     return !loops.empty() || !contested.empty() || !weak_ratios.empty() ||
            !reliability_warnings.empty();
   }
+  /// All views are placed, and nothing is doubtful.
+  bool IsFirm() const { return num_placed == num_views && !IsDoubtful(); }
 };
 
 /// Replaces scene->poses by those of component 0 of a solution. Gauge: the
