@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/flags/scene_input.h"
 #include "cli/flags/solve_flags.h"
+#include "cli/flags/truth.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
@@ -29,15 +30,16 @@ struct Flags {
   HostFlags host;
 };
 
-// What OpenMVG's GLOBAL engine does not read either is ignored, with the
-// reason.
+// What says nothing to lowlap is ignored, with the reason. Of these OpenMVG's
+// GLOBAL engine reads -R alone.
 struct IgnoredFlag {
   const char* names;
   const char* reason;
 };
 constexpr IgnoredFlag kIgnored[] = {
     {"-R,--rotationAveraging",
-     "rotations are averaged robustly, by one method"},
+     "GLOBAL's choice between L1 and L2; rotations are averaged robustly, by "
+     "one method"},
     {"-t,--triangulation_method", "it is of INCREMENTAL"},
     {"-r,--resection_method", "it is of INCREMENTAL"},
     {"-c,--camera_model", "it is of INCREMENTAL"},
@@ -133,9 +135,11 @@ Result<SolveFlags> WithHostFlags(SolveFlags solve, const HostFlags& host,
   if (!value('T').empty()) solve.strategy = StrategyOfMethod().at(value('T'));
   solve.no_adjust |= value('e') == "NONE";
   if (solve.no_adjust && !solve.refine_intrinsics.empty()) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "-f: the bundle adjustment, which --no-adjust (-e NONE) "
-                     "leaves out, refines intrinsics");
+    return MakeError(
+        ErrorCode::kInvalidArgument,
+        std::string(value('f').empty() ? "--refine-intrinsics" : "-f") +
+            ": the bundle adjustment, which --no-adjust (-e NONE) leaves out, "
+            "refines intrinsics");
   }
   for (const IgnoredFlag& flag : kIgnored) {
     if (value(flag.names[1]).empty()) continue;
@@ -150,17 +154,22 @@ Result<int> Solve(const Flags& flags) {
   LOWLAP_ASSIGN_OR_RETURN(const SolveFlags solve,
                           WithHostFlags(flags.solve, flags.host, context));
   LOWLAP_RETURN_IF_ERROR(MakeSolveOptions(solve));
-  // A folder that cannot be written is found before the work.
-  LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
+  // What cannot be written, or evaluated, is found before the work.
+  const OutputPlace output = OutputPlaceOf(flags.output);
+  LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(output.folder));
+  const auto check = [&](const Scene& views) -> Status {
+    LOWLAP_RETURN_IF_ERROR(LoadGroundTruth(solve.ground_truth, views));
+    return {};
+  };
   StageLog stages;
   RunSummary summary;
   summary.command = "solve";
-  LOWLAP_ASSIGN_OR_RETURN(auto loaded,
-                          LoadMeasuredScene(flags.input, context, &stages));
+  LOWLAP_ASSIGN_OR_RETURN(
+      auto loaded, LoadMeasuredScene(flags.input, context, &stages, check));
   summary.pairs = std::move(loaded.pairs);
   RestoreGivenIntrinsics(&loaded.scene);
   return SolveAndWrite(std::move(loaded.scene), solve, std::move(summary),
-                       &stages, context, flags.input.scene, flags.output);
+                       &stages, context, flags.input.scene, output);
 }
 
 }  // namespace
@@ -173,7 +182,9 @@ void AddSolve(CLI::App* program, Action* action) {
       "database): scale ratios, poses, bundle adjustment");
   AddSceneInputFlags(command, &flags->input);
   AddOption(command, "-o,--output,--outdir,--output_dir", flags->output,
-            "Folder for the results")
+            "Folder for the results; or a scene file in it, which the solved "
+            "scene is written to in the format of its extension "
+            "(OUT/sfm_data.bin for OpenMVG)")
       .Required();
   AddSolveFlags(command, &flags->solve);
   AddHostFlags(command, &flags->host);

@@ -67,7 +67,34 @@ TEST_F(OpenMvgFlags, MeanWhatLowlapsOwnMean) {
   EXPECT_NE(all, adjusted);
 }
 
-TEST_F(OpenMvgFlags, AreIgnoredByNameWhereTheGlobalEngineDoesNotReadThem) {
+TEST_F(OpenMvgFlags, NameASceneFileOfOpenMvgToWrite) {
+  const std::string file = Path("out/solved.bin");
+  const Outcome solved =
+      Lowlap("solve " + Room() + " --no-adjust --quiet -o " + file);
+  ASSERT_EQ(solved.exit_code, 0) << solved.output;
+  EXPECT_EQ(FilesIn("out"), 6u);
+  ASSERT_EQ(Lowlap("convert " + Path("out/scene.lowlap") + " " +
+                   Path("converted.bin"))
+                .exit_code,
+            0);
+  EXPECT_EQ(ReadText(file), ReadText(Path("converted.bin")));
+  // A name that is taken by a file of the results is that file.
+  ASSERT_EQ(
+      Lowlap("solve " + Room() + " --no-adjust -o " + Path("own/sfm_data.json"))
+          .exit_code,
+      0);
+  EXPECT_EQ(FilesIn("own"), 5u);
+  EXPECT_EQ(ReadText(Path("own/sfm_data.json")),
+            ReadText(Path("out/sfm_data.json")));
+  // A folder is a folder, whatever its name.
+  std::filesystem::create_directories(Path("folder.bin"));
+  ASSERT_EQ(Lowlap("solve " + Room() + " --no-adjust -o " + Path("folder.bin"))
+                .exit_code,
+            0);
+  EXPECT_EQ(FilesIn("folder.bin"), 5u);
+}
+
+TEST_F(OpenMvgFlags, AreIgnoredByNameWhereTheySayNothingToLowlap) {
   std::string output;
   EXPECT_EQ(Solved("-e NONE -R 1 -t 2 -r 1 -c 3 -a a.jpg -b b.jpg "
                    "-S STELLAR -G MST_X -g 5",
@@ -91,6 +118,8 @@ TEST_F(OpenMvgFlags, AreRefusedWhereLowlapDoesNotDoIt) {
   ExpectRefused("-f ADJUST_SHAPE", "'ADJUST_SHAPE' names no parts");
   ExpectRefused("-f NONE --refine-intrinsics focal", "excludes");
   ExpectRefused("-f ADJUST_ALL -e NONE", "-f: the bundle adjustment");
+  ExpectRefused("--refine-intrinsics focal -e NONE",
+                "--refine-intrinsics: the bundle adjustment");
   ExpectRefused("-e ADJUST_ROTATION", "ADJUST_ROTATION");
 }
 

@@ -1,6 +1,7 @@
 #include "cli/flags/solve_flags.h"
 
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -12,6 +13,7 @@
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
+#include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {
 namespace {
@@ -229,10 +231,20 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
   return options;
 }
 
+OutputPlace OutputPlaceOf(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored) ||
+      !FindSceneFormat(AllSceneFormats(), path)) {
+    return {path};
+  }
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  return {folder.empty() ? "." : folder, path};
+}
+
 Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
                           RunSummary summary, StageLog* stages,
                           const RunContext& context, const std::string& input,
-                          const std::string& output, const Solver& solver) {
+                          const OutputPlace& output, const Solver& solver) {
   LOWLAP_ASSIGN_OR_RETURN(auto options, MakeSolveOptions(flags));
   LOWLAP_ASSIGN_OR_RETURN(const auto truth,
                           LoadGroundTruth(flags.ground_truth, scene));
@@ -254,7 +266,17 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
   summary.solve = std::move(*result);
   summary.stages = stages->stages();
   if (IsInterrupted()) return MakeError(ErrorCode::kCancelled, {});
-  LOWLAP_RETURN_IF_ERROR(WriteOutputs(scene, summary, output));
+  SceneNotes notes;
+  const auto add_scene_file = [&](const Scene& solved,
+                                  FileSet* files) -> Status {
+    if (output.scene_file.empty()) return {};
+    LOWLAP_ASSIGN_OR_RETURN(notes,
+                            WriteScene(solved, output.scene_file, {}, files));
+    return {};
+  };
+  LOWLAP_RETURN_IF_ERROR(
+      WriteOutputs(scene, summary, output.folder, add_scene_file));
+  for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
 
   PrintPoses(summary.solve->poses, scene);
   if (summary.solve->adjustment) {
@@ -272,11 +294,11 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
   std::printf(
       "written to %s: report.html sfm_data.json scene.lowlap cloud.ply "
       "summary.json\n",
-      output.c_str());
-  const PoseSummary& poses = summary.solve->poses;
-  const bool is_firm =
-      poses.num_placed == poses.num_views && !poses.IsDoubtful();
-  return flags.strict && !is_firm ? kNotFirm : 0;
+      output.folder.c_str());
+  if (!output.scene_file.empty()) {
+    std::printf("and the scene to %s\n", output.scene_file.c_str());
+  }
+  return flags.strict && !summary.solve->poses.IsFirm() ? kNotFirm : 0;
 }
 
 }  // namespace lowlap::cli

@@ -68,6 +68,17 @@ void PrintCalibration(const Scene& scene, const AdjustmentOptions& options,
 /// --strict, of the commands that SolveAndWrite.
 void AddStrictFlag(CLI::App* command, bool* strict);
 
+/// Where the results go.
+struct OutputPlace {
+  std::string folder;
+  /// A file of its own for the solved scene, in the format that its extension
+  /// tells; empty: none.
+  std::string scene_file = {};
+};
+
+/// The folder `path`, or, if this is the name of a scene file, its folder.
+OutputPlace OutputPlaceOf(const std::string& path);
+
 using Solver = std::function<Result<SolveResult>(Scene*, const SolveOptions&,
                                                  const RunContext&, StageLog*)>;
 
@@ -78,7 +89,7 @@ using Solver = std::function<Result<SolveResult>(Scene*, const SolveOptions&,
 Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
                           RunSummary summary, StageLog* stages,
                           const RunContext& context, const std::string& input,
-                          const std::string& output,
+                          const OutputPlace& output,
                           const Solver& solver = SolveScene);
 
 }  // namespace lowlap::cli

@@ -55,8 +55,9 @@ Status PrepareOutputFolder(const std::string& folder) {
   return {};
 }
 
-Status WriteOutputs(Scene scene, const RunSummary& summary,
-                    const std::string& folder) {
+Status WriteOutputs(
+    Scene scene, const RunSummary& summary, const std::string& folder,
+    const std::function<Status(const Scene&, FileSet*)>& add_more) {
   if (!scene.root_path.empty()) {
     std::error_code error;
     const fs::path absolute = fs::absolute(scene.root_path, error);
@@ -76,6 +77,7 @@ Status WriteOutputs(Scene scene, const RunSummary& summary,
   LOWLAP_RETURN_IF_ERROR(
       add("report.html", FormatReport(scene, MakeReport(summary, scene))));
   LOWLAP_RETURN_IF_ERROR(add("summary.json", ToJson(summary, scene) + "\n"));
+  if (add_more) LOWLAP_RETURN_IF_ERROR(add_more(scene, &files));
   return files.Commit();
 }
 

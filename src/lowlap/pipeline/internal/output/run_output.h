@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +13,8 @@
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
+
+class FileSet;
 
 /// Everything a solving command has to say about its run.
 struct RunSummary {
@@ -35,8 +38,10 @@ Status CheckOutputFolder(const std::string& folder);
 /// sfm_data.json (OpenMVG loads it), scene.lowlap (everything), cloud.ply
 /// (points, lines, cameras), report.html (for a person) and summary.json (for
 /// a program). A relative root_path is made absolute, since the files move away
-/// from what it was relative to.
-Status WriteOutputs(Scene scene, const RunSummary& summary,
-                    const std::string& folder);
+/// from what it was relative to. `add_more`, if it is not null, may add further
+/// files of the scene.
+Status WriteOutputs(
+    Scene scene, const RunSummary& summary, const std::string& folder,
+    const std::function<Status(const Scene&, FileSet*)>& add_more = nullptr);
 
 }  // namespace lowlap
