@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scale/evidence/internal/coplanar_candidates.h"
 #include "lowlap/scale/internal/candidate_limits.h"
 #include "lowlap/scale/internal/uncertainty/ratio_inliers.h"
