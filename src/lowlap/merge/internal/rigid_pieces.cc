@@ -23,11 +23,45 @@ struct LogRatioGradient {
   std::array<Vec3, 3> slopes;
 };
 
+// Directions and ratios that agree, with their deviations.
+struct Agreeing {
+  ViewGraph graph;
+  std::vector<double> direction_stddevs_rad;  // by pair of the graph
+  std::map<ViewTriplet, double> ratio_stddevs;
+};
+
+Agreeing FindAgreeing(const std::vector<PairAgreement>& pairs,
+                      const std::vector<RatioAgreement>& ratios, double reach) {
+  std::vector<ViewPair> views;
+  for (const PairAgreement& pair : pairs) {
+    if (pair.Agrees()) views.push_back(pair.views);
+  }
+  Agreeing agreeing;
+  agreeing.graph = ViewGraph(std::move(views));
+  agreeing.direction_stddevs_rad.resize(agreeing.graph.pairs().size());
+  for (const PairAgreement& pair : pairs) {
+    if (!pair.Agrees()) continue;
+    const auto index =
+        agreeing.graph.FindPair(pair.views.first, pair.views.second);
+    agreeing.direction_stddevs_rad[*index] = pair.direction_limit_rad / reach;
+  }
+  for (const RatioAgreement& ratio : ratios) {
+    if (ratio.Agrees() &&
+        agreeing.graph.FindPair(ratio.views.first, ratio.views.middle) &&
+        agreeing.graph.FindPair(ratio.views.middle, ratio.views.last)) {
+      agreeing.ratio_stddevs.emplace(ratio.views, ratio.limit / reach);
+    }
+  }
+  return agreeing;
+}
+
+// How well views are fixed by what agrees between them.
 class Firmness {
  public:
-  Firmness(const std::map<ViewId, Pose>& poses, const ViewGraph& graph,
+  Firmness(const std::map<ViewId, Pose>& poses, const Agreeing& agreeing,
            const RunContext& context)
       : solver_(context) {
+    const ViewGraph& graph = agreeing.graph;
     Vec3 mean = Vec3::Zero();
     double length = 0;
     for (const ViewPair& views : graph.pairs()) {
@@ -49,8 +83,43 @@ class Firmness {
     for (Eigen::Index r = 0; r < NumRows(); ++r) {
       entries_.emplace_back(r, r, prior);
     }
+    for (std::size_t e = 0; e < graph.pairs().size(); ++e) {
+      AddDirection(graph.pairs()[e], agreeing.direction_stddevs_rad[e]);
+    }
+    for (const auto& [views, stddev] : agreeing.ratio_stddevs) {
+      AddRatio(views, stddev);
+    }
   }
 
+  /// To be called once, before Deviations.
+  Status Factorize() {
+    Eigen::SparseMatrix<double> information(NumRows(), NumRows());
+    information.setFromTriplets(entries_.begin(), entries_.end());
+    return solver_.Factorize(information);
+  }
+
+  /// The standard deviations of log ratios.
+  Result<std::vector<double>> Deviations(
+      const std::vector<ViewTriplet>& triplets) {
+    Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(
+        NumRows(), static_cast<Eigen::Index>(triplets.size()));
+    for (std::size_t t = 0; t < triplets.size(); ++t) {
+      const LogRatioGradient g = GradientOf(triplets[t]);
+      for (std::size_t n = 0; n < 3; ++n) {
+        gradients.block<3, 1>(g.rows[n], static_cast<Eigen::Index>(t)) +=
+            g.slopes[n];
+      }
+    }
+    LOWLAP_ASSIGN_OR_RETURN(const auto solved, solver_.Solve(gradients));
+    std::vector<double> deviations;
+    for (Eigen::Index t = 0; t < gradients.cols(); ++t) {
+      deviations.push_back(
+          std::sqrt(std::max(0.0, gradients.col(t).dot(solved.col(t)))));
+    }
+    return deviations;
+  }
+
+ private:
   void AddDirection(const ViewPair& views, double stddev_rad) {
     const Vec3 baseline = centers_.at(views.second) - centers_.at(views.first);
     const double length = baseline.norm();
@@ -74,36 +143,6 @@ class Firmness {
     }
   }
 
-  /// To be called after everything is added, and before Deviations.
-  Status Factorize() {
-    Eigen::SparseMatrix<double> information(NumRows(), NumRows());
-    information.setFromTriplets(entries_.begin(), entries_.end());
-    return solver_.Factorize(information);
-  }
-
-  /// The standard deviations of log ratios.
-  Result<std::vector<double>> Deviations(
-      const std::vector<ViewTriplet>& triplets) {
-    Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(
-        NumRows(), static_cast<Eigen::Index>(triplets.size()));
-    for (std::size_t t = 0; t < triplets.size(); ++t) {
-      const LogRatioGradient g = GradientOf(triplets[t]);
-      for (std::size_t n = 0; n < 3; ++n) {
-        gradients.block<3, 1>(g.rows[n], static_cast<Eigen::Index>(t)) +=
-            g.slopes[n];
-      }
-    }
-    LOWLAP_ASSIGN_OR_RETURN(const auto solved,
-                            solver_.Solve(gradients));
-    std::vector<double> deviations;
-    for (Eigen::Index t = 0; t < gradients.cols(); ++t) {
-      deviations.push_back(
-          std::sqrt(std::max(0.0, gradients.col(t).dot(solved.col(t)))));
-    }
-    return deviations;
-  }
-
- private:
   Eigen::Index NumRows() const {
     return static_cast<Eigen::Index>(3 * row_.size());
   }
@@ -131,6 +170,78 @@ class Firmness {
   std::vector<Eigen::Triplet<double>> entries_;
   SparseSolver solver_;
 };
+
+// What agrees between a view and its neighbours; of the ratios, those of the
+// triplets, all in the middle of which is the view.
+Agreeing Nearby(const Agreeing& agreeing, ViewId middle,
+                const std::vector<ViewTriplet>& triplets) {
+  std::vector<ViewId> views = agreeing.graph.NeighborsOf(middle);
+  views.push_back(middle);
+  std::sort(views.begin(), views.end());
+  std::vector<ViewPair> pairs;
+  for (const ViewId view : views) {
+    for (const ViewId other : agreeing.graph.NeighborsOf(view)) {
+      if (view < other &&
+          std::binary_search(views.begin(), views.end(), other)) {
+        pairs.push_back({view, other});
+      }
+    }
+  }
+  Agreeing nearby;
+  nearby.graph = ViewGraph(std::move(pairs));
+  for (const ViewPair& pair : nearby.graph.pairs()) {
+    nearby.direction_stddevs_rad.push_back(
+        agreeing.direction_stddevs_rad[*agreeing.graph.FindPair(pair.first,
+                                                                pair.second)]);
+  }
+  for (const ViewTriplet& asked : triplets) {
+    const auto ratio = agreeing.ratio_stddevs.find(asked);
+    if (ratio != agreeing.ratio_stddevs.end()) {
+      nearby.ratio_stddevs.insert(*ratio);
+    }
+  }
+  return nearby;
+}
+
+// Those of the triplets, by their middle views, whose ratios are fixed to
+// `firm`. What its neighbours fix about a view is fixed; only of the rest, few
+// as a rule, all views are asked, at a cost that grows with their square.
+Result<std::vector<ViewTriplet>> FirmTriplets(
+    const std::map<ViewId, Pose>& poses, const Agreeing& agreeing,
+    const std::map<ViewId, std::vector<ViewTriplet>>& asked, double firm,
+    const RunContext& context) {
+  const auto go_on = [&](std::size_t done, std::size_t total) -> Status {
+    if (context.Progress("rigid pieces", done, total)) return {};
+    return MakeError(ErrorCode::kCancelled, "stopped on request", {},
+                     "rigid pieces");
+  };
+  std::vector<ViewTriplet> fixed, open;
+  std::size_t num_done = 0;
+  for (const auto& [middle, triplets] : asked) {
+    LOWLAP_RETURN_IF_ERROR(go_on(num_done++, asked.size()));
+    Firmness nearby(poses, Nearby(agreeing, middle, triplets), context);
+    LOWLAP_RETURN_IF_ERROR(nearby.Factorize());
+    LOWLAP_ASSIGN_OR_RETURN(const auto deviations, nearby.Deviations(triplets));
+    for (std::size_t n = 0; n < triplets.size(); ++n) {
+      (deviations[n] <= firm ? fixed : open).push_back(triplets[n]);
+    }
+  }
+  if (open.empty()) return fixed;
+  Firmness everywhere(poses, agreeing, context);
+  LOWLAP_RETURN_IF_ERROR(everywhere.Factorize());
+  constexpr std::size_t kAtOnce = 256;
+  for (std::size_t next = 0; next < open.size(); next += kAtOnce) {
+    LOWLAP_RETURN_IF_ERROR(go_on(next, open.size()));
+    const std::vector<ViewTriplet> some(
+        open.begin() + next,
+        open.begin() + std::min(next + kAtOnce, open.size()));
+    LOWLAP_ASSIGN_OR_RETURN(const auto deviations, everywhere.Deviations(some));
+    for (std::size_t n = 0; n < some.size(); ++n) {
+      if (deviations[n] <= firm) fixed.push_back(some[n]);
+    }
+  }
+  return fixed;
+}
 
 // A cluster of baselines, and the evidence between it and each other one.
 struct Cluster {
@@ -216,25 +327,9 @@ Result<std::vector<RigidPiece>> FindRigidPieces(
     const std::vector<PairAgreement>& pairs,
     const std::vector<RatioAgreement>& ratios, double reach,
     const RunContext& context) {
-  std::vector<ViewPair> agreeing;
-  for (const PairAgreement& pair : pairs) {
-    if (pair.Agrees()) agreeing.push_back(pair.views);
-  }
-  if (agreeing.empty()) return std::vector<RigidPiece>();
-  const ViewGraph graph(agreeing);
-  Firmness firmness(poses, graph, context);
-  for (const PairAgreement& pair : pairs) {
-    if (pair.Agrees()) {
-      firmness.AddDirection(pair.views, pair.direction_limit_rad / reach);
-    }
-  }
-  for (const RatioAgreement& ratio : ratios) {
-    const ViewTriplet& views = ratio.views;
-    if (ratio.Agrees() && graph.FindPair(views.first, views.middle) &&
-        graph.FindPair(views.middle, views.last)) {
-      firmness.AddRatio(views, ratio.limit / reach);
-    }
-  }
+  const Agreeing agreeing = FindAgreeing(pairs, ratios, reach);
+  const ViewGraph& graph = agreeing.graph;
+  if (graph.pairs().empty()) return std::vector<RigidPiece>();
 
   std::map<ViewTriplet, const RatioAgreement*> measured;
   for (const RatioAgreement& ratio : ratios) {
@@ -242,7 +337,7 @@ Result<std::vector<RigidPiece>> FindRigidPieces(
   }
   const double firm = DiagnosisOptions().max_stddev;
   std::vector<SignedLink> links;
-  std::vector<ViewTriplet> asked;
+  std::map<ViewId, std::vector<ViewTriplet>> asked;  // by middle view
   const auto link = [&](const ViewTriplet& views, double sign) {
     const auto found = measured.find(views);
     const double evidence =
@@ -256,30 +351,18 @@ Result<std::vector<RigidPiece>> FindRigidPieces(
   for (const ViewTriplet& views : FindTriplets(graph)) {
     const auto found = measured.find(views);
     if (found == measured.end()) {
-      asked.push_back(views);
+      asked[views.middle].push_back(views);
     } else if (!found->second->Agrees()) {
       link(views, -1);
     } else if (found->second->limit <= reach * firm) {
       link(views, 1);
     } else {
-      asked.push_back(views);
+      asked[views.middle].push_back(views);
     }
   }
-  LOWLAP_RETURN_IF_ERROR(firmness.Factorize());
-  constexpr std::size_t kAtOnce = 256;
-  for (std::size_t next = 0; next < asked.size(); next += kAtOnce) {
-    if (!context.Progress("rigid pieces", next, asked.size())) {
-      return MakeError(ErrorCode::kCancelled, "stopped on request", {},
-                       "rigid pieces");
-    }
-    const std::vector<ViewTriplet> some(
-        asked.begin() + next,
-        asked.begin() + std::min(next + kAtOnce, asked.size()));
-    LOWLAP_ASSIGN_OR_RETURN(const auto deviations, firmness.Deviations(some));
-    for (std::size_t n = 0; n < some.size(); ++n) {
-      if (deviations[n] <= firm) link(some[n], 1);
-    }
-  }
+  LOWLAP_ASSIGN_OR_RETURN(const auto fixed,
+                          FirmTriplets(poses, agreeing, asked, firm, context));
+  for (const ViewTriplet& views : fixed) link(views, 1);
   const std::vector<std::size_t> labels =
       ClusterByLinks(graph.pairs().size(), links);
   return PiecesOf(ClustersOf(graph, labels, links));

@@ -22,7 +22,9 @@ namespace lowlap {
 /// was measured, with that of this: 1 + log(1 - log10 NFA). So much is also the
 /// evidence of a ratio that contradicts. A baseline that is nearly straight on
 /// from two others fixes nothing, however well it agrees; where it still seems
-/// to, the ratios overrule it.
+/// to, the ratios overrule it. What is fixed by what agrees between the middle
+/// view of two baselines and its neighbours alone is fixed; all is asked of the
+/// rest only.
 ///
 /// Most views first, of three views at least. Errors: kCancelled; kNumerical if
 /// the equations cannot be solved.
