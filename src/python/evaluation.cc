@@ -4,22 +4,6 @@
 #include "python/keywords.h"
 
 namespace lowlap::python {
-namespace {
-
-const char* ScopeName(EvaluationScope scope) {
-  switch (scope) {
-    case EvaluationScope::kNothing:
-      return "nothing";
-    case EvaluationScope::kRotationsOnly:
-      return "rotations_only";
-    case EvaluationScope::kFull:
-      return "full";
-  }
-  return "unknown";
-}
-
-}  // namespace
-
 void BindEvaluation(py::module_& module) {
   py::class_<ErrorStatistics>(module, "ErrorStatistics")
       .def_readonly("count", &ErrorStatistics::count)
@@ -51,7 +35,8 @@ void BindEvaluation(py::module_& module) {
       "Poses against true ones, after a similarity alignment of the centres.\n"
       "str() gives a table.")
       .def_property_readonly(
-          "scope", [](const PoseEvaluation& e) { return ScopeName(e.scope); },
+          "scope",
+          [](const PoseEvaluation& e) { return EvaluationScopeName(e.scope); },
           "nothing, rotations_only or full; `note` says why not full.")
       .def_readonly("note", &PoseEvaluation::note)
       .def_readonly("num_total", &PoseEvaluation::num_total)

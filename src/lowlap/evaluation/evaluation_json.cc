@@ -7,18 +7,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* ScopeName(EvaluationScope scope) {
-  switch (scope) {
-    case EvaluationScope::kNothing:
-      return "nothing";
-    case EvaluationScope::kRotationsOnly:
-      return "rotations_only";
-    case EvaluationScope::kFull:
-      return "full";
-  }
-  return "";
-}
-
 std::string Dump(const Json& json) {
   // File names may hold any bytes; what is not UTF-8 is replaced.
   return json.dump(2, ' ', false, Json::error_handler_t::replace);
@@ -38,7 +26,7 @@ std::string ToJson(const PoseEvaluation& evaluation) {
     }
     views.push_back(std::move(view));
   }
-  Json json = {{"scope", ScopeName(evaluation.scope)},
+  Json json = {{"scope", EvaluationScopeName(evaluation.scope)},
                {"note", evaluation.note},
                {"num_total", evaluation.num_total},
                {"num_solved", evaluation.num_solved},

@@ -30,6 +30,18 @@ Result<Similarity> AlignCentres(const std::vector<CommonCamera>& cameras) {
 
 }  // namespace
 
+const char* EvaluationScopeName(EvaluationScope scope) {
+  switch (scope) {
+    case EvaluationScope::kNothing:
+      return "nothing";
+    case EvaluationScope::kRotationsOnly:
+      return "rotations_only";
+    case EvaluationScope::kFull:
+      return "full";
+  }
+  return "unknown";
+}
+
 PoseEvaluation EvaluatePoses(const Scene& scene, const GroundTruth& truth) {
   return EvaluatePoses(scene.views, scene.poses, truth);
 }

@@ -67,6 +67,9 @@ enum class EvaluationScope {
   kFull,           // 3 and more
 };
 
+/// "nothing", "rotations_only", "full".
+const char* EvaluationScopeName(EvaluationScope scope);
+
 /// Poses of a solution against the truth. A solution is known up to a
 /// similarity, which is removed first:
 /// - positions: the similarity truth_from_solution that minimises the squared
