@@ -7,7 +7,8 @@ namespace lowlap {
 
 // The records of sfm_data/FORMAT.md that both forms have, each described once:
 // a visitor hands its members in their order to a BinaryRecord, or to the
-// records of json_record.h, for writing (from const data) or for reading.
+// json records (json_record_writer.h, json_record_reader.h), for writing (from
+// const data) or for reading.
 
 inline constexpr auto kVisitPair = [](auto& record, auto& pair) {
   record.Item(pair.first);
