@@ -13,30 +13,27 @@ namespace lowlap {
 namespace {
 
 Result<GroundTruth> ReadTruth(const std::string& path, const Scene& scene) {
-  std::error_code ignored;
-  if (std::filesystem::is_regular_file(path, ignored)) {
-    LOWLAP_ASSIGN_OR_RETURN(const Scene solved, ReadScene(path));
-    return GroundTruthFromScene(solved, scene);
-  }
+  // Its scene is what was measured.
   if (onedsfm::IsProblemFolder(path)) return onedsfm::ReadTruePoses(path);
-  LOWLAP_ASSIGN_OR_RETURN(const auto poses, strecha::ReadGroundTruth(path));
-  return GroundTruthByName(scene, poses);
+  std::error_code ignored;
+  if (!IsScene(path) && std::filesystem::is_directory(path, ignored)) {
+    LOWLAP_ASSIGN_OR_RETURN(const auto poses, strecha::ReadGroundTruth(path));
+    return GroundTruthByName(scene, poses);
+  }
+  LOWLAP_ASSIGN_OR_RETURN(const Scene solved, ReadScene(path));
+  return GroundTruthFromScene(solved, scene);
 }
 
 }  // namespace
 
 Result<IntrinsicSource> ReadIntrinsicSource(const std::string& path) {
   IntrinsicSource source;
-  auto scene = ReadScene(path);
-  if (scene) {
-    source.scene = std::move(*scene);
-    return source;
+  if (IsScene(path)) {
+    LOWLAP_ASSIGN_OR_RETURN(source.scene, ReadScene(path));
+  } else {
+    LOWLAP_ASSIGN_OR_RETURN(source.calibration,
+                            strecha::ReadCalibrationMatrix(path));
   }
-  if (scene.error().code != ErrorCode::kUnsupported) {
-    return tl::unexpected<Error>(scene.error());
-  }
-  LOWLAP_ASSIGN_OR_RETURN(source.calibration,
-                          strecha::ReadCalibrationMatrix(path));
   return source;
 }
 

@@ -23,9 +23,16 @@ constexpr SceneFormats (*kAdapters[])() = {
     colmap::ColmapFormats,
 };
 
-/// The format that the first bytes of a file tell; null if they tell none.
-const SceneFormat* FindByContent(const SceneFormats& formats,
-                                 const std::string& path) {
+/// The format of a file or folder that is there: the one that its first bytes
+/// tell, else FindSceneFormat.
+Result<const SceneFormat*> FindFormatOf(const SceneFormats& formats,
+                                        const std::string& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) {
+    return MakeError(
+        ErrorCode::kNotFound,
+        error ? "cannot be opened: " + error.message() : "no such file", path);
+  }
   std::ifstream stream(path, std::ios::binary);
   std::array<char, 64> buffer{};
   stream.read(buffer.data(), buffer.size());
@@ -36,7 +43,7 @@ const SceneFormat* FindByContent(const SceneFormats& formats,
       return &format;
     }
   }
-  return nullptr;
+  return FindSceneFormat(formats, path);
 }
 
 }  // namespace
@@ -49,18 +56,14 @@ SceneFormats AllSceneFormats() {
   return formats;
 }
 
+bool IsScene(const std::string& path) {
+  return FindFormatOf(AllSceneFormats(), path).has_value();
+}
+
 Result<Scene> ReadScene(const std::string& path, SceneNotes* notes) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) {
-    return MakeError(
-        ErrorCode::kNotFound,
-        error ? "cannot be opened: " + error.message() : "no such file", path);
-  }
   const SceneFormats formats = AllSceneFormats();
-  const SceneFormat* format = FindByContent(formats, path);
-  if (format == nullptr) {
-    LOWLAP_ASSIGN_OR_RETURN(format, FindSceneFormat(formats, path));
-  }
+  LOWLAP_ASSIGN_OR_RETURN(const SceneFormat* format,
+                          FindFormatOf(formats, path));
   if (!format->read) {
     return MakeError(ErrorCode::kUnsupported,
                      "the format " + format->name + " cannot be read", path);

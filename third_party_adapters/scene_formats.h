@@ -17,8 +17,13 @@ class FileSet;
 ///   1dsfm         folder   a problem of 1DSfM; read only
 ///   colmap-bin    folder   a model of COLMAP
 ///   colmap        folder   the same as text
-///   colmap-db     .db      a database of COLMAP; written into one there is
+///   colmap-db     .db      a database of COLMAP; written into one there is,
+///                          at once and not as one of the files of a set
 SceneFormats AllSceneFormats();
+
+/// Whether a file or folder is there and of one of these formats, by which
+/// ReadScene would take it; it may be damaged all the same.
+bool IsScene(const std::string& path);
 
 /// Reads a scene file or folder. An sfm_data file is told by its first bytes,
 /// so that a wrong extension does no harm; other files by the extension.

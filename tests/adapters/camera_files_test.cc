@@ -41,6 +41,23 @@ TEST(ReadIntrinsicSource, TakesAMatrixOrAScene) {
   EXPECT_EQ(scene->scene->intrinsics, room.intrinsics);
 }
 
+TEST(ReadIntrinsicSource, TakesAModelOfColmap) {
+  const TemporaryFolder folder;
+  const Scene room = TrueRoom();
+  ASSERT_THAT(WriteScene(room, folder.Path("model"), "colmap"), IsOk());
+  const auto source = ReadIntrinsicSource(folder.Path("model"));
+  ASSERT_THAT(source, IsOk());
+  ASSERT_TRUE(source->scene.has_value());
+  EXPECT_EQ(source->scene->intrinsics.begin()->second,
+            room.intrinsics.begin()->second);
+
+  // What is wrong with a scene is not that it is no matrix.
+  const std::string cameras =
+      folder.Write("model/cameras.txt", "1 FOV 1200 900 900 900 600 450 1\n");
+  EXPECT_THAT(ReadIntrinsicSource(folder.Path("model")),
+              IsError(ErrorCode::kUnsupported, "camera 1 has model FOV"));
+}
+
 TEST(ReadIntrinsicSource, NamesAFileThatIsNeither) {
   const TemporaryFolder folder;
   const std::string text = folder.Write("K.txt", "900 0");
@@ -68,6 +85,29 @@ TEST(ReadGroundTruth, TakesASceneFile) {
   const auto truth = ReadGroundTruth(folder.Path("room.lowlap"), room);
   ASSERT_THAT(truth, IsOk());
   EXPECT_EQ(truth->size(), room.views.size());
+}
+
+TEST(ReadGroundTruth, TakesAModelOfColmapByImageName) {
+  const TemporaryFolder folder;
+  const Scene room = TrueRoom();
+  for (const char* format : {"colmap", "colmap-bin"}) {
+    const std::string path = folder.Path(format);
+    ASSERT_THAT(WriteScene(room, path, format), IsOk());
+    const auto truth = ReadGroundTruth(path, room);
+    ASSERT_THAT(truth, IsOk());
+    ASSERT_EQ(truth->size(), room.views.size());
+    // Though the ids of the model are others.
+    EXPECT_THAT(truth->at(1), PoseNear(*room.FindPose(1), 1e-6, 1e-12));
+  }
+}
+
+TEST(ReadGroundTruth, NamesWhatIsNoTruth) {
+  const TemporaryFolder folder;
+  const Scene room = TrueRoom();
+  EXPECT_THAT(ReadGroundTruth(folder.Path("none"), room),
+              IsError(ErrorCode::kNotFound, folder.Path("none")));
+  EXPECT_THAT(ReadGroundTruth(folder.Write("gt.txt", "1 2 3"), room),
+              IsError(ErrorCode::kUnsupported, "colmap-bin"));
 }
 
 TEST(ReadGroundTruth, RefusesATruthAboutOtherViews) {

@@ -48,6 +48,19 @@ TEST(SceneFormats, AnSfmDataFileIsToldByItsContent) {
   }
 }
 
+TEST(SceneFormats, ASceneIsToldWithoutReadingIt) {
+  const TemporaryFolder folder;
+  for (const char* format : {"json", "openmvg-bin", "colmap", "colmap-bin"}) {
+    const std::string path = folder.Path(format);
+    EXPECT_FALSE(IsScene(path));
+    ASSERT_TRUE(WriteScene(TwoViews(), path, format));
+    EXPECT_TRUE(IsScene(path)) << format;
+  }
+  EXPECT_TRUE(IsScene(folder.Write("broken", "{")));
+  EXPECT_FALSE(IsScene(folder.Write("K.txt", "900 0 599.5")));
+  EXPECT_FALSE(IsScene(folder.Path(".")));
+}
+
 TEST(SceneFormats, PlyIsWrittenOnly) {
   const TemporaryFolder folder;
   ASSERT_TRUE(WriteScene(TwoViews(), folder.Path("a.ply")));

@@ -31,7 +31,8 @@ struct SceneFormat {
   std::function<bool(const std::string& folder)> recognizes_folder;
   /// Null if it is written only. `notes` is never null.
   std::function<Result<Scene>(const std::string& path, SceneNotes* notes)> read;
-  /// Adds what is to be written to `files`; null if it is read only.
+  /// Adds what is to be written to `files`, but for a database, which is
+  /// written into at once; null if it is read only.
   std::function<Result<SceneNotes>(const Scene&, const std::string& path,
                                    FileSet* files)>
       write;
