@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <fstream>
+#include <random>
 #include <sstream>
 
 #include "adapters/temporary_folder.h"
@@ -136,6 +137,18 @@ TEST_F(ColmapModel, TruncatedBinaryFilesAreErrors) {
     folder_.Write(path, whole);
   }
   EXPECT_TRUE(ReadScene(folder_.Path("binary")).has_value());
+}
+
+TEST_F(ColmapModel, AnUnknownCameraModelIsUnsupported) {
+  ASSERT_TRUE(WriteScene(Scene_(), folder_.Path("binary"), "colmap-bin"));
+  std::string cameras = Content(folder_.Path("binary/cameras.bin"));
+  cameras[12] = 99;
+  folder_.Write("binary/cameras.bin", cameras);
+  const auto scene = ReadScene(folder_.Path("binary"));
+  ASSERT_FALSE(scene.has_value());
+  EXPECT_EQ(scene.error().code, ErrorCode::kUnsupported);
+  EXPECT_EQ(scene.error().file, folder_.Path("binary/cameras.bin"));
+  EXPECT_THAT(scene.error().message, HasSubstr("camera 3 has model 99"));
 }
 
 TEST_F(ColmapModel, WhatIsWrongWithTextIsNamedWithItsLine) {
@@ -317,18 +330,38 @@ TEST(ColmapExport, ComesBackAndGoesOutTheSame) {
   }
 }
 
-// Poses whose numbers lie anywhere, also far from the origin and at half turns,
-// where the quaternion's sign is free.
+// Poses whose numbers lie anywhere, from a millionth to a million units from
+// the origin, close to no turn, and at half turns, where the quaternion's sign
+// is free.
 TEST(ColmapExport, PosesAreStableToTheByte) {
-  Scene scene = SolvedScene();
-  const auto base = scene.poses.begin()->second;
-  std::uint32_t n = 0;
-  for (auto& [id, pose] : scene.poses) {
-    ++n;
-    pose.rotation = n % 2 == 0
-                        ? RotationFromAngleAxis(Vec3(0, -kPi * (n == 2), 1e-9))
-                        : RotationFromAngleAxis(Vec3(0.1 * n, -3, 0.7 / n));
-    pose.center = base.center * std::pow(10.0, 2.0 * n - 6);
+  Scene scene;
+  scene.intrinsics[0] = SolvedScene().intrinsics.begin()->second;
+  const auto add = [&](const Mat3& rotation, const Vec3& center) {
+    const auto id = static_cast<std::uint32_t>(scene.views.size());
+    scene.views[id] =
+        ViewOfImage(id, std::to_string(id) + ".jpg", 0, scene.intrinsics.at(0));
+    scene.poses[id] = {rotation, center};
+  };
+  for (const double angle : {0.0, kPi}) {
+    for (const Vec3& axis : {Vec3(1, 0, 0), Vec3(0, -1, 0), Vec3(0, 0, 1)}) {
+      add(RotationFromAngleAxis(angle * axis), Vec3::Zero());
+    }
+  }
+  // Rounded again and again, this one goes back and forth.
+  const Mat3 rotation =
+      RotationFromQuaternion({0.036297376308041862, -0.060793082429341894,
+                              0.99689049922444894, -0.03458372677884114});
+  add(rotation, -(rotation.transpose() * Vec3(-419.639, 1734.54, -546.296)));
+  std::mt19937_64 generator(1);
+  std::normal_distribution<double> normal;
+  while (scene.views.size() < 20000) {
+    Vec4 q(normal(generator), normal(generator), normal(generator),
+           normal(generator));
+    if (scene.views.size() % 3 == 1) q[0] *= 1e-9;
+    if (scene.views.size() % 3 == 2) q.tail<3>() *= 1e-7;
+    add(RotationFromQuaternion(q),
+        std::pow(10.0, static_cast<double>(scene.views.size() % 13) - 6) *
+            Vec3(normal(generator), normal(generator), normal(generator)));
   }
   SceneNotes notes;
   const auto once = ModelFromScene(scene, &notes);

@@ -59,7 +59,8 @@ void TransferCamera(Archive& archive, OneCamera& camera) {
     const auto count = ParameterCount(camera.model);
     if (!count) {
       archive.Fail("camera " + std::to_string(camera.id) + " has model " +
-                   std::to_string(camera.model) + ", which is not known");
+                       std::to_string(camera.model) + ", which is not known",
+                   ErrorCode::kUnsupported);
     }
     camera.params.resize(*count);
   }

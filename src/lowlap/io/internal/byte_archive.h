@@ -65,9 +65,10 @@ class ByteReader {
   ByteReader(std::string_view bytes, std::string place, std::size_t offset)
       : bytes_(bytes), place_(std::move(place)), end_(offset + bytes.size()) {}
 
-  [[noreturn]] void Fail(std::string message) const {
+  [[noreturn]] void Fail(std::string message,
+                         ErrorCode code = ErrorCode::kParse) const {
     throw Failure{
-        Error{ErrorCode::kParse,
+        Error{code,
               std::move(message),
               {},
               place_ + "byte " + std::to_string(end_ - bytes_.size())}};
