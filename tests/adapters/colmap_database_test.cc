@@ -115,18 +115,25 @@ TEST_F(ColmapDatabaseFile, StoredPosesAreReadAndOnlyThose) {
   ASSERT_TRUE(scene.has_value()) << scene.error().ToString();
   EXPECT_EQ(scene->relative_poses.size(), 1u);
   EXPECT_EQ(scene->point_tracks.size(), 2u);
-  EXPECT_THAT(notes, Contains(HasSubstr("1 pairs without a stored")));
+  EXPECT_THAT(notes,
+              Contains(::testing::AllOf(HasSubstr("1 pairs without a stored"),
+                                        HasSubstr("`lowlap solve`"))));
 }
 
 TEST_F(ColmapDatabaseFile, GuessedFocalLengthsAndUnknownImagesAreNoted) {
   ColmapDatabase file(Path(), Version::k4_0);
   Fill(&file);
-  file.AddCamera(6, 0, 800, 600, {960, 400, 300}, false);
+  for (const int camera : {6, 7, 8}) {
+    file.AddCamera(camera, 0, 800, 600, {960, 400, 300}, false);
+  }
   file.AddImage(10, "d.jpg", 6, {1, 2}, 2);
+  file.AddImage(11, "e.jpg", 7, {1, 2}, 2);
   file.AddMatches(1, 44, {0, 0});
+  // No image has camera 8.
   EXPECT_THAT(Read().notes,
               ElementsAre(HasSubstr("1 pairs name images"),
-                          HasSubstr("camera 6 is COLMAP's guess")));
+                          HasSubstr("focal lengths of 2 cameras are COLMAP's "
+                                    "guesses")));
 }
 
 TEST_F(ColmapDatabaseFile, InlierMatchesIsTheNameOfOld) {
@@ -223,6 +230,20 @@ TEST_F(ColmapDatabaseFile, ReadingLeavesTheFolderAsItIs) {
   EXPECT_EQ(
       std::distance(std::filesystem::directory_iterator(folder_.Path()), {}),
       1);
+}
+
+TEST_F(ColmapDatabaseFile, AnyPathIsNoHostNorOption) {
+  const std::string path = folder_.Path("50%25 of?mode=memory#1.db");
+  {
+    ColmapDatabase file(path, Version::k4_0);
+    Fill(&file);
+  }
+  ASSERT_EQ(path[0], '/');
+  for (const std::string slashes : {"", "/", "//"}) {
+    const auto database = ReadDatabase(slashes + path);
+    ASSERT_TRUE(database.has_value()) << database.error().ToString();
+    EXPECT_EQ(database->scene.views.size(), 3u);
+  }
 }
 
 TEST_F(ColmapDatabaseFile, WhatAWriterHasInItsLogIsRead) {
@@ -326,6 +347,34 @@ TEST_F(ColmapDatabaseFile, FundamentalMatricesAreOfColmapsPixels) {
       camera.Project(pose.Cam2FromCam1() * in_first) + Vec2(0.5, 0.5);
   const double error = second.homogeneous().dot(f * first.homogeneous());
   EXPECT_LT(std::abs(error) / f.norm(), 1e-9);
+}
+
+TEST_F(ColmapDatabaseFile, PanoramasHaveNoFundamentalMatrix) {
+  for (const Version version : {Version::k3_8, Version::k4_0}) {
+    std::filesystem::remove(Path());
+    ColmapDatabase file(Path(), version);
+    file.AddCamera(5, 17, 800, 400, {800, 400});
+    file.AddImage(1, "a.jpg", 5, {10, 20, 30, 40}, 2);
+    file.AddImage(2, "b.jpg", 5, {11, 21, 31, 41}, 2);
+    Scene scene = Read().scene;
+    RelativePose& pose = scene.relative_poses[{1, 2}];
+    pose.views = {1, 2};
+    pose.direction = Vec3(0.6, 0, -0.8);
+    pose.point_inliers = {{0, 0}, {1, 1}};
+    const auto written = WriteRelativePoses(scene, Path());
+    ASSERT_TRUE(written.has_value()) << written.error().ToString();
+    for (const char* unset : {"F", "H"}) {
+      const std::string value = file.Query(
+          std::string("SELECT quote(") + unset + ") FROM two_view_geometries");
+      EXPECT_EQ(value, version == Version::k4_0
+                           ? "NULL"
+                           : "X'" + std::string(2 * 72, '0') + "'")
+          << unset;
+    }
+    EXPECT_EQ(file.Query("SELECT hex(length(E)) FROM two_view_geometries"),
+              file.Query("SELECT hex(72)"));
+    EXPECT_EQ(Read().relative_poses.size(), 1u);
+  }
 }
 
 TEST_F(ColmapDatabaseFile, OtherKeypointsAndNamesAreRefusedAndNothingChanges) {

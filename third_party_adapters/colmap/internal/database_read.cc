@@ -27,13 +27,7 @@ class DatabaseReader {
       : sqlite_(path, Sqlite::Mode::kReadOnly) {}
 
   Database Read() {
-    for (const char* table : {"cameras", "images", "keypoints"}) {
-      if (sqlite_.HasTable(table)) continue;
-      throw Failure{Error{ErrorCode::kInvalidScene,
-                          "not a database of COLMAP: it has no such table",
-                          {},
-                          std::string("table ") + table}};
-    }
+    sqlite_.Require({"cameras", "images", "keypoints"});
     sqlite_.Run("BEGIN");  // one state, whoever writes
     ReadCameras();
     ReadImages();
@@ -90,12 +84,8 @@ class DatabaseReader {
       }
       const Intrinsic& intrinsic = scene.intrinsics.at(camera_id);
       const ViewId view_id = static_cast<std::uint32_t>(id);
-      View& view = scene.views[view_id];
-      view.filename = row.Text(1);
-      view.width_px = intrinsic.width_px;
-      view.height_px = intrinsic.height_px;
-      view.intrinsic_id = camera_id;
-      view.pose_id = view_id.value();
+      scene.views[view_id] =
+          ViewOfImage(view_id.value(), row.Text(1), camera_id, intrinsic);
       scene.features[view_id];
     }
   }
@@ -190,7 +180,9 @@ class DatabaseReader {
     }
   }
 
-  // Before 4.0 zeros, or the identity without a translation, were "not set".
+  // A pose is "not set" by NULL, in databases before 4.0 also by nothing, zeros
+  // or the identity without a translation. A rotation alone, which COLMAP finds
+  // between panoramas, is none either: it has no direction.
   void ReadPose(const Statement& row, const ViewPair& views,
                 const std::vector<FeatureMatch>& inliers) {
     if (row.IsNull(5) || row.IsNull(6)) return;
@@ -225,11 +217,14 @@ class DatabaseReader {
       notes.push_back(std::to_string(num_watermarks_) +
                       " pairs that COLMAP took for watermarks were left out");
     }
-    for (const std::uint32_t id : guessed_) {
-      const auto found = database_.scene.intrinsics.find(id);
-      if (found == database_.scene.intrinsics.end()) continue;
-      notes.push_back("the focal length of camera " + std::to_string(id) +
-                      " is COLMAP's guess (prior_focal_length is 0)");
+    const auto num_guessed = std::count_if(
+        guessed_.begin(), guessed_.end(), [&](std::uint32_t camera) {
+          return database_.scene.intrinsics.count(camera) > 0;
+        });
+    if (num_guessed > 0) {
+      notes.push_back(
+          "the focal lengths of " + std::to_string(num_guessed) +
+          " cameras are COLMAP's guesses (prior_focal_length is 0)");
     }
   }
 
@@ -279,7 +274,7 @@ Result<Scene> ReadDatabaseScene(const std::string& path, SceneNotes* notes) {
   if (without > 0) {
     notes->push_back("the matches of " + std::to_string(without) +
                      " pairs without a stored relative pose were left out; "
-                     "solve estimates these poses");
+                     "`lowlap solve` estimates these poses");
   }
   return CaughtScene([&] { return std::move(scene); }, path);
 }

@@ -38,19 +38,25 @@ Mat3 CalibrationMatrix(const Intrinsic& intrinsic) {
   return matrix;
 }
 
+// F = K2^-T E K1^-1; empty with a panorama, which has no calibration matrix.
+std::vector<double> FundamentalMatrix(const Mat3& essential,
+                                      const Intrinsic& first,
+                                      const Intrinsic& second) {
+  if (first.model == CameraModel::kSpherical ||
+      second.model == CameraModel::kSpherical) {
+    return {};
+  }
+  return RowMajor(CalibrationMatrix(second).transpose().inverse() * essential *
+                  CalibrationMatrix(first).inverse());
+}
+
 class DatabaseWriter {
  public:
   DatabaseWriter(const Scene& scene, const std::string& path)
       : scene_(scene), sqlite_(path, Sqlite::Mode::kReadWrite) {}
 
   SceneNotes Write() {
-    for (const char* table : {"images", "keypoints", "two_view_geometries"}) {
-      if (sqlite_.HasTable(table)) continue;
-      throw Failure{Error{ErrorCode::kInvalidScene,
-                          "not a database of COLMAP: it has no such table",
-                          {},
-                          std::string("table ") + table}};
-    }
+    sqlite_.Require({"images", "keypoints", "two_view_geometries"});
     sqlite_.Run("BEGIN IMMEDIATE");
     FindImages();
     CheckKeypoints();
@@ -95,16 +101,18 @@ class DatabaseWriter {
         keypoints[view->second] = ReadKeypoints(row, 1);
       }
     }
+    std::set<ViewId> posed;
     for (const auto& [views, pose] : scene_.relative_poses) {
-      for (const ViewId view : {views.first, views.second}) {
-        if (HasPoints(view, keypoints[view])) continue;
-        throw Failure{Error{
-            ErrorCode::kInvalidArgument,
-            "other keypoints than the points of view " +
-                std::to_string(view.value()) + " of the scene",
-            {},
-            "table keypoints, image_id " + std::to_string(image_of_.at(view))}};
-      }
+      posed.insert({views.first, views.second});
+    }
+    for (const ViewId view : posed) {
+      if (HasPoints(view, keypoints[view])) continue;
+      throw Failure{Error{
+          ErrorCode::kInvalidArgument,
+          "other keypoints than the points of view " +
+              std::to_string(view.value()) + " of the scene",
+          {},
+          "table keypoints, image_id " + std::to_string(image_of_.at(view))}};
     }
   }
 
@@ -175,12 +183,20 @@ class DatabaseWriter {
     }
     const RigidTransform motion = UnitTransform(pose, first.view, second.view);
     const Mat3 e = CrossMatrix(motion.translation) * motion.rotation;
-    const Mat3 k1 = CalibrationMatrix(*scene_.FindIntrinsic(first.view));
-    const Mat3 k2 = CalibrationMatrix(*scene_.FindIntrinsic(second.view));
     const std::vector<double> essential = RowMajor(e);
     const std::vector<double> fundamental =
-        RowMajor(k2.transpose().inverse() * e * k1.inverse());
+        FundamentalMatrix(e, *scene_.FindIntrinsic(first.view),
+                          *scene_.FindIntrinsic(second.view));
     const std::vector<double> zeros(9, 0.0);
+    const auto bind = [&](int parameter, const std::vector<double>& matrix) {
+      if (!matrix.empty()) {
+        insert->BindBlob(parameter, Bytes(matrix));
+      } else if (null_is_unset) {
+        insert->BindNull(parameter);
+      } else {
+        insert->BindBlob(parameter, Bytes(zeros));
+      }
+    };
     const Vec4 q = QuaternionFromRotation(motion.rotation);
     const std::vector<double> qvec(q.begin(), q.end());
     const std::vector<double> tvec(motion.translation.begin(),
@@ -189,13 +205,9 @@ class DatabaseWriter {
     insert->Bind(1, static_cast<std::int64_t>(pose.point_inliers.size()));
     insert->BindBlob(2, Bytes(matches));
     insert->Bind(3, kCalibrated);
-    insert->BindBlob(4, Bytes(fundamental));
-    insert->BindBlob(5, Bytes(essential));
-    if (null_is_unset) {
-      insert->BindNull(6);
-    } else {
-      insert->BindBlob(6, Bytes(zeros));
-    }
+    bind(4, fundamental);
+    bind(5, essential);
+    bind(6, {});
     insert->BindBlob(7, Bytes(qvec));
     insert->BindBlob(8, Bytes(tvec));
     insert->Execute();

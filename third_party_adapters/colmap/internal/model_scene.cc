@@ -96,13 +96,10 @@ void AddImages(const Model& model, Scene* scene, SceneNotes* notes) {
       scene->intrinsics[image.camera_id] = std::move(*intrinsic);
     }
     const Intrinsic& intrinsic = scene->intrinsics.at(image.camera_id);
-    View view;
-    view.filename = image.name;
-    view.width_px = intrinsic.width_px;
-    view.height_px = intrinsic.height_px;
-    view.intrinsic_id = image.camera_id;
-    view.pose_id = image.id;
-    if (!scene->views.emplace(image.id, view).second) {
+    if (!scene->views
+             .emplace(image.id, ViewOfImage(image.id, image.name,
+                                            image.camera_id, intrinsic))
+             .second) {
       FailInvalid(Numbered("image", image.id) + " is listed twice");
     }
     std::optional<RigidTransform> pose;
@@ -207,6 +204,17 @@ Mat3 RotationFromQuaternion(const Vec4& q) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3])
       .normalized()
       .toRotationMatrix();
+}
+
+View ViewOfImage(std::uint32_t image_id, std::string name,
+                 std::uint32_t camera_id, const Intrinsic& intrinsic) {
+  View view;
+  view.filename = std::move(name);
+  view.width_px = intrinsic.width_px;
+  view.height_px = intrinsic.height_px;
+  view.intrinsic_id = camera_id;
+  view.pose_id = image_id;
+  return view;
 }
 
 std::string ImageName(const View& view) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <string>
+
 #include "lowlap/core/result.h"
 #include "lowlap/io/scene_format.h"
 #include "lowlap/scene/scene.h"
@@ -36,7 +39,9 @@ void AddTrivialRigs(Model* model);
 Vec4 QuaternionFromRotation(const Mat3& rotation);
 Mat3 RotationFromQuaternion(const Vec4& quaternion);
 
-/// The name that COLMAP knows the image of a view by.
+/// The view of an image, and the name that COLMAP knows the image of a view by.
+View ViewOfImage(std::uint32_t image_id, std::string name,
+                 std::uint32_t camera_id, const Intrinsic& intrinsic);
 std::string ImageName(const View& view);
 
 }  // namespace lowlap::colmap

@@ -12,9 +12,11 @@
 namespace lowlap::colmap {
 namespace {
 
-// A path as the URI that SQLite wants for its options.
+// A path as the URI that SQLite wants for its options. Behind two slashes it
+// looks for a host, which is none here, whatever the path begins with.
 std::string FileUri(const std::string& path) {
-  std::string uri = "file:";
+  std::string uri =
+      std::filesystem::path(path).is_absolute() ? "file://" : "file:";
   for (const char c : path) {
     if (c == '%' || c == '?' || c == '#') {
       uri += Format("%%%02X", static_cast<unsigned>(c));
@@ -87,6 +89,16 @@ void Sqlite::Fail(const std::string& place) const {
 }
 
 bool Sqlite::HasTable(const std::string& table) { return HasColumn(table, {}); }
+
+void Sqlite::Require(std::initializer_list<const char*> tables) {
+  for (const char* table : tables) {
+    if (HasTable(table)) continue;
+    throw Failure{Error{ErrorCode::kInvalidScene,
+                        "not a database of COLMAP: it has no such table",
+                        {},
+                        std::string("table ") + table}};
+  }
+}
 
 bool Sqlite::HasColumn(const std::string& table, const std::string& column) {
   Statement columns(

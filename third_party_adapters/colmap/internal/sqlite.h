@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <initializer_list>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -24,6 +25,8 @@ class Sqlite {
   Sqlite(const std::string& path, Mode mode);
 
   bool HasTable(const std::string& table);
+  /// kInvalidScene, with the first of these tables that is missing.
+  void Require(std::initializer_list<const char*> tables);
   bool HasColumn(const std::string& table, const std::string& column);
   void Run(const std::string& sql);
 
