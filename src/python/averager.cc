@@ -131,8 +131,13 @@ class PythonAverager final : public TranslationAverager {
 
 // One of lowlap's own, for Python.
 struct BuiltInAverager {
+  std::string request;
   std::shared_ptr<const TranslationAverager> averager;
 };
+
+BuiltInAverager MakeBuiltIn(const std::string& request) {
+  return {request, ValueOf(AveragerRegistry::WithBuiltIns().Make(request))};
+}
 
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
@@ -163,7 +168,7 @@ std::shared_ptr<TranslationProblem> ProblemOf(const py::object& scene_or_path,
   bool with_tracks = false;
   keywords.Take("with_tracks", &with_tracks);
   keywords.Finish();
-  const auto scene = MeasuredSceneOf(scene_or_path);
+  const auto scene = MeasuredSceneOf(scene_or_path, {}, call.get()).scene;
   return call->Run([&]() -> Result<std::shared_ptr<TranslationProblem>> {
     const auto rotations =
         AverageSceneRotations(*scene, PoseOptions(), call->context());
@@ -207,14 +212,18 @@ auto ArrayOf(const std::vector<Element> TranslationProblem::*elements,
 
 }  // namespace
 
+std::optional<std::string> RequestOf(py::handle strategy) {
+  if (py::isinstance<py::str>(strategy)) return strategy.cast<std::string>();
+  if (py::isinstance<BuiltInAverager>(strategy)) {
+    return strategy.cast<const BuiltInAverager&>().request;
+  }
+  return std::nullopt;
+}
+
 std::shared_ptr<const TranslationAverager> AveragerOf(
     const py::object& strategy, Call* call) {
-  if (py::isinstance<py::str>(strategy)) {
-    return ValueOf(
-        AveragerRegistry::WithBuiltIns().Make(strategy.cast<std::string>()));
-  }
-  if (py::isinstance<BuiltInAverager>(strategy)) {
-    return strategy.cast<BuiltInAverager>().averager;
+  if (const auto request = RequestOf(strategy)) {
+    return MakeBuiltIn(*request).averager;
   }
   if (!py::isinstance(
           strategy,
@@ -300,12 +309,7 @@ void BindAveraging(py::module_& module) {
            "views. Options: threads, seed, progress, log.");
 
   module.def(
-      "averager",
-      [](const std::string& request) {
-        return BuiltInAverager{
-            ValueOf(AveragerRegistry::WithBuiltIns().Make(request))};
-      },
-      py::arg("strategy"),
+      "averager", &MakeBuiltIn, py::arg("strategy"),
       "A strategy of lowlap by NAME or NAME:key=value,...; strategies() lists\n"
       "them.");
   module.def(

@@ -18,6 +18,7 @@ void BindRatios(py::module_& module);
 void BindAveraging(py::module_& module);
 void BindEvaluation(py::module_& module);
 void BindSolve(py::module_& module);
+void BindMerge(py::module_& module);
 void BindDiagnosis(py::module_& module);
 void BindCompare(py::module_& module);
 void BindHost(py::module_& module);

@@ -63,14 +63,17 @@ Call::Call(py::object progress, py::object log, int threads, std::uint64_t seed)
                              std::size_t total) {
     return OnProgress(stage, done, total);
   };
-  if (!log_.is_none()) {
-    context_.log = [this](LogLevel level, const std::string& message) {
-      CallBack([&] {
+  context_.log = [this](LogLevel level, const std::string& message) {
+    if (log_.is_none() && level != LogLevel::kWarning) return;
+    CallBack([&] {
+      if (!log_.is_none()) {
         log_(LevelName(level), message);
-        return true;
-      });
-    };
-  }
+      } else if (PyErr_WarnEx(PyExc_UserWarning, message.c_str(), 1) != 0) {
+        throw py::error_already_set();
+      }
+      return true;
+    });
+  };
 }
 
 bool Call::CallBack(const std::function<bool()>& body) {

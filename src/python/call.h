@@ -34,7 +34,8 @@ T ValueOf(Result<T> result) {
 /// thread, beside everything that refers to it.
 class Call {
  public:
-  /// `progress(stage, done, total)` and `log(level, message)`, or None.
+  /// `progress(stage, done, total)` and `log(level, message)`, or None:
+  /// warnings then go to Python's module of this name.
   Call(py::object progress, py::object log, int threads, std::uint64_t seed);
   Call(const Call&) = delete;
   Call& operator=(const Call&) = delete;

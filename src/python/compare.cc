@@ -28,8 +28,8 @@ void AddStrategies(const py::object& strategies, Call* call,
     return;
   }
   for (const py::handle each : strategies) {
-    if (py::isinstance<py::str>(each)) {
-      options->strategies.push_back(each.cast<std::string>());
+    if (const auto request = RequestOf(each)) {
+      options->strategies.push_back(*request);
       continue;
     }
     AveragerRegistry::Strategy strategy;
@@ -57,10 +57,11 @@ SceneComparison Compare(const py::object& scene_or_path,
   keywords.Take("reference", &options.reference);
   std::filesystem::path output;
   keywords.Take("output", &output);
+  const SceneInput input = TakeSceneInput(&keywords);
   keywords.Finish();
   AddStrategies(strategies, call.get(), &options);
   RaiseIfError(options.Validate());
-  const auto scene = MeasuredSceneOf(scene_or_path);
+  const auto scene = MeasuredSceneOf(scene_or_path, input, call.get()).scene;
   options.truth = TruthOf(truth, *scene);
   Comparison comparison = call->Run(
       [&] { return CompareStrategies(*scene, options, call->context()); });
@@ -140,7 +141,8 @@ void BindCompare(py::module_& module) {
       "None: all of lowlap's. Options: reference, output; features,\n"
       "coplanar_points, criterion, nfa, threshold; adjust_features, "
       "no_adjust,\n"
-      "principal_point_stddev; threads, seed, progress, log.");
+      "principal_point_stddev; matchdir, match_file, images, exclude: as of\n"
+      "measure(); threads, seed, progress, log.");
 }
 
 }  // namespace lowlap::python

@@ -25,9 +25,10 @@ SceneDiagnosis DiagnoseScene(const py::object& scene_or_path,
   keywords.Take("min_inliers", &options.min_inliers);
   keywords.Take("max_log10_nfa", &options.max_log10_nfa);
   keywords.Take("max_stddev", &options.max_stddev);
+  const SceneInput input = TakeSceneInput(&keywords);
   keywords.Finish();
   RaiseIfError(options.Validate());
-  auto scene = MeasuredSceneOf(scene_or_path);
+  auto scene = MeasuredSceneOf(scene_or_path, input, call.get()).scene;
   if (scene->scale_ratios.empty()) {
     auto with_ratios = std::make_shared<Scene>(*scene);
     with_ratios->scale_ratios = call->Run(
@@ -114,8 +115,8 @@ void BindDiagnosis(py::module_& module) {
       "Says before anything is solved which views share one scale and\n"
       "through what, and which float or hang on weak ratios.\n\n"
       "Options: features, coplanar_points, criterion, nfa, threshold;\n"
-      "min_inliers, max_log10_nfa, max_stddev; threads, seed, progress,\n"
-      "log.");
+      "min_inliers, max_log10_nfa, max_stddev; matchdir, match_file, images,\n"
+      "exclude: as of measure(); threads, seed, progress, log.");
 }
 
 }  // namespace lowlap::python

@@ -52,7 +52,8 @@ void BindEvaluation(py::module_& module) {
   module.def(
       "evaluate",
       [](const py::object& scene_or_path, const py::object& truth) {
-        const auto scene = SceneOf(scene_or_path);
+        Call call(py::none(), py::none(), 0, 0);
+        const auto scene = SceneOf(scene_or_path, &call);
         const auto true_poses = TruthOf(truth, *scene);
         if (!true_poses) throw py::type_error("evaluate(): truth is None");
         return EvaluatePoses(*scene, *true_poses);

@@ -18,15 +18,6 @@ namespace {
   Raise({ErrorCode::kInvalidArgument, message, {}, {}});
 }
 
-std::string PathOf(const py::object& object, const char* what) {
-  try {
-    return object.cast<std::filesystem::path>().string();
-  } catch (const py::cast_error&) {
-    throw py::type_error(std::string(what) + ", not " +
-                         Py_TYPE(object.ptr())->tp_name);
-  }
-}
-
 }  // namespace
 
 Keywords::Keywords(std::string function, const py::kwargs& given)
@@ -204,22 +195,71 @@ std::optional<GroundTruth> TruthOf(const py::object& truth,
       PathOf(truth, "true cameras must be a path, a scene or a dict"), scene));
 }
 
-std::shared_ptr<const Scene> SceneOf(const py::object& scene) {
+std::string PathOf(const py::object& object, const char* what) {
+  try {
+    return object.cast<std::filesystem::path>().string();
+  } catch (const py::cast_error&) {
+    throw py::type_error(std::string(what) + ", not " +
+                         Py_TYPE(object.ptr())->tp_name);
+  }
+}
+
+std::shared_ptr<const Scene> SceneOf(const py::object& scene, Call* call) {
   if (py::isinstance<Scene>(scene)) {
     return scene.cast<std::shared_ptr<Scene>>();
   }
-  return std::make_shared<Scene>(
-      ValueOf(ReadScene(PathOf(scene, "scene must be a Scene or a path"))));
+  const std::string path = PathOf(scene, "scene must be a Scene or a path");
+  return std::make_shared<Scene>(call->Run([&] {
+    SceneNotes notes;
+    auto read = ReadScene(path, &notes);
+    for (const std::string& note : notes) {
+      call->context().Log(LogLevel::kWarning, note);
+    }
+    return read;
+  }));
 }
 
-std::shared_ptr<const Scene> MeasuredSceneOf(const py::object& scene) {
-  auto measured = SceneOf(scene);
-  if (!measured->relative_poses.empty()) return measured;
-  const bool is_scene = py::isinstance<Scene>(scene);
-  Raise({ErrorCode::kInvalidScene,
-         "the scene holds no relative poses",
-         is_scene ? std::string() : PathOf(scene, "scene"),
-         {}});
+SceneInput TakeSceneInput(Keywords* keywords) {
+  SceneInput input;
+  const auto take_path = [&](const char* name, std::string* path) {
+    if (const py::object object = keywords->Take(name)) {
+      *path = PathOf(object, (std::string(name) + " must be a path").c_str());
+    }
+  };
+  take_path("matchdir", &input.matches_dir);
+  take_path("match_file", &input.match_file);
+  take_path("images", &input.images);
+  keywords->TakeWords("exclude", &input.exclude);
+  if (!input.match_file.empty() && input.matches_dir.empty()) {
+    RaiseArgument("match_file goes with matchdir");
+  }
+  return input;
+}
+
+MeasuredScene MeasuredSceneOf(const py::object& scene, SceneInput input,
+                              Call* call, StageLog* stages,
+                              const ViewCheck& check) {
+  if (!py::isinstance<Scene>(scene)) {
+    input.scene = PathOf(scene, "scene must be a Scene or a path");
+    LoadedScene loaded = call->Run([&] {
+      return LoadMeasuredScene(input, call->context(), stages, check);
+    });
+    return {std::make_shared<Scene>(std::move(loaded.scene)),
+            std::move(loaded.pairs)};
+  }
+  if (!input.matches_dir.empty() || !input.images.empty() ||
+      !input.exclude.empty()) {
+    RaiseArgument("matchdir, images and exclude go with a path, not a scene");
+  }
+  const auto measured = scene.cast<std::shared_ptr<Scene>>();
+  if (measured->relative_poses.empty()) {
+    Raise({ErrorCode::kInvalidScene,
+           "the scene holds no relative poses",
+           {},
+           {}});
+  }
+  if (check) RaiseIfError(check(*measured));
+  return {measured, {}};
 }
 
 }  // namespace lowlap::python

@@ -14,6 +14,7 @@
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/scale/scale_options.h"
 #include "python/call.h"
+#include "third_party_adapters/internal/scene_input.h"
 
 namespace lowlap::python {
 
@@ -102,9 +103,24 @@ IntrinsicSource IntrinsicsOf(const py::object& intrinsics,
 /// None, a path, a scene, or a dict of Pose by view id.
 std::optional<GroundTruth> TruthOf(const py::object& truth, const Scene& scene);
 
-/// A scene, or the path of one.
-std::shared_ptr<const Scene> SceneOf(const py::object& scene);
-/// One that has relative poses.
-std::shared_ptr<const Scene> MeasuredSceneOf(const py::object& scene);
+/// The path of an object; TypeError, with `what`, if it is none.
+std::string PathOf(const py::object& object, const char* what);
+
+/// A scene, or the path of one. What its reader leaves out is a warning.
+std::shared_ptr<const Scene> SceneOf(const py::object& scene, Call* call);
+
+/// matchdir, match_file, images, exclude.
+SceneInput TakeSceneInput(Keywords* keywords);
+
+struct MeasuredScene {
+  std::shared_ptr<const Scene> scene;
+  std::vector<PairReport> pairs;  // if the relative poses were estimated
+};
+
+/// A scene with relative poses, or the path of what LoadMeasuredScene reads;
+/// `input` goes with a path. `stages` may be null.
+MeasuredScene MeasuredSceneOf(const py::object& scene, SceneInput input,
+                              Call* call, StageLog* stages = nullptr,
+                              const ViewCheck& check = nullptr);
 
 }  // namespace lowlap::python

@@ -9,6 +9,7 @@ PYBIND11_MODULE(_lowlap, module) {
   BindEvaluation(module);
   BindAveraging(module);
   BindSolve(module);
+  BindMerge(module);
   BindDiagnosis(module);
   BindCompare(module);
   BindHost(module);

@@ -15,8 +15,9 @@ std::vector<ScaleRatio> Scales(const py::object& scene_or_path,
   Keywords keywords("scales", kwargs);
   const auto call = TakeCall(&keywords);
   const ScaleOptions options = TakeScaleOptions(&keywords);
+  const SceneInput input = TakeSceneInput(&keywords);
   keywords.Finish();
-  const auto scene = MeasuredSceneOf(scene_or_path);
+  const auto scene = MeasuredSceneOf(scene_or_path, input, call.get()).scene;
   return call->Run(
       [&] { return EstimateScaleRatios(*scene, options, call->context()); });
 }
@@ -97,8 +98,8 @@ void BindRatios(py::module_& module) {
   module.def(
       "scales", &Scales, py::arg("scene"),
       "The relative scale of every two relative poses that share a view.\n\n"
-      "Options: features, coplanar_points, criterion, nfa, threshold; "
-      "threads,\n"
+      "Options: features, coplanar_points, criterion, nfa, threshold;\n"
+      "matchdir, match_file, images, exclude: as of measure(); threads,\n"
       "seed, progress, log.");
   module.def(
       "triplets",

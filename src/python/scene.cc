@@ -107,19 +107,23 @@ auto MapMember(const Map Scene::*member) {
       py::keep_alive<0, 1>());
 }
 
-Scene ReadWithout(const std::filesystem::path& path,
-                  const std::vector<std::string>& exclude, py::object log) {
+std::shared_ptr<const Scene> ReadWithout(
+    const py::object& path, const std::vector<std::string>& exclude,
+    py::object log) {
   Call call(py::none(), std::move(log), 0, 0);
-  Scene scene = call.Run([&] {
-    SceneNotes notes;
-    auto read = ReadScene(path.string(), &notes);
-    for (const std::string& note : notes) {
-      call.context().Log(LogLevel::kWarning, note);
-    }
-    return read;
-  });
+  const auto scene = SceneOf(path, &call);
   if (exclude.empty()) return scene;
-  return WithoutViews(scene, ValueOf(FindViews(scene, exclude)));
+  return std::make_shared<Scene>(
+      WithoutViews(*scene, ValueOf(FindViews(*scene, exclude))));
+}
+
+std::shared_ptr<const Scene> Measure(const py::object& path,
+                                     const py::kwargs& kwargs) {
+  Keywords keywords("measure", kwargs);
+  const auto call = TakeCall(&keywords);
+  const SceneInput input = TakeSceneInput(&keywords);
+  keywords.Finish();
+  return MeasuredSceneOf(path, input, call.get()).scene;
 }
 
 std::string DescribeScene(const Scene& scene) {
@@ -224,7 +228,15 @@ void BindScene(py::module_& module) {
              py::arg("log") = py::none(),
              "Reads a scene file or folder of any format, without the views\n"
              "named in `exclude`. What the reader leaves out goes to\n"
-             "log(level, message).");
+             "log(level, message), or is a warning.");
+  module.def(
+      "measure", &Measure, py::arg("path"),
+      "A scene with relative poses: those of a scene file, or estimated from\n"
+      "the matches of a COLMAP database, or of an OpenMVG listing with\n"
+      "`matchdir`, the folder of its .feat and matches.* files.\n\n"
+      "Options: matchdir; match_file, one in that folder; images, the\n"
+      "photographs of a database or a listing, for lines; exclude, views to\n"
+      "leave out; threads, seed, progress, log.");
 }
 
 }  // namespace lowlap::python

@@ -10,97 +10,48 @@
 #include "lowlap/pipeline/internal/measure/measure_and_refine.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
 #include "lowlap/pipeline/solve_scene.h"
-#include "python/keywords.h"
+#include "python/solution.h"
 
 namespace lowlap::python {
 namespace {
-
-struct Solution {
-  std::shared_ptr<Scene> scene;
-  RunSummary summary;
-
-  const PoseSummary& poses() const { return summary.solve->poses; }
-};
-
-// Solves solution->scene, evaluates it and writes what is asked for.
-void SolveInPlace(const SolveArguments& arguments, Call* call, StageLog* stages,
-                  Solution* solution) {
-  Scene* scene = solution->scene.get();
-  RunSummary& summary = solution->summary;
-  const auto truth = TruthOf(arguments.truth, *scene);
-  SolveOptions options = arguments.options;
-  RefineAllIntrinsics(arguments.refinement, scene, &options.adjustment);
-  summary.solve = call->Run(
-      [&] { return SolveScene(scene, options, call->context(), stages); });
-  if (truth) {
-    if (summary.solve->adjustment) {
-      summary.evaluation_before_adjustment = EvaluatePoses(
-          scene->views, summary.solve->poses_before_adjustment, *truth);
-    }
-    summary.evaluation = EvaluatePoses(*scene, *truth);
-  }
-  summary.stages = stages->stages();
-  if (arguments.output.empty()) return;
-  call->Run([&] { return WriteOutputs(*scene, summary, arguments.output); });
-}
-
-void CheckOutput(const std::string& output) {
-  // A folder that cannot be written is found before the work.
-  if (!output.empty()) RaiseIfError(CheckOutputFolder(output));
-}
 
 Solution Solve(const py::object& scene_or_path, const py::kwargs& kwargs) {
   Keywords keywords("solve", kwargs);
   const auto call = TakeCall(&keywords);
   const SolveArguments arguments = TakeSolveArguments(&keywords, call.get());
+  const SceneInput input = TakeSceneInput(&keywords);
   keywords.Finish();
   CheckOutput(arguments.output);
-  Solution solution;
-  solution.scene = std::make_shared<Scene>(*MeasuredSceneOf(scene_or_path));
-  solution.summary.command = "solve";
-  RestoreGivenIntrinsics(solution.scene.get());
   StageLog stages;
+  MeasuredScene measured =
+      MeasuredSceneOf(scene_or_path, input, call.get(), &stages);
+  Solution solution;
+  solution.scene = std::make_shared<Scene>(*measured.scene);
+  solution.summary.command = "solve";
+  solution.summary.pairs = std::move(measured.pairs);
+  RestoreGivenIntrinsics(solution.scene.get());
   SolveInPlace(arguments, call.get(), &stages, &solution);
   return solution;
 }
 
-Solution Run(const std::filesystem::path& images, const py::object& intrinsics,
+Solution Run(const py::object& images, const py::object& intrinsics,
              const py::kwargs& kwargs) {
   Keywords keywords("run", kwargs);
   const auto call = TakeCall(&keywords);
   const SolveArguments arguments = TakeSolveArguments(&keywords, call.get());
-  const MeasurementOptions measurement =
-      TakeMeasurementOptions(&keywords, arguments.scale);
+  Photographs photographs;
+  photographs.measurement = TakeMeasurementOptions(&keywords, arguments.scale);
   std::optional<double> focal_px;
   keywords.Take("focal", &focal_px);
-  std::vector<std::string> exclude;
-  keywords.TakeWords("exclude", &exclude);
+  keywords.TakeWords("exclude", &photographs.exclude);
   keywords.Finish();
   CheckOutput(arguments.output);
-  const IntrinsicSource source = IntrinsicsOf(intrinsics, focal_px);
-
-  const RunContext& context = call->context();
-  const std::string folder = images.string();
-  std::vector<std::string> notes;
-  Solution solution;
-  solution.scene = std::make_shared<Scene>(call->Run(
-      [&] { return SceneFromImages(folder, source, exclude, &notes); }));
-  for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
-  // True cameras that do not fit are found before the work, too.
-  TruthOf(arguments.truth, *solution.scene);
+  photographs.folder = PathOf(images, "images must be a path");
+  photographs.intrinsics = IntrinsicsOf(intrinsics, focal_px);
   StageLog stages;
-  ImageReport report = call->Run([&] {
-    auto measured =
-        MeasureAndRefine(solution.scene.get(), measurement, arguments.options,
-                         arguments.refinement, context, &stages);
-    if (!measured && measured.error().file.empty()) {
-      measured.error().file = folder;
-    }
-    return measured;
-  });
+  Solution solution =
+      MeasurePhotographs(photographs, arguments, call.get(), &stages);
   solution.summary.command = "run";
-  solution.summary.pairs = std::move(report.pairs);
-  solution.summary.unrelated = std::move(report.unrelated);
   SolveInPlace(arguments, call.get(), &stages, &solution);
   return solution;
 }
@@ -191,9 +142,11 @@ constexpr char kSolveDoc[] =
     "  principal_point_stddev: the bundle adjustment;\n"
     "  gt: true cameras to evaluate against, never used for solving;\n"
     "  output: a folder for what the command writes;\n"
+    "  matchdir, match_file, images, exclude: what goes with a path, as of\n"
+    "  measure();\n"
     "  threads, seed;\n"
     "  progress(stage, done, total): return False to stop;\n"
-    "  log(level, message).";
+    "  log(level, message): without it, warnings are Python's.";
 
 constexpr char kRunDoc[] =
     "From a folder of photographs to a calibrated scene.\n\n"
@@ -205,13 +158,66 @@ constexpr char kRunDoc[] =
 
 }  // namespace
 
+void CheckOutput(const std::string& output) {
+  if (!output.empty()) RaiseIfError(CheckOutputFolder(output));
+}
+
+Solution MeasurePhotographs(const Photographs& photographs,
+                            const SolveArguments& arguments, Call* call,
+                            StageLog* stages, const ViewCheck& check) {
+  const RunContext& context = call->context();
+  std::vector<std::string> notes;
+  Solution solution;
+  solution.scene = std::make_shared<Scene>(call->Run([&] {
+    return SceneFromImages(photographs.folder, photographs.intrinsics,
+                           photographs.exclude, &notes);
+  }));
+  for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
+  TruthOf(arguments.truth, *solution.scene);
+  if (check) RaiseIfError(check(*solution.scene));
+  ImageReport report = call->Run([&] {
+    auto measured = MeasureAndRefine(solution.scene.get(),
+                                     photographs.measurement, arguments.options,
+                                     arguments.refinement, context, stages);
+    if (!measured && measured.error().file.empty()) {
+      measured.error().file = photographs.folder;
+    }
+    return measured;
+  });
+  solution.summary.pairs = std::move(report.pairs);
+  solution.summary.unrelated = std::move(report.unrelated);
+  return solution;
+}
+
+void SolveInPlace(const SolveArguments& arguments, Call* call, StageLog* stages,
+                  Solution* solution, const Solver& solver) {
+  Scene* scene = solution->scene.get();
+  RunSummary& summary = solution->summary;
+  const auto truth = TruthOf(arguments.truth, *scene);
+  SolveOptions options = arguments.options;
+  RefineAllIntrinsics(arguments.refinement, scene, &options.adjustment);
+  summary.solve = call->Run(
+      [&] { return solver(scene, options, call->context(), stages); });
+  if (truth) {
+    if (summary.solve->adjustment) {
+      summary.evaluation_before_adjustment = EvaluatePoses(
+          scene->views, summary.solve->poses_before_adjustment, *truth);
+    }
+    summary.evaluation = EvaluatePoses(*scene, *truth);
+  }
+  summary.stages = stages->stages();
+  if (arguments.output.empty()) return;
+  call->Run([&] { return WriteOutputs(*scene, summary, arguments.output); });
+}
+
 void BindSolve(py::module_& module) {
   BindSummaries(module);
   // The summary of the averaging, from a solution.
   const auto poses = [](auto member) {
     return [member](const Solution& s) { return s.poses().*member; };
   };
-  py::class_<Solution>(module, "Solution", "What solve() and run() return.")
+  py::class_<Solution>(module, "Solution",
+                       "What solve(), run() and merge() return.")
       .def_readonly("scene", &Solution::scene)
       .def_property_readonly("num_views", poses(&PoseSummary::num_views))
       .def_property_readonly("num_placed", poses(&PoseSummary::num_placed))
@@ -230,6 +236,9 @@ void BindSolve(py::module_& module) {
           "warnings",
           [](const Solution& s) { return PoseWarnings(s.poses(), *s.scene); },
           "What to know before relying on the poses, a sentence each.")
+      .def_property_readonly(
+          "notes", [](const Solution& s) { return s.summary.notes; },
+          "Of merge(): what the measurements say about the models.")
       .def_property_readonly(
           "calibration_notes", &CalibrationNotes,
           "What became of the intrinsics, and which the images prefer.")

@@ -27,6 +27,15 @@ class AveragerTest(unittest.TestCase):
         rows = list(csv.DictReader(comparison.to_csv().splitlines()))
         self.assertEqual([row["strategy"] for row in rows], names)
 
+    def test_built_in_ones_keep_their_request(self):
+        requests = ["graph", "lud:loss_width=1e-4", "lud:loss_width=1e-3"]
+        strategies = [requests[0], *map(lowlap.averager, requests[1:])]
+        comparison = lowlap.compare(self.scene, self.truth, strategies)
+        self.assertEqual([result.strategy for result in comparison.results], requests)
+        as_texts = lowlap.compare(self.scene, self.truth, requests)
+        self.assertEqual(comparison.results[2].before.errors.position.mean,
+                         as_texts.results[2].before.errors.position.mean)
+
     def test_solves_a_scene(self):
         solution = lowlap.solve(self.scene, strategy=LeastSquares(), gt=self.truth)
         self.assertEqual(solution.num_placed, 8)

@@ -3,6 +3,7 @@ import gc
 import pickle
 import tempfile
 import unittest
+import warnings
 from pathlib import Path
 
 import lowlap
@@ -120,6 +121,26 @@ class SceneTest(unittest.TestCase):
         scene = lowlap.read(CASTLE / "scene.lowlap", log=self.fail)
         self.assertEqual(len(scene.views), 19)
         self.assertIsNone(scene.find_pose(0))
+
+
+    def test_notes_of_a_path_go_wherever_it_is_taken(self):
+        with tempfile.TemporaryDirectory() as folder:
+            notes = self.truth.write(folder, "colmap")
+            self.assertEqual(len(notes), 1)
+            points = Path(folder) / "points3D.txt"
+            points.write_text(points.read_text().replace(" 255 255 255 ", " 9 9 9 "))
+            messages = []
+            scene = lowlap.read(folder, log=lambda *message: messages.append(message))
+            self.assertEqual(len(scene.poses), 6)
+            self.assertEqual([level for level, _ in messages], ["warning"])
+            self.assertIn("colours", messages[0][1])
+            for take in (lowlap.read, lambda path: lowlap.evaluate(path, self.truth)):
+                with self.assertWarnsRegex(UserWarning, "colours"):
+                    take(folder)
+                with warnings.catch_warnings():
+                    warnings.simplefilter("error")
+                    with self.assertRaisesRegex(UserWarning, "colours"):
+                        take(folder)
 
 
 class ErrorTest(unittest.TestCase):

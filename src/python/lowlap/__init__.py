@@ -4,7 +4,8 @@
     for id, view in solution.scene.views.items():
         print(view.filename, solution.scene.find_pose(id).center)
 
-run() starts from photographs, solve() from a scene that read() has read;
+run() starts from photographs, solve() from a scene that read() has read, or
+from the matches of COLMAP or OpenMVG; merge() makes one model of broken ones;
 scales() and diagnose() look at what is measured, compare() at the averaging
 strategies, evaluate() at true cameras. TranslationScaleEstimator is the
 translation step alone, for a program that has a view graph in memory.

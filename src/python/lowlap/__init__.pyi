@@ -129,6 +129,10 @@ SceneOrPath = Union[Scene, Path]
 Truth = Union[Scene, Path, Dict[int, Pose]]
 
 def read(path: Path, exclude: Sequence[str] = ..., log: Optional[Log] = ...) -> Scene: ...
+def measure(
+    path: Path, *, matchdir: Path = ..., match_file: Path = ..., images: Path = ...,
+    exclude: Words = ..., threads: int = ..., seed: int = ...,
+    progress: Optional[Progress] = ..., log: Optional[Log] = ...) -> Scene: ...
 def triplets(scene: Scene) -> List[Triplet]: ...
 def simulate(
     kind: str = ..., *, views: int = ..., pairs: str = ..., points: int = ...,
@@ -277,6 +281,7 @@ class Solution:
     reliability_warnings: List[ReliabilityWarning]
     is_firm: bool
     warnings: List[str]
+    notes: List[str]
     calibration_notes: List[str]
     adjustment: Optional[AdjustmentSummary]
     poses_before_adjustment: Dict[int, Pose]
@@ -293,6 +298,19 @@ def solve(
     adjust_features: Words = ..., principal_point_stddev: float = ...,
     no_adjust: bool = ..., strategy: Strategy = ...,
     refine_intrinsics: Union[bool, Words] = ..., gt: Truth = ..., output: Path = ...,
+    matchdir: Path = ..., match_file: Path = ..., images: Path = ..., exclude: Words = ...,
+    threads: int = ..., seed: int = ..., progress: Optional[Progress] = ...,
+    log: Optional[Log] = ...) -> Solution: ...
+def merge(
+    models: Union[SceneOrPath, Sequence[SceneOrPath]], *, scene: SceneOrPath = ...,
+    images: Path = ..., intrinsics: Union[None, Path, Scene, ArrayLike] = ...,
+    focal: float = ..., matchdir: Path = ..., match_file: Path = ..., pairs: str = ...,
+    matcher: str = ..., exclude: Words = ..., two_view: Words = ...,
+    refine_points: bool = ..., cache: Path = ..., features: Words = ...,
+    coplanar_points: bool = ..., criterion: str = ..., nfa: str = ...,
+    threshold: float = ..., adjust_features: Words = ...,
+    principal_point_stddev: float = ..., no_adjust: bool = ..., strategy: Strategy = ...,
+    refine_intrinsics: Union[bool, Words] = ..., gt: Truth = ..., output: Path = ...,
     threads: int = ..., seed: int = ..., progress: Optional[Progress] = ...,
     log: Optional[Log] = ...) -> Solution: ...
 def run(
@@ -307,7 +325,8 @@ def run(
     log: Optional[Log] = ...) -> Solution: ...
 def scales(
     scene: SceneOrPath, *, features: Words = ..., coplanar_points: bool = ...,
-    criterion: str = ..., nfa: str = ..., threshold: float = ..., threads: int = ...,
+    criterion: str = ..., nfa: str = ..., threshold: float = ..., matchdir: Path = ...,
+    match_file: Path = ..., images: Path = ..., exclude: Words = ..., threads: int = ...,
     seed: int = ..., progress: Optional[Progress] = ..., log: Optional[Log] = ...
 ) -> List[ScaleRatio]: ...
 
@@ -340,6 +359,7 @@ def diagnose(
     scene: SceneOrPath, *, features: Words = ..., coplanar_points: bool = ...,
     criterion: str = ..., nfa: str = ..., threshold: float = ...,
     min_inliers: int = ..., max_log10_nfa: float = ..., max_stddev: float = ...,
+    matchdir: Path = ..., match_file: Path = ..., images: Path = ..., exclude: Words = ...,
     threads: int = ..., seed: int = ..., progress: Optional[Progress] = ...,
     log: Optional[Log] = ...) -> Diagnosis: ...
 
@@ -384,7 +404,8 @@ def compare(
     output: Path = ..., features: Words = ..., coplanar_points: bool = ...,
     criterion: str = ..., nfa: str = ..., threshold: float = ...,
     adjust_features: Words = ..., principal_point_stddev: float = ...,
-    no_adjust: bool = ..., threads: int = ..., seed: int = ...,
+    no_adjust: bool = ..., matchdir: Path = ..., match_file: Path = ..., images: Path = ...,
+    exclude: Words = ..., threads: int = ..., seed: int = ...,
     progress: Optional[Progress] = ..., log: Optional[Log] = ...) -> Comparison: ...
 
 # A view graph in memory

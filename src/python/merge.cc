@@ -1,0 +1,144 @@
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/core/internal/propagate.h"
+#include "lowlap/merge/merge_models.h"
+#include "python/solution.h"
+
+namespace lowlap::python {
+namespace {
+
+struct GivenModel {
+  std::string name;
+  std::shared_ptr<const Scene> scene;
+};
+
+// A scene or a path, or several of them.
+std::vector<GivenModel> ModelsOf(const py::object& models, Call* call) {
+  std::vector<GivenModel> given;
+  const auto add = [&](const py::object& model) {
+    given.push_back({py::isinstance<Scene>(model)
+                         ? "model " + std::to_string(given.size() + 1)
+                         : PathOf(model, "a model must be a Scene or a path"),
+                     SceneOf(model, call)});
+  };
+  if (py::isinstance<Scene>(models) || py::isinstance<py::str>(models) ||
+      py::hasattr(models, "__fspath__")) {
+    add(models);
+  } else {
+    for (const py::handle model : models) {
+      add(py::reinterpret_borrow<py::object>(model));
+    }
+  }
+  return given;
+}
+
+Result<std::vector<PartialModel>> MatchModels(
+    const std::vector<GivenModel>& given, const Scene& measured,
+    const RunContext& context) {
+  std::vector<PartialModel> models;
+  for (const GivenModel& each : given) {
+    LOWLAP_ASSIGN_OR_RETURN(auto model,
+                            MatchModel(measured, *each.scene, each.name));
+    const std::size_t num_others =
+        GroundTruthFromScene(*each.scene).size() - model.poses.size();
+    if (num_others > 0) {
+      context.Log(LogLevel::kWarning,
+                  each.name + ": " + std::to_string(num_others) +
+                      " of its cameras are no images of the measured scene");
+    }
+    models.push_back(std::move(model));
+  }
+  return models;
+}
+
+Solution Merge(const py::object& given, const py::kwargs& kwargs) {
+  Keywords keywords("merge", kwargs);
+  const auto call = TakeCall(&keywords);
+  const SolveArguments arguments = TakeSolveArguments(&keywords, call.get());
+  const py::object scene = keywords.Take("scene");
+  const SceneInput input = TakeSceneInput(&keywords);
+  Photographs photographs;
+  photographs.measurement = TakeMeasurementOptions(&keywords, arguments.scale);
+  photographs.folder = input.images;
+  photographs.exclude = input.exclude;
+  py::object intrinsics = py::none();
+  keywords.Take("intrinsics", &intrinsics);
+  std::optional<double> focal_px;
+  keywords.Take("focal", &focal_px);
+  keywords.Finish();
+  if (!scene && photographs.folder.empty()) {
+    Raise({ErrorCode::kInvalidArgument,
+           "images (photographs) or scene (one that was measured) is missing: "
+           "the models alone do not say how they lie to one another",
+           {},
+           {}});
+  }
+  CheckOutput(arguments.output);
+  const RunContext& context = call->context();
+  const std::vector<GivenModel> scenes = ModelsOf(given, call.get());
+  StageLog stages;
+  std::vector<PartialModel> models;
+  const auto match = [&](const Scene& views) -> Status {
+    LOWLAP_ASSIGN_OR_RETURN(models, MatchModels(scenes, views, context));
+    return {};
+  };
+  Solution solution;
+  if (scene) {
+    MeasuredScene measured =
+        MeasuredSceneOf(scene, input, call.get(), &stages, match);
+    solution.scene = std::make_shared<Scene>(*measured.scene);
+    solution.summary.pairs = std::move(measured.pairs);
+    RestoreGivenIntrinsics(solution.scene.get());
+  } else {
+    photographs.intrinsics = IntrinsicsOf(intrinsics, focal_px);
+    solution =
+        MeasurePhotographs(photographs, arguments, call.get(), &stages, match);
+  }
+  RunSummary& summary = solution.summary;
+  summary.command = "merge";
+  std::vector<ModelCheck> checks;
+  call->Run([&]() -> Status {
+    for (const PartialModel& model : models) {
+      const StageLog::Scope scope(&stages, "model check");
+      LOWLAP_ASSIGN_OR_RETURN(
+          auto check,
+          CheckModel(*solution.scene, model, arguments.options, context));
+      for (std::string& line : DescribeCheck(model, check, *solution.scene)) {
+        summary.notes.push_back(std::move(line));
+      }
+      checks.push_back(std::move(check));
+    }
+    return {};
+  });
+  SolveInPlace(arguments, call.get(), &stages, &solution,
+               [&](Scene* merged, const SolveOptions& options,
+                   const RunContext& run, StageLog* log) {
+                 return MergeModels(merged, models, checks, options, run, log);
+               });
+  return solution;
+}
+
+}  // namespace
+
+void BindMerge(py::module_& module) {
+  module.def(
+      "merge", &Merge, py::arg("models"),
+      "One model of partial ones, and of the views that none of them placed,\n"
+      "as `lowlap merge` makes it: each is checked against what is measured,\n"
+      "and cut where that contradicts it. Solution.notes say how.\n\n"
+      "models: scenes or paths of any program's, matched by image name.\n"
+      "What is measured, one of:\n"
+      "  images: photographs, measured as by run(), with its options\n"
+      "  intrinsics, focal, pairs, matcher, two_view, refine_points, cache;\n"
+      "  scene: a scene or a path, as of solve(), with matchdir, match_file,\n"
+      "  images, exclude.\n"
+      "Other options: exclude, and those of solve(): features,\n"
+      "coplanar_points, criterion, nfa, threshold, strategy, adjust_features,\n"
+      "no_adjust, refine_intrinsics, principal_point_stddev, gt, output,\n"
+      "threads, seed, progress, log.");
+}
+
+}  // namespace lowlap::python
