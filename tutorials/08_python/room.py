@@ -6,6 +6,12 @@ and hardly anything is common to three.
 
     cmake -S . -B build -DLOWLAP_BUILD_PYTHON=ON && cmake --build build
     PYTHONPATH=build/python python3 tutorials/08_python/room.py
+
+Projects of other programs are taken likewise, as by the command:
+
+    lowlap.solve("database.db", images="IMAGES")
+    lowlap.solve("sfm_data.json", matchdir="matches")
+    lowlap.merge(["sparse/0", "sparse/1"], images="IMAGES", intrinsics="K.txt")
 """
 
 import sys
