@@ -103,7 +103,7 @@ void AddEvaluate(CLI::App* program, Action* action) {
   Option positional = AddOption(
       command, "ground_truth", flags->ground_truth,
       "Folder of Strecha's .camera files, or the one that holds it as "
-      "gt_dense_cameras; or a scene file with true poses");
+      "gt_dense_cameras; or a scene or model of any format");
   AddOption(command, "--gt", flags->truth_option,
             "The same, as an option: instead of the second argument")
       .Excludes(positional);

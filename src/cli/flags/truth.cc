@@ -11,7 +11,7 @@ Option AddTruthFlag(CLI::App* command, std::string* path) {
   return AddOption(command, "--gt", *path,
                    "True cameras to evaluate against, never used for "
                    "solving: a folder of Strecha's .camera files, or a "
-                   "scene file");
+                   "scene or model of any format");
 }
 
 Result<std::optional<GroundTruth>> LoadGroundTruth(const std::string& path,
