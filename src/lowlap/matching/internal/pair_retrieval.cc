@@ -15,7 +15,7 @@
 namespace lowlap {
 namespace {
 
-constexpr std::size_t kNeighbours = 64;
+constexpr std::size_t kNeighbours = 32;
 
 struct Votes {
   std::size_t first;  // indices of views
@@ -65,7 +65,8 @@ Status VoteByNeighbours(
   }
   const std::size_t count = std::min(kNeighbours, database.size());
   if (count == 0) return {};
-  const ApproximateIndex index(database);
+  // Votes are many: they need not all be right.
+  const ApproximateIndex index(database, {1, 128});
   // Of every view the votes for every other one.
   std::vector<std::vector<std::size_t>> cast(
       samples.size(), std::vector<std::size_t>(samples.size(), 0));

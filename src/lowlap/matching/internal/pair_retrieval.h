@@ -17,7 +17,7 @@ namespace lowlap {
 /// (MatchPoints); a match is a vote. Of more than `max_exhaustive` views, each
 /// point instead votes for the views of its neighbours among all points
 /// (ApproximateIndex), as far as these are nearer than `max_ratio` times the
-/// last of 64, which stands for chance. Every view proposes the partners that
+/// last of 32, which stands for chance. Every view proposes the partners that
 /// share the most votes with it, and the pairs of a maximum spanning forest are
 /// added: whatever votes connect stays connected. A pair without a vote is
 /// never proposed, unless no view can have more than `max_partners` partners:

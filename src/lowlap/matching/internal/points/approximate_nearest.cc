@@ -8,8 +8,6 @@ namespace lowlap {
 namespace {
 
 constexpr int kBranching = 32;
-constexpr int kTreeIterations = 5;
-constexpr int kChecks = 256;  // descriptors that a query is compared with
 
 // A view; FLANN has no const matrix.
 flann::Matrix<std::uint8_t> AsMatrix(const std::vector<PointDescriptor>& rows) {
@@ -23,10 +21,12 @@ struct ApproximateIndex::Tree {
   flann::Index<flann::L2<std::uint8_t>> index;
 };
 
-ApproximateIndex::ApproximateIndex(const std::vector<PointDescriptor>& database)
-    : tree_(
+ApproximateIndex::ApproximateIndex(const std::vector<PointDescriptor>& database,
+                                   const Effort& effort)
+    : effort_(effort),
+      tree_(
           new Tree{{AsMatrix(database),
-                    flann::KMeansIndexParams(kBranching, kTreeIterations,
+                    flann::KMeansIndexParams(kBranching, effort.iterations,
                                              flann::FLANN_CENTERS_GONZALES)}}) {
   // The first centres are drawn from the process's one stream of random
   // numbers. Its randomised trees, and other centres, have no seed.
@@ -46,7 +46,7 @@ std::vector<ApproximateIndex::Neighbour> ApproximateIndex::Search(
   std::vector<float> distances2(size);
   flann::Matrix<std::size_t> index_rows(indices.data(), queries.size(), count);
   flann::Matrix<float> distance_rows(distances2.data(), queries.size(), count);
-  flann::SearchParams params(std::max(kChecks, static_cast<int>(count)));
+  flann::SearchParams params(std::max(effort_.checks, static_cast<int>(count)));
   params.cores = 1;
   tree_->index.knnSearch(AsMatrix(queries), index_rows, distance_rows, count,
                          params);

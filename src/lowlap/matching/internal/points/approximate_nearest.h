@@ -19,8 +19,15 @@ class ApproximateIndex {
     std::int32_t distance2;  // squared Euclidean
   };
 
+  /// What is spent on it.
+  struct Effort {
+    int iterations = 5;  // of k-means, on every level of the tree
+    int checks = 256;    // descriptors that a query is compared with
+  };
+
   /// `database` is not copied, and not empty.
-  explicit ApproximateIndex(const std::vector<PointDescriptor>& database);
+  ApproximateIndex(const std::vector<PointDescriptor>& database,
+                   const Effort& effort);
   ~ApproximateIndex();
 
   /// Of every query `count` neighbours, nearest first, one query after another.
@@ -30,6 +37,7 @@ class ApproximateIndex {
 
  private:
   struct Tree;
+  Effort effort_;
   std::unique_ptr<Tree> tree_;
 };
 

@@ -304,7 +304,7 @@ std::vector<NearestTwo> FindNearestTwoApproximately(
   if (queries.empty() || database.size() < 2) {
     return FindNearestTwo(queries, database);
   }
-  const auto neighbours = ApproximateIndex(database).Search(queries, 2);
+  const auto neighbours = ApproximateIndex(database, {}).Search(queries, 2);
   std::vector<NearestTwo> nearest(queries.size());
   for (std::size_t i = 0; i < queries.size(); ++i) {
     const auto& first = neighbours[2 * i];
