@@ -94,6 +94,31 @@ TEST_F(AtomicFileTest, AFullDiskLeavesNothingAndIsNamed) {
   EXPECT_EQ(CountFiles(), 0u);
 }
 
+TEST_F(AtomicFileTest, ALargeSetNeedsFewOpenFiles) {
+  struct rlimit before {};
+  ::getrlimit(RLIMIT_NOFILE, &before);
+  struct rlimit limit = before;
+  limit.rlim_cur = 300;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+  constexpr std::size_t kNumFiles = 400;
+  const auto add_all = [&](FileSet* files) {
+    for (std::size_t n = 0; n < kNumFiles; ++n) {
+      ASSERT_THAT(files->Add(Path(std::to_string(n)), "x"), IsOk());
+    }
+  };
+  {
+    FileSet dropped;
+    add_all(&dropped);
+    EXPECT_EQ(CountFiles(), kNumFiles);
+  }
+  EXPECT_EQ(CountFiles(), 0u);
+  FileSet files;
+  add_all(&files);
+  EXPECT_THAT(files.Commit(), IsOk());
+  ::setrlimit(RLIMIT_NOFILE, &before);
+  EXPECT_EQ(CountFiles(), kNumFiles);
+}
+
 TEST_F(AtomicFileTest, PathThatIsAFolder) {
   fs::create_directory(path_);
   std::ofstream(path_ + "/inside") << "x";

@@ -25,6 +25,16 @@ TEST(TokenReader, TakesNumbersOfAnyKindOverLines) {
   EXPECT_TRUE(reader.status());
 }
 
+TEST(TokenReader, TakesWordsAsTheyAre) {
+  TokenReader reader("\n a.jpg\t12\n", "file");
+  EXPECT_EQ(reader.Peek(), 'a');
+  EXPECT_EQ(reader.Word("a name"), "a.jpg");
+  EXPECT_EQ(reader.Next<int>("a count"), 12);
+  EXPECT_EQ(reader.Word("a name"), "");
+  EXPECT_THAT(reader.status(),
+              IsError(ErrorCode::kParse, "the file ends where a name"));
+}
+
 TEST(TokenReader, TheFirstFailureStaysWithItsLine) {
   TokenReader reader("1\n2 x\nnan", "file");
   EXPECT_EQ(reader.Next<int>("a count"), 1);

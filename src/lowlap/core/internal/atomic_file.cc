@@ -182,9 +182,8 @@ class ReplacedFiles {
 
 FileSet::~FileSet() {
   for (const Output& output : outputs_) {
-    if (output.file < 0) continue;
-    ::unlink(output.temporary.c_str());
-    ::close(output.file);
+    if (!output.temporary.empty()) ::unlink(output.temporary.c_str());
+    if (output.file >= 0) ::close(output.file);
   }
 }
 
@@ -199,7 +198,16 @@ Status FileSet::Add(const std::string& path, std::string_view content) {
     return SystemError("cannot be opened for writing", path, EISDIR);
   }
   Output output{path, target.path, {}, {}, -1};
-  output.file = OpenTemporary(target.path, &output.temporary);
+  // A process may have 1,024 files open as a rule. Of larger sets, the rest is
+  // closed, and so unlocked, under names that nobody else takes.
+  constexpr std::size_t kMaxOpen = 256;
+  const bool stays_open = outputs_.size() < kMaxOpen;
+  if (stays_open) {
+    output.file = OpenTemporary(target.path, &output.temporary);
+  } else {
+    output.temporary = UniqueName(target.path + ".tmp");
+    output.file = Open(output.temporary, O_WRONLY | O_CREAT | O_EXCL);
+  }
   if (output.file < 0) {
     return SystemError("cannot be opened for writing", path);
   }
@@ -209,6 +217,7 @@ Status FileSet::Add(const std::string& path, std::string_view content) {
   if (!WriteAll(file, content) || ::close(::dup(file)) != 0) {
     return SystemError("cannot be written", path);
   }
+  if (!stays_open) ::close(std::exchange(outputs_.back().file, -1));
   return {};
 }
 
@@ -235,7 +244,8 @@ Status FileSet::Commit() {
       replaced.PutBack();
       return SystemError("cannot be replaced", output.path, reason);
     }
-    ::close(std::exchange(output.file, -1));
+    output.temporary.clear();
+    if (output.file >= 0) ::close(std::exchange(output.file, -1));
   }
   outputs_.clear();
   return {};

@@ -14,12 +14,13 @@ namespace lowlap {
 /// (where the file system has hard links).
 ///
 /// A file is prepared under a temporary name in its folder (NAME.tmp0), which
-/// is locked while the writer lives, and then renamed. What a killed writer
-/// left is taken over or removed by the next one; only the second name of a
-/// replaced file, NAME.oldPID-N, stays if it is killed while it renames. A
-/// symbolic link stays, and the file that it names is written. Devices and
-/// pipes are written to, all of them before the first file appears. Errors are
-/// kIo with the path and the system's reason.
+/// is locked while the writer lives (those beyond the first hundreds have names
+/// of their own instead), and then renamed. What a killed writer left is taken
+/// over or removed by the next one; only the second name of a replaced file,
+/// NAME.oldPID-N, stays if it is killed while it renames. A symbolic link
+/// stays, and the file that it names is written. Devices and pipes are written
+/// to, all of them before the first file appears. Errors are kIo with the path
+/// and the system's reason.
 class FileSet {
  public:
   FileSet() = default;
@@ -35,9 +36,9 @@ class FileSet {
   struct Output {
     std::string path;
     std::string target;     // `path` with its links followed
-    std::string temporary;  // empty: written to directly
+    std::string temporary;  // empty: written to directly, or in place
     std::string content;    // of what is written to directly
-    int file = -1;
+    int file = -1;          // closed: -1
   };
   std::vector<Output> outputs_;
 };

@@ -39,15 +39,8 @@ class TokenReader {
   template <class T>
   T Next(const char* what) {
     T value{};
-    if (!status_) return value;
-    SkipSpace();
-    const std::size_t end =
-        std::min(text_.find_first_of(" \t\r\n", offset_), text_.size());
-    const std::string_view token = text_.substr(offset_, end - offset_);
-    if (token.empty()) {
-      Fail(std::string("the file ends where ") + what + " is expected");
-      return value;
-    }
+    const std::string_view token = PeekWord(what);
+    if (token.empty()) return value;
     const auto [stop, error] =
         std::from_chars(token.data(), token.data() + token.size(), value);
     bool is_good = error == std::errc() && stop == token.data() + token.size();
@@ -59,8 +52,21 @@ class TokenReader {
            what);
       return T{};
     }
-    offset_ = end;
+    offset_ += token.size();
     return value;
+  }
+
+  /// The next character that is not white space; only if not AtEnd.
+  char Peek() {
+    SkipSpace();
+    return text_[offset_];
+  }
+
+  /// The next token as it is.
+  std::string_view Word(const char* what) {
+    const std::string_view token = PeekWord(what);
+    offset_ += token.size();
+    return token;
   }
 
   /// The rest of the line, without its end and outer blanks.
@@ -97,6 +103,18 @@ class TokenReader {
   }
 
  private:
+  /// Empty after a failure.
+  std::string_view PeekWord(const char* what) {
+    if (!status_) return {};
+    SkipSpace();
+    const std::size_t end =
+        std::min(text_.find_first_of(" \t\r\n", offset_), text_.size());
+    if (end == offset_) {
+      Fail(std::string("the file ends where ") + what + " is expected");
+    }
+    return text_.substr(offset_, end - offset_);
+  }
+
   void SkipSpace() {
     for (; offset_ < text_.size(); ++offset_) {
       const char c = text_[offset_];
