@@ -5,11 +5,22 @@
 #include <filesystem>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/json/scene_json.h"
+#include "lowlap/io/internal/obj.h"
 #include "lowlap/io/internal/ply.h"
 #include "lowlap/io/internal/scene_binary.h"
 
 namespace lowlap {
+namespace {
+
+template <class Value>
+Result<Value> WithFile(Result<Value> result, const std::string& file) {
+  if (!result && result.error().file.empty()) result.error().file = file;
+  return result;
+}
+
+}  // namespace
 
 bool SceneFormat::Recognizes(const std::string& path) const {
   std::error_code ignored;
@@ -28,6 +39,7 @@ SceneFormats OwnSceneFormats() {
   json.description =
       "sfm_data JSON with lowlap's own sections, read by OpenMVG (*.json)";
   json.extension = ".json";
+  json.holds = AllContents();
   json.recognizes_start = [](std::string_view start) {
     const std::size_t first = start.find_first_not_of(" \t\r\n");
     return first != start.npos && start[first] == '{';
@@ -41,6 +53,7 @@ SceneFormats OwnSceneFormats() {
   binary.name = "lowlap";
   binary.description = "the same content in binary, fast to load (*.lowlap)";
   binary.extension = ".lowlap";
+  binary.holds = AllContents();
   binary.read = [](const std::string& path, SceneNotes*) {
     return ReadSceneBinary(path);
   };
@@ -48,11 +61,20 @@ SceneFormats OwnSceneFormats() {
 
   SceneFormat ply;
   ply.name = "ply";
-  ply.description =
-      "points, lines and cameras for viewers (*.ply), written only";
+  ply.description = "points, lines and cameras for viewers (*.ply)";
   ply.extension = ".ply";
+  ply.holds = {SceneContent::kPoses, SceneContent::kPoints,
+               SceneContent::kLines};
   ply.write = WriteOneFile(FormatPly);
-  return {std::move(json), std::move(binary), std::move(ply)};
+
+  SceneFormat obj;
+  obj.name = "obj";
+  obj.description =
+      "the same without colours, segments first, as LIMAP reads them (*.obj)";
+  obj.extension = ".obj";
+  obj.holds = ply.holds;
+  obj.write = WriteOneFile(FormatObj);
+  return {std::move(json), std::move(binary), std::move(ply), std::move(obj)};
 }
 
 std::string DescribeSceneFormats(const SceneFormats& formats) {
@@ -61,6 +83,27 @@ std::string DescribeSceneFormats(const SceneFormats& formats) {
     text += "  " + format.name + ": " + format.description + "\n";
   }
   return text;
+}
+
+std::string TabulateSceneFormats(const SceneFormats& formats) {
+  std::string text;
+  for (const SceneFormat& format : formats) {
+    const char* access = !format.read    ? "written only"
+                         : !format.write ? "read only"
+                                         : "read and written";
+    text += format.name + " (" + access + "): " + format.description +
+            "\n    holds " + DescribeContents(format.holds) + "\n";
+    if (!format.needs.empty()) {
+      text += "    of views that have " + DescribeContents(format.needs) + "\n";
+    }
+  }
+  return text;
+}
+
+std::string LossNote(const SceneFormat& format, const Scene& scene) {
+  const std::string loss = DescribeLoss(scene, format.holds);
+  return loss.empty() ? loss
+                      : format.name + " cannot hold " + loss + ": left out";
 }
 
 Result<const SceneFormat*> FindSceneFormat(const SceneFormats& formats,
@@ -84,23 +127,39 @@ Result<const SceneFormat*> FindNamedSceneFormat(const SceneFormats& formats,
                                                 DescribeSceneFormats(formats));
 }
 
+std::function<Result<Scene>(const std::string& path, SceneNotes* notes)>
+ReadOneFile(std::function<Result<Scene>(std::string_view bytes,
+                                        const std::string& file, SceneNotes*)>
+                parse) {
+  return [parse = std::move(parse)](const std::string& path,
+                                    SceneNotes* notes) -> Result<Scene> {
+    LOWLAP_ASSIGN_OR_RETURN(const std::string bytes, ReadWholeFile(path));
+    return WithFile(parse(bytes, path, notes), path);
+  };
+}
+
 std::function<Result<SceneNotes>(const Scene&, const std::string& path,
                                  FileSet* files)>
-WriteOneFile(std::function<Result<std::string>(const Scene&)> format) {
+WriteOneFile(
+    std::function<Result<std::string>(const Scene&, SceneNotes*)> format) {
   return
       [format = std::move(format)](const Scene& scene, const std::string& path,
                                    FileSet* files) -> Result<SceneNotes> {
-        const Result<std::string> bytes = format(scene);
-        Status status;
-        if (bytes) {
-          status = files->Add(path, *bytes);
-        } else {
-          status = tl::unexpected<Error>(bytes.error());
-        }
-        if (status) return SceneNotes();
-        if (status.error().file.empty()) status.error().file = path;
-        return tl::unexpected<Error>(std::move(status.error()));
+        SceneNotes notes;
+        LOWLAP_ASSIGN_OR_RETURN(const std::string bytes,
+                                WithFile(format(scene, &notes), path));
+        LOWLAP_RETURN_IF_ERROR(files->Add(path, bytes));
+        return notes;
       };
+}
+
+std::function<Result<SceneNotes>(const Scene&, const std::string& path,
+                                 FileSet* files)>
+WriteOneFile(std::function<Result<std::string>(const Scene&)> format) {
+  return WriteOneFile(
+      [format = std::move(format)](const Scene& scene, SceneNotes*) {
+        return format(scene);
+      });
 }
 
 }  // namespace lowlap

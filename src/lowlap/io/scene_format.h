@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
+#include "lowlap/io/scene_content.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -29,6 +30,10 @@ struct SceneFormat {
   std::function<bool(std::string_view)> recognizes_start;
   /// Whether a folder is of the format; may be null.
   std::function<bool(const std::string& folder)> recognizes_folder;
+  /// What it keeps of a scene; the rest is left out when it is written.
+  SceneContents holds;
+  /// What a view must have to be written.
+  SceneContents needs;
   /// Null if it is written only. `notes` is never null.
   std::function<Result<Scene>(const std::string& path, SceneNotes* notes)> read;
   /// Adds what is to be written to `files`, but for a database, which is
@@ -44,10 +49,20 @@ struct SceneFormat {
 using SceneFormats = std::vector<SceneFormat>;
 
 /// The formats of this folder: "json" (*.json), "lowlap" (*.lowlap), and "ply"
-/// (*.ply), which is written only.
+/// (*.ply) and "obj" (*.obj), which are written only.
 SceneFormats OwnSceneFormats();
 
-/// A `write` for formats that keep everything in one file.
+/// A `read` and a `write` for formats that keep everything in one file, from
+/// what takes its bytes apart and what makes them. Errors get the path.
+std::function<Result<Scene>(const std::string& path, SceneNotes* notes)>
+ReadOneFile(std::function<Result<Scene>(std::string_view bytes,
+                                        const std::string& file, SceneNotes*)>
+                parse);
+std::function<Result<SceneNotes>(const Scene&, const std::string& path,
+                                 FileSet* files)>
+WriteOneFile(
+    std::function<Result<std::string>(const Scene&, SceneNotes*)> format);
+/// The same for what leaves nothing out but by `holds`.
 std::function<Result<SceneNotes>(const Scene&, const std::string& path,
                                  FileSet* files)>
 WriteOneFile(std::function<Result<std::string>(const Scene&)> format);
@@ -63,5 +78,12 @@ Result<const SceneFormat*> FindNamedSceneFormat(const SceneFormats& formats,
 
 /// One line per format, for help texts and messages.
 std::string DescribeSceneFormats(const SceneFormats& formats);
+
+/// The same with what can be done with each, and what it holds.
+std::string TabulateSceneFormats(const SceneFormats& formats);
+
+/// "NAME cannot hold 812 lines, 34 ratios: left out". Empty if it holds all
+/// that the scene has.
+std::string LossNote(const SceneFormat& format, const Scene& scene);
 
 }  // namespace lowlap
