@@ -9,18 +9,23 @@
 
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
+#include "third_party_adapters/bundler/internal/scene_format.h"
 #include "third_party_adapters/colmap/internal/scene_format.h"
+#include "third_party_adapters/limap/internal/scene_format.h"
+#include "third_party_adapters/line3dpp/internal/scene_format.h"
 #include "third_party_adapters/onedsfm/internal/scene_format.h"
 #include "third_party_adapters/openmvg/internal/scene_format.h"
+#include "third_party_adapters/trajectories/internal/scene_format.h"
 
 namespace lowlap {
 namespace {
 
 // One line per adapter.
 constexpr SceneFormats (*kAdapters[])() = {
-    openmvg::OpenMvgFormats,
-    onedsfm::OneDSfmFormats,
-    colmap::ColmapFormats,
+    openmvg::OpenMvgFormats,         onedsfm::OneDSfmFormats,
+    colmap::ColmapFormats,           limap::LimapFormats,
+    line3dpp::Line3dppFormats,       bundler::BundlerFormats,
+    trajectories::TrajectoryFormats,
 };
 
 /// The format of a file or folder that is there: the one that its first bytes
@@ -34,7 +39,7 @@ Result<const SceneFormat*> FindFormatOf(const SceneFormats& formats,
         error ? "cannot be opened: " + error.message() : "no such file", path);
   }
   std::ifstream stream(path, std::ios::binary);
-  std::array<char, 64> buffer{};
+  std::array<char, 4096> buffer{};
   stream.read(buffer.data(), buffer.size());
   const std::string_view start(buffer.data(),
                                static_cast<std::size_t>(stream.gcount()));
@@ -44,6 +49,20 @@ Result<const SceneFormat*> FindFormatOf(const SceneFormats& formats,
     }
   }
   return FindSceneFormat(formats, path);
+}
+
+/// By name, or where none is given by the path.
+Result<const SceneFormat*> FindFormat(const SceneFormats& formats,
+                                      const std::string& path,
+                                      const std::string& name) {
+  return name.empty() ? FindSceneFormat(formats, path)
+                      : FindNamedSceneFormat(formats, name);
+}
+
+template <class Value>
+Result<Value> WithPath(Result<Value> result, const std::string& path) {
+  if (!result && result.error().file.empty()) result.error().file = path;
+  return result;
 }
 
 }  // namespace
@@ -60,30 +79,37 @@ bool IsScene(const std::string& path) {
   return FindFormatOf(AllSceneFormats(), path).has_value();
 }
 
-Result<Scene> ReadScene(const std::string& path, SceneNotes* notes) {
+Result<Scene> ReadScene(const std::string& path, SceneNotes* notes,
+                        const std::string& format) {
   const SceneFormats formats = AllSceneFormats();
-  LOWLAP_ASSIGN_OR_RETURN(const SceneFormat* format,
-                          FindFormatOf(formats, path));
-  if (!format->read) {
+  LOWLAP_ASSIGN_OR_RETURN(const SceneFormat* chosen,
+                          format.empty()
+                              ? FindFormatOf(formats, path)
+                              : FindNamedSceneFormat(formats, format));
+  if (!chosen->read) {
     return MakeError(ErrorCode::kUnsupported,
-                     "the format " + format->name + " cannot be read", path);
+                     "the format " + chosen->name + " cannot be read", path);
   }
   SceneNotes ignored;
-  return format->read(path, notes == nullptr ? &ignored : notes);
+  return WithPath(chosen->read(path, notes == nullptr ? &ignored : notes),
+                  path);
 }
 
 Result<SceneNotes> WriteScene(const Scene& scene, const std::string& path,
                               const std::string& format, FileSet* files) {
   const SceneFormats formats = AllSceneFormats();
   LOWLAP_ASSIGN_OR_RETURN(const SceneFormat* chosen,
-                          format.empty()
-                              ? FindSceneFormat(formats, path)
-                              : FindNamedSceneFormat(formats, format));
+                          FindFormat(formats, path, format));
   if (!chosen->write) {
     return MakeError(ErrorCode::kUnsupported,
                      "the format " + chosen->name + " cannot be written", path);
   }
-  return chosen->write(scene, path, files);
+  LOWLAP_ASSIGN_OR_RETURN(SceneNotes notes,
+                          WithPath(chosen->write(scene, path, files), path));
+  if (std::string loss = LossNote(*chosen, scene); !loss.empty()) {
+    notes.insert(notes.begin(), std::move(loss));
+  }
+  return notes;
 }
 
 Result<SceneNotes> WriteScene(const Scene& scene, const std::string& path,

@@ -10,31 +10,26 @@ namespace lowlap {
 
 class FileSet;
 
-/// Every scene format there is: OwnSceneFormats and those of the adapters,
-///   openmvg-json  -        what OpenMVG holds and nothing else
-///   openmvg-bin   .bin     what OpenMVG holds
-///   openmvg-xml   .xml     what OpenMVG holds
-///   1dsfm         folder   a problem of 1DSfM; read only
-///   colmap-bin    folder   a model of COLMAP
-///   colmap        folder   the same as text
-///   colmap-db     .db      a database of COLMAP; written into one there is,
-///                          at once and not as one of the files of a set
+/// Every scene format there is: OwnSceneFormats and those of the adapters, in
+/// the order in which they are tried. `lowlap convert --formats` lists them.
 SceneFormats AllSceneFormats();
 
 /// Whether a file or folder is there and of one of these formats, by which
 /// ReadScene would take it; it may be damaged all the same.
 bool IsScene(const std::string& path);
 
-/// Reads a scene file or folder. An sfm_data file is told by its first bytes,
-/// so that a wrong extension does no harm; other files by the extension.
-/// kUnsupported, with the list of formats, for anything else. What the reader
-/// leaves out is added to `notes`, which may be null.
-Result<Scene> ReadScene(const std::string& path, SceneNotes* notes = nullptr);
+/// Reads a scene file or folder, in the format called `format` if it is given.
+/// Otherwise a file is told by its first bytes, where these tell, so that a
+/// wrong extension does no harm, then by the extension. kUnsupported, with the
+/// list of formats, for anything else. What the reader leaves out is added to
+/// `notes`, which may be null.
+Result<Scene> ReadScene(const std::string& path, SceneNotes* notes = nullptr,
+                        const std::string& format = {});
 
 /// Writes a scene in the format of the extension, or in the one called `format`
-/// if it is given; with `files`, as one of them. Returns notes on what the
-/// format cannot hold. kUnsupported, with the list of formats, for an unknown
-/// one.
+/// if it is given; with `files`, as one of them. Returns notes: what the format
+/// does not hold, counted (LossNote), and what else it changed. kUnsupported,
+/// with the list of formats, for an unknown one.
 Result<SceneNotes> WriteScene(const Scene& scene, const std::string& path,
                               const std::string& format = {});
 Result<SceneNotes> WriteScene(const Scene& scene, const std::string& path,

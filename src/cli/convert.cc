@@ -1,3 +1,4 @@
+#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -13,22 +14,33 @@ struct Flags {
   CommonFlags common;
   std::string input;
   std::string output;
-  std::string format;
+  std::string input_format;
+  std::string output_format;
+  bool lists_formats = false;
   bool drop_solution = false;
   int max_point_matches = 0;
   std::optional<std::string> root_path;
 };
 
 Result<int> Convert(const Flags& flags) {
+  if (flags.lists_formats) {
+    std::fputs(TabulateSceneFormats(AllSceneFormats()).c_str(), stdout);
+    return 0;
+  }
+  if (flags.input.empty() || flags.output.empty()) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "convert needs a file to read and one to write");
+  }
   SceneNotes notes;
-  LOWLAP_ASSIGN_OR_RETURN(auto scene, ReadScene(flags.input, &notes));
+  LOWLAP_ASSIGN_OR_RETURN(auto scene,
+                          ReadScene(flags.input, &notes, flags.input_format));
   if (flags.drop_solution) DropSolution(&scene);
   if (flags.max_point_matches > 0) {
     LOWLAP_RETURN_IF_ERROR(LimitPointMatches(flags.max_point_matches, &scene));
   }
   if (flags.root_path) scene.root_path = *flags.root_path;
   LOWLAP_ASSIGN_OR_RETURN(const auto written,
-                          WriteScene(scene, flags.output, flags.format));
+                          WriteScene(scene, flags.output, flags.output_format));
   notes.insert(notes.end(), written.begin(), written.end());
   const RunContext context = MakeContext(flags.common);
   for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
@@ -41,12 +53,15 @@ void AddConvert(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
   CLI::App* command =
       AddCommand(program, "convert", "Convert a scene file to another format");
-  AddOption(command, "input", flags->input, "Scene file to read").Required();
+  AddOption(command, "input", flags->input, "Scene file to read");
   AddOption(command, "output", flags->output,
-            "File to write; its extension names the format")
-      .Required();
-  AddOption(command, "--to", flags->format,
+            "File or folder to write; its extension names the format");
+  AddOption(command, "--from", flags->input_format,
+            "Format to read, where neither content nor extension tells it");
+  AddOption(command, "--to", flags->output_format,
             "Format to write, where the extension is not enough");
+  AddFlag(command, "--formats", flags->lists_formats,
+          "List the formats and what each holds, and do nothing else");
   AddFlag(command, "--drop-solution", flags->drop_solution,
           "Keep what was measured, drop ratios, poses and structure");
   AddOption(command, "--max-point-matches", flags->max_point_matches,

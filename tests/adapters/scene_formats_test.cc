@@ -127,10 +127,10 @@ TEST(PrepareForOpenMvg, DropsWhatTheHostRefuses) {
   EXPECT_TRUE(prepared.scene.features.empty());
   for (const char* note :
        {"1 intrinsics that no view uses", "1 poses that no view uses",
-        "up to 0.399 %", "2 observations", "1 landmarks", "features"}) {
+        "up to 0.399 %", "2 observations", "1 landmarks"}) {
     EXPECT_THAT(prepared.notes, Contains(HasSubstr(note)));
   }
-  EXPECT_EQ(prepared.notes.size(), 6u);
+  EXPECT_EQ(prepared.notes.size(), 5u);
 }
 
 TEST(PrepareForOpenMvg, LeavesAnOpenMvgSceneAsItIs) {

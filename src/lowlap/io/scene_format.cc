@@ -94,7 +94,8 @@ std::string TabulateSceneFormats(const SceneFormats& formats) {
     text += format.name + " (" + access + "): " + format.description +
             "\n    holds " + DescribeContents(format.holds) + "\n";
     if (!format.needs.empty()) {
-      text += "    of views that have " + DescribeContents(format.needs) + "\n";
+      text += "    cameras of views that have " +
+              DescribeContents(format.needs) + "\n";
     }
   }
   return text;

@@ -32,7 +32,7 @@ struct SceneFormat {
   std::function<bool(const std::string& folder)> recognizes_folder;
   /// What it keeps of a scene; the rest is left out when it is written.
   SceneContents holds;
-  /// What a view must have to be written.
+  /// What a view must have for its camera, and what that sees, to be written.
   SceneContents needs;
   /// Null if it is written only. `notes` is never null.
   std::function<Result<Scene>(const std::string& path, SceneNotes* notes)> read;

@@ -10,6 +10,7 @@
 #include "third_party_adapters/colmap/internal/database.h"
 #include "third_party_adapters/colmap/internal/database_records.h"
 #include "third_party_adapters/colmap/internal/model_scene.h"
+#include "third_party_adapters/internal/landmarks.h"
 
 namespace lowlap::colmap {
 namespace {

@@ -1,12 +1,12 @@
 #include "third_party_adapters/colmap/internal/model_scene.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <utility>
 
 #include "lowlap/geometry/rigid_transform.h"
 #include "lowlap/io/internal/failure.h"
+#include "third_party_adapters/internal/landmarks.h"
 
 namespace lowlap::colmap {
 namespace {
@@ -20,10 +20,6 @@ namespace {
 
 std::string Numbered(const char* what, std::uint64_t id) {
   return std::string(what) + " " + std::to_string(id);
-}
-
-void Note(std::size_t count, const char* what, SceneNotes* notes) {
-  if (count > 0) notes->push_back(std::to_string(count) + " " + what);
 }
 
 RigidTransform TransformOf(const FilePose& pose) {
@@ -122,8 +118,8 @@ void AddImages(const Model& model, Scene* scene, SceneNotes* notes) {
       points_px.push_back(point.pixel_px - PixelShift(intrinsic));
     }
   }
-  Note(num_unposed, "images have no complete pose and are views without one",
-       notes);
+  AddNote(num_unposed, "images have no complete pose and are views without one",
+          notes);
   const bool in_rigs =
       std::any_of(model.rigs.begin(), model.rigs.end(),
                   [](const Rig& rig) { return rig.sensors.size() > 1; });
@@ -136,7 +132,8 @@ void AddImages(const Model& model, Scene* scene, SceneNotes* notes) {
 void AddPoints(const Model& model, Scene* scene, SceneNotes* notes) {
   std::map<ViewId, const Image*> images;
   for (const Image& image : model.images) images[image.id] = &image;
-  std::size_t num_repeated = 0, num_single = 0, num_colored = 0;
+  LandmarkSorter sorter;
+  std::size_t num_colored = 0;
   for (const Point3D& point : model.points) {
     if (point.id >= kInvalidId) {
       Fail(ErrorCode::kUnsupported,
@@ -165,31 +162,14 @@ void AddPoints(const Model& model, Scene* scene, SceneNotes* notes) {
                                        scene->features.at(element.image_id)
                                            .points_px[element.point_index]});
     }
-    auto& all = landmark.observations;
-    std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
-      return a.view < b.view;
-    });
-    const auto end = std::unique(
-        all.begin(), all.end(),
-        [](const auto& a, const auto& b) { return a.view == b.view; });
-    num_repeated += static_cast<std::size_t>(all.end() - end);
-    all.erase(end, all.end());
-    if (all.size() < 2) {
-      ++num_single;
-      continue;
-    }
+    if (!sorter.Sort(&landmark)) continue;
     const auto id = static_cast<std::uint32_t>(point.id);
     if (!scene->structure.emplace(id, std::move(landmark)).second) {
       FailInvalid(Numbered("point", point.id) + " is listed twice");
     }
   }
-  Note(num_repeated,
-       "observations of a point that its image observes once more were left "
-       "out",
-       notes);
-  Note(num_single, "points that fewer than two images observe were left out",
-       notes);
-  Note(num_colored, "colours of points were left out", notes);
+  sorter.Note(notes);
+  AddNote(num_colored, "colours of points were left out", notes);
 }
 
 }  // namespace
@@ -215,11 +195,6 @@ View ViewOfImage(std::uint32_t image_id, std::string name,
   view.intrinsic_id = camera_id;
   view.pose_id = image_id;
   return view;
-}
-
-std::string ImageName(const View& view) {
-  return (std::filesystem::path(view.local_path) / view.filename)
-      .generic_string();
 }
 
 Result<Scene> SceneFromModel(const Model& model, SceneNotes* notes) {

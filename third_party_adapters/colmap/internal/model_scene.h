@@ -39,9 +39,10 @@ void AddTrivialRigs(Model* model);
 Vec4 QuaternionFromRotation(const Mat3& rotation);
 Mat3 RotationFromQuaternion(const Vec4& quaternion);
 
-/// The view of an image, and the name that COLMAP knows the image of a view by.
+/// The view of an image.
 View ViewOfImage(std::uint32_t image_id, std::string name,
                  std::uint32_t camera_id, const Intrinsic& intrinsic);
-std::string ImageName(const View& view);
+/// What is added to the ids of views and intrinsics in COLMAP: 1 if one is 0.
+std::uint32_t IdShift(const Scene& scene);
 
 }  // namespace lowlap::colmap

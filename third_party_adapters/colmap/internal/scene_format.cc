@@ -69,6 +69,11 @@ SceneFormat ModelFormat(const char* name, const char* description,
   format.recognizes_folder = [form](const std::string& folder) {
     return HasModel(folder, form);
   };
+  format.holds = {SceneContent::kNames,  SceneContent::kIntrinsics,
+                  SceneContent::kFrames, SceneContent::kDistortions,
+                  SceneContent::kPoses,  SceneContent::kKeypoints,
+                  SceneContent::kPoints, SceneContent::kObservations};
+  format.needs = {SceneContent::kPoses, SceneContent::kIntrinsics};
   format.read = ReadModelScene;
   format.write = [form](const Scene& scene, const std::string& folder,
                         FileSet* files) {
@@ -87,6 +92,10 @@ SceneFormats ColmapFormats() {
       "into one that has the same keypoints";
   database.extension = ".db";
   database.recognizes_start = IsDatabaseStart;
+  database.holds = {SceneContent::kNames,        SceneContent::kIntrinsics,
+                    SceneContent::kFrames,       SceneContent::kDistortions,
+                    SceneContent::kKeypoints,    SceneContent::kRelativePoses,
+                    SceneContent::kPointMatches, SceneContent::kPointTracks};
   database.read = ReadDatabaseScene;
   database.write = [](const Scene& scene, const std::string& path,
                       FileSet*) -> Result<SceneNotes> {

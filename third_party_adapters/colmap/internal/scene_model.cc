@@ -7,6 +7,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/failure.h"
 #include "third_party_adapters/colmap/internal/model_scene.h"
+#include "third_party_adapters/internal/landmarks.h"
 
 namespace lowlap::colmap {
 namespace {
@@ -60,11 +61,6 @@ FilePose StablePose(const Pose& pose) {
   return file;
 }
 
-// COLMAP does not use the id 0.
-std::uint32_t IdShift(const Scene& scene) {
-  return scene.views.count(0) > 0 || scene.intrinsics.count(0) > 0 ? 1 : 0;
-}
-
 class Exporter {
  public:
   Exporter(const Scene& scene, SceneNotes* notes)
@@ -73,15 +69,10 @@ class Exporter {
   Model Export() {
     AddImages();
     AddPoints();
-    NoteRest();
     return std::move(model_);
   }
 
  private:
-  void Note(std::size_t count, const char* what) {
-    if (count > 0) notes_.push_back(std::to_string(count) + " " + what);
-  }
-
   void AddImages() {
     std::size_t num_unposed = 0;
     for (const auto& [id, view] : scene_.views) {
@@ -103,6 +94,8 @@ class Exporter {
       image.cam_from_world = StablePose(*pose);
       image.camera_id = camera_id;
       image.name = ImageName(view);
+      // A text without a name could not be read.
+      if (image.name.empty()) image.name = "image" + std::to_string(image.id);
       if (const auto features = scene_.features.find(id);
           features != scene_.features.end()) {
         for (const Vec2& pixel : features->second.points_px) {
@@ -114,40 +107,27 @@ class Exporter {
     }
     std::sort(model_.cameras.begin(), model_.cameras.end(),
               [](const Camera& a, const Camera& b) { return a.id < b.id; });
-    Note(num_unposed, "views without a pose or an intrinsic were left out");
+    AddNote(num_unposed, "views without a pose or an intrinsic were left out",
+            &notes_);
   }
 
   void AddPoints() {
-    std::size_t num_observations = 0, num_landmarks = 0;
     const std::uint32_t shift = scene_.structure.count(0) > 0 ? 1 : 0;
-    for (const auto& [id, landmark] : scene_.structure) {
-      std::vector<PointObservation> kept;
-      for (const PointObservation& observation : landmark.observations) {
-        if (image_of_.count(observation.view) > 0) kept.push_back(observation);
-      }
-      num_observations += landmark.observations.size() - kept.size();
-      if (kept.size() < 2) {
-        ++num_landmarks;
-        continue;
-      }
+    for (const auto& [id, landmark] : SolvedLandmarks(scene_, &notes_)) {
       Point3D point;
       point.id = std::uint64_t{id.value()} + shift;
       point.position = landmark.position;
       double sum_px = 0;
-      for (const PointObservation& observation : kept) {
+      for (const PointObservation& observation : landmark.observations) {
         Image& image = model_.images[image_of_.at(observation.view)];
         point.track.push_back({image.id, Place(observation, point.id, &image)});
         sum_px += ErrorPx(image, image.points[point.track.back().point_index],
                           landmark.position);
       }
-      point.error_px = sum_px / static_cast<double>(kept.size());
+      point.error_px =
+          sum_px / static_cast<double>(landmark.observations.size());
       model_.points.push_back(std::move(point));
     }
-    Note(num_observations,
-         "observations from views without a pose or an intrinsic were left "
-         "out");
-    Note(num_landmarks,
-         "landmarks with fewer than two observations were left out");
   }
 
   // The index of an observation in POINTS2D: of its feature, if the scene has
@@ -182,19 +162,6 @@ class Exporter {
         .norm();
   }
 
-  void NoteRest() {
-    const bool has_own_content =
-        !scene_.relative_poses.empty() || !scene_.point_tracks.empty() ||
-        !scene_.line_tracks.empty() || !scene_.scale_ratios.empty() ||
-        !scene_.line_structure.empty() || !scene_.coplanar_pairs.empty() ||
-        !scene_.control_points.empty();
-    if (has_own_content) {
-      notes_.push_back(
-          "relative poses, tracks, scale ratios, lines, coplanar pairs and "
-          "control points have no place in COLMAP's model and were left out");
-    }
-  }
-
   const Scene& scene_;
   SceneNotes& notes_;
   const std::uint32_t shift_;
@@ -204,6 +171,10 @@ class Exporter {
 };
 
 }  // namespace
+
+std::uint32_t IdShift(const Scene& scene) {
+  return scene.views.count(0) > 0 || scene.intrinsics.count(0) > 0 ? 1 : 0;
+}
 
 Result<Model> ModelFromScene(const Scene& scene, SceneNotes* notes) {
   LOWLAP_RETURN_IF_ERROR(ValidateScene(scene));

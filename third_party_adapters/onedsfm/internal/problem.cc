@@ -10,7 +10,8 @@
 
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
-#include "third_party_adapters/onedsfm/internal/bundle_file.h"
+#include "third_party_adapters/bundler/internal/bundle.h"
+#include "third_party_adapters/bundler/internal/image_list.h"
 #include "third_party_adapters/onedsfm/internal/problem_files.h"
 
 namespace lowlap::onedsfm {
@@ -38,7 +39,7 @@ Status ReadIfThere(const std::string& path,
 struct Files {
   std::optional<std::vector<RelativeGeometry>> geometries;
   std::optional<std::vector<ImageIndex>> used;
-  std::optional<std::vector<ListedImage>> list;
+  std::optional<std::vector<bundler::ListedImage>> list;
   std::optional<std::map<ImageIndex, ImageKeys>> coords;
   std::optional<std::vector<KeyTrack>> tracks;
 };
@@ -53,7 +54,7 @@ Result<Files> ReadFiles(const std::string& folder) {
     return MakeError(ErrorCode::kNotFound, "there is no EGs.txt", folder);
   }
   LOWLAP_RETURN_IF_ERROR(read("cc.txt", ParseIndices, &files.used));
-  LOWLAP_RETURN_IF_ERROR(read("list.txt", ParseList, &files.list));
+  LOWLAP_RETURN_IF_ERROR(read("list.txt", bundler::ParseList, &files.list));
   LOWLAP_RETURN_IF_ERROR(read("coords.txt", ParseCoords, &files.coords));
   LOWLAP_RETURN_IF_ERROR(read("tracks.txt", ParseTracks, &files.tracks));
   return files;
@@ -241,8 +242,8 @@ Result<Problem> ReadProblem(const std::string& folder) {
 
 Result<std::map<ViewId, Pose>> ReadTruePoses(const std::string& folder) {
   std::optional<std::map<ViewId, Pose>> poses;
-  LOWLAP_RETURN_IF_ERROR(
-      ReadIfThere(PathOf(folder, "gt_bundle.out"), ParseBundlePoses, &poses));
+  LOWLAP_RETURN_IF_ERROR(ReadIfThere(PathOf(folder, "gt_bundle.out"),
+                                     bundler::ParseBundlePoses, &poses));
   if (!poses) {
     return MakeError(ErrorCode::kNotFound,
                      "there is no gt_bundle.out, the reference cameras",

@@ -1,9 +1,8 @@
 #include "third_party_adapters/onedsfm/internal/problem_files.h"
 
-#include <algorithm>
+#include <charconv>
 
-#include "lowlap/core/internal/token_reader.h"
-#include "lowlap/geometry/internal/rotation.h"
+#include "third_party_adapters/internal/number_text.h"
 
 namespace lowlap::onedsfm {
 namespace {
@@ -35,25 +34,15 @@ Result<std::vector<RelativeGeometry>> ParseGeometries(std::string_view text,
     RelativeGeometry geometry;
     geometry.i = reader.Next<ImageIndex>("an image index");
     geometry.j = reader.Next<ImageIndex>("an image index");
-    Mat3 rotation;
-    for (int r = 0; r < 3; ++r) {
-      for (int c = 0; c < 3; ++c) {
-        rotation(r, c) = reader.Next<double>("a number of the rotation");
-      }
-    }
-    for (int n = 0; n < 3; ++n) {
-      geometry.direction(n) = reader.Next<double>("a number of the direction");
-    }
+    geometry.rotation = NextRotation("images " + std::to_string(geometry.i) +
+                                         " and " + std::to_string(geometry.j),
+                                     &reader);
+    geometry.direction = NextVec3("a number of the direction", &reader);
     if (!reader.status()) break;
     if (geometry.i == geometry.j) {
       reader.Fail("image " + std::to_string(geometry.i) +
                   " is paired with itself");
       break;
-    }
-    geometry.rotation = NearestRotation(rotation);
-    if (!((geometry.rotation - rotation).cwiseAbs().maxCoeff() < 1e-3)) {
-      reader.Fail("the matrix of images " + std::to_string(geometry.i) +
-                  " and " + std::to_string(geometry.j) + " is no rotation");
     }
     if (!(geometry.direction.norm() > 0)) {
       reader.Fail("the direction of images " + std::to_string(geometry.i) +
@@ -76,32 +65,6 @@ Result<std::vector<ImageIndex>> ParseIndices(std::string_view text,
   }
   if (!reader.status()) return reader.error();
   return indices;
-}
-
-Result<std::vector<ListedImage>> ParseList(std::string_view text,
-                                           const std::string& file) {
-  TokenReader reader(text, file);
-  std::vector<ListedImage> images;
-  std::string_view line;
-  while (reader.NextLine(&line)) {
-    ListedImage image;
-    // `name`, or `name 0 focal`; names have no blanks.
-    const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
-    image.name = std::string(line.substr(0, end));
-    const std::size_t last = line.find_last_of(" \t");
-    if (end < line.size()) {
-      if (!ParseField(line.substr(last + 1), &image.focal_px) ||
-          !(image.focal_px >= 0) || !std::isfinite(image.focal_px)) {
-        reader.Fail("'" + std::string(line.substr(last + 1, 32)) +
-                    "' is not a focal length");
-        return reader.error();
-      }
-    }
-    images.push_back(std::move(image));
-  }
-  // An empty line at the end is none; elsewhere it would shift the indices.
-  while (!images.empty() && images.back().name.empty()) images.pop_back();
-  return images;
 }
 
 Result<std::map<ImageIndex, ImageKeys>> ParseCoords(std::string_view text,

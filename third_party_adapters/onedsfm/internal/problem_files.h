@@ -28,14 +28,6 @@ Result<std::vector<RelativeGeometry>> ParseGeometries(std::string_view text,
 Result<std::vector<ImageIndex>> ParseIndices(std::string_view text,
                                              const std::string& file);
 
-/// One line of list.txt.
-struct ListedImage {
-  std::string name;
-  double focal_px = 0;  // 0: unknown
-};
-Result<std::vector<ListedImage>> ParseList(std::string_view text,
-                                           const std::string& file);
-
 /// One image of coords.txt.
 struct ImageKeys {
   std::string name;

@@ -10,9 +10,12 @@ namespace lowlap::onedsfm {
 SceneFormats OneDSfmFormats() {
   SceneFormat format;
   format.name = "1dsfm";
-  format.description =
-      "a problem folder of 1DSfM (EGs.txt, cc.txt, ...), read only";
+  format.description = "a problem folder of 1DSfM (EGs.txt, cc.txt, ...)";
   format.recognizes_folder = IsProblemFolder;
+  format.holds = {SceneContent::kNames,         SceneContent::kIntrinsics,
+                  SceneContent::kFrames,        SceneContent::kKeypoints,
+                  SceneContent::kRelativePoses, SceneContent::kPointMatches,
+                  SceneContent::kPointTracks};
   format.read = [](const std::string& path,
                    SceneNotes* notes) -> Result<Scene> {
     LOWLAP_ASSIGN_OR_RETURN(auto problem, ReadProblem(path));

@@ -43,6 +43,13 @@ auto WritePrepared(FormatScene format) {
   };
 }
 
+const SceneContents kHeld = {
+    SceneContent::kNames,        SceneContent::kIntrinsics,
+    SceneContent::kFrames,       SceneContent::kDistortions,
+    SceneContent::kPoses,        SceneContent::kCenterPriors,
+    SceneContent::kPoints,       SceneContent::kObservations,
+    SceneContent::kControlPoints};
+
 }  // namespace
 
 SceneFormats OpenMvgFormats() {
@@ -50,6 +57,7 @@ SceneFormats OpenMvgFormats() {
   json.name = "openmvg-json";
   json.description =
       "OpenMVG's sfm_data as JSON, without what OpenMVG does not know";
+  json.holds = kHeld;
   json.read = [](const std::string& path, SceneNotes*) {
     return ReadSceneJson(path);
   };
@@ -60,6 +68,7 @@ SceneFormats OpenMvgFormats() {
   bin.description = "OpenMVG's sfm_data.bin (*.bin)";
   bin.extension = ".bin";
   bin.recognizes_start = IsBinStart;
+  bin.holds = kHeld;
   bin.read = [](const std::string& path, SceneNotes*) {
     return ReadSfmDataBin(path);
   };
@@ -70,6 +79,7 @@ SceneFormats OpenMvgFormats() {
   xml.description = "OpenMVG's sfm_data.xml (*.xml)";
   xml.extension = ".xml";
   xml.recognizes_start = IsXmlStart;
+  xml.holds = kHeld;
   xml.read = [](const std::string& path, SceneNotes*) {
     return ReadSfmDataXml(path);
   };

@@ -1,0 +1,10 @@
+#pragma once
+
+#include "lowlap/io/scene_format.h"
+
+namespace lowlap::limap {
+
+/// "limap": folders of LIMAP (line_folder.h).
+SceneFormats LimapFormats();
+
+}  // namespace lowlap::limap
