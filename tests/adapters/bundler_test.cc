@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -201,6 +202,17 @@ TEST(RadialCamera, SaysHowWellItApproximates) {
   ASSERT_THAT(undistorts, IsOk());
   EXPECT_NEAR(undistorts->camera.k[0], 0.05, 0.01);
   EXPECT_LT(undistorts->error_px, 0.7);
+}
+
+TEST(RadialCamera, TakesTheMeanOfTwoFocalLengths) {
+  Intrinsic intrinsic = Distorted(CameraModel::kPinhole, {});
+  intrinsic.fx_px = 901;
+  const auto fit = RadialFromIntrinsic(intrinsic, RadialForm::kDistorts);
+  ASSERT_THAT(fit, IsOk());
+  EXPECT_DOUBLE_EQ(fit->camera.focal_px, std::sqrt(900.0 * 901.0));
+  EXPECT_EQ(fit->camera.k[0], 0);
+  // Half a pixel in 900, at the corners 520 and 410 px from the middle.
+  EXPECT_NEAR(fit->error_px, 0.5 / 900 * std::hypot(520, 410), 1e-3);
 }
 
 TEST(RadialCamera, RefusesWhatItCannotHold) {

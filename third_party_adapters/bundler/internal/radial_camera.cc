@@ -76,7 +76,11 @@ RadialFit Fit(const Intrinsic& intrinsic, RadialForm form) {
     if (distorts) a.block<2, 1>(2 * n, 1) = r2 * r2 * from;
     b.segment<2>(2 * n) = to - from;
   }
-  const Eigen::VectorXd k = a.colPivHouseholderQr().solve(b);
+  Eigen::VectorXd k = Eigen::VectorXd::Zero(a.cols());
+  // Two focal lengths alone are no distortion.
+  if (intrinsic.model != CameraModel::kPinhole) {
+    k = a.colPivHouseholderQr().solve(b);
+  }
   std::copy(k.begin(), k.end(), fit.camera.k.begin());
   const Eigen::VectorXd residual = a * k - b;
   for (std::size_t n = 0; n < samples.size(); ++n) {

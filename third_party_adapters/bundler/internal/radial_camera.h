@@ -33,9 +33,9 @@ struct RadialFit {
 
 /// The camera of an intrinsic: exact for one focal length and k1, k2 alone
 /// (kDistorts), or no distortion and what IntrinsicFromRadial made
-/// (kUndistorts); else the least squares fit over the image. kUnsupported for
-/// panoramas, and where the fit is off by more than a thousandth of the image
-/// diagonal.
+/// (kUndistorts); else the mean focal length and, unless it is a pinhole, the
+/// least squares fit of k over the image. kUnsupported for panoramas, and where
+/// the fit is off by more than a thousandth of the image diagonal.
 Result<RadialFit> RadialFromIntrinsic(const Intrinsic& intrinsic,
                                       RadialForm form);
 
