@@ -60,6 +60,7 @@ void AddEvaluate(CLI::App* program, Action* action);
 void AddFeatures(CLI::App* program, Action* action);
 void AddInspect(CLI::App* program, Action* action);
 void AddDiagnose(CLI::App* program, Action* action);
+void AddDraw(CLI::App* program, Action* action);
 void AddSubsets(CLI::App* program, Action* action);
 void AddConvert(CLI::App* program, Action* action);
 void AddValidate(CLI::App* program, Action* action);

@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   lowlap::cli::AddAdjust(&program, &action);
   lowlap::cli::AddEvaluate(&program, &action);
   lowlap::cli::AddFeatures(&program, &action);
+  lowlap::cli::AddDraw(&program, &action);
   lowlap::cli::AddInspect(&program, &action);
   lowlap::cli::AddDiagnose(&program, &action);
   lowlap::cli::AddSubsets(&program, &action);

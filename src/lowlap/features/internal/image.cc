@@ -172,6 +172,11 @@ Result<GrayImage> DecodeGrayImage(const std::string& bytes,
 
 Result<ImageSize> ReadImageSize(const std::string& path) {
   LOWLAP_ASSIGN_OR_RETURN(const std::string bytes, ReadWholeFile(path));
+  return DecodeImageSize(bytes, path);
+}
+
+Result<ImageSize> DecodeImageSize(const std::string& bytes,
+                                  const std::string& path) {
   LOWLAP_ASSIGN_OR_RETURN(const auto size, SizeFromHead(bytes, path));
   if (size) return *size;
   LOWLAP_ASSIGN_OR_RETURN(const GrayImage image, DecodeGrayImage(bytes, path));

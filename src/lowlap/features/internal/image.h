@@ -42,6 +42,10 @@ Result<GrayImage> DecodeGrayImage(const std::string& bytes,
 /// files are not decoded for it. Errors as there.
 Result<ImageSize> ReadImageSize(const std::string& path);
 
+/// The same from a file's bytes; `path` is for messages only.
+Result<ImageSize> DecodeImageSize(const std::string& bytes,
+                                  const std::string& path);
+
 /// The version of the library that decodes images and finds features.
 std::string ImageLibraryVersion();
 
