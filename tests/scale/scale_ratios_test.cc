@@ -141,6 +141,24 @@ TEST(ProfileScaleRatios, AreThoseOfTheEstimatedRatios) {
       EXPECT_NEAR(profile.mode.nfa.log10_nfa, (*ratios)[n].log10_nfa, 1e-9);
     }
     EXPECT_GT(with_nodes, 0) << has_lines;
+
+    // A sketch asks the same kinds, and evaluates the same NFA.
+    row.scene.scale_ratios = *ratios;
+    const auto sketches =
+        SketchScaleRatios(row.scene, MakeScaleEstimator({})->kinds(), {});
+    ASSERT_TRUE(sketches.has_value());
+    for (std::size_t n = 0; n < ratios->size(); ++n) {
+      const RatioProfile& sketch = (*sketches)[n];
+      const std::vector<RatioOptimum>& nodes = (*profiles)[n].nodes;
+      EXPECT_EQ(sketch.kinds, (*profiles)[n].kinds);
+      EXPECT_LE(sketch.nodes.size(), nodes.size());
+      EXPECT_EQ(sketch.nodes.empty(), nodes.empty());
+      if (nodes.empty()) continue;
+      EXPECT_EQ(sketch.nodes.front().log_ratio, nodes.front().log_ratio);
+      EXPECT_EQ(sketch.nodes.front().nfa.log10_nfa,
+                nodes.front().nfa.log10_nfa);
+      EXPECT_EQ(sketch.nodes.back().nfa.log10_nfa, nodes.back().nfa.log10_nfa);
+    }
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <utility>
 
 #include "lowlap/scale/internal/search/ratio_sweep.h"
@@ -13,15 +14,23 @@
 namespace lowlap {
 namespace {
 
-std::vector<double> Grid(double low, double high, double mode) {
-  constexpr int kEven = 200;
-  constexpr double kFinest = 1e-4;
-  constexpr double kGrowth = 1.25;
+// How close the nodes of a profile are.
+struct GridSpacing {
+  int num_even;
+  double finest;  // distance from the mode of the node next to it
+  double growth;  // of this distance, to the node after that
+};
+constexpr GridSpacing kProfileGrid = {200, 1e-4, 1.25};
+constexpr GridSpacing kSketchGrid = {48, 1e-3, 1.6};
+
+std::vector<double> Grid(double low, double high, double mode,
+                         const GridSpacing& spacing) {
   std::vector<double> grid = {mode};
-  for (int n = 0; n <= kEven; ++n) {
-    grid.push_back(low + (high - low) * n / kEven);
+  for (int n = 0; n <= spacing.num_even; ++n) {
+    grid.push_back(low + (high - low) * n / spacing.num_even);
   }
-  for (double offset = kFinest; offset < high - low; offset *= kGrowth) {
+  for (double offset = spacing.finest; offset < high - low;
+       offset *= spacing.growth) {
     if (mode - offset > low) grid.push_back(mode - offset);
     if (mode + offset < high) grid.push_back(mode + offset);
   }
@@ -81,6 +90,66 @@ std::optional<RatioOptimum> SecondMode(const RatioSupport& support,
   return second;
 }
 
+// The NFA has paid for the tests of the triplet.
+void PayForTests(const TripletEvidence& evidence, RatioOptimum* optimum) {
+  optimum->nfa.log10_nfa += std::log10(static_cast<double>(evidence.num_tests));
+}
+
+std::vector<std::string> NamesOf(const RatioSupport& support,
+                                 const TripletEvidence& evidence) {
+  std::vector<std::string> names;
+  for (int k = 0; k < support.num_kinds(); ++k) {
+    names.push_back(evidence.kinds[support.PlaceOf(k)].name);
+  }
+  return names;
+}
+
+// On a grid about `mode`, before tests are paid for.
+std::vector<RatioOptimum> EvaluateNodes(const RatioSupport& support,
+                                        const RatioNfaCriterion& criterion,
+                                        double mode,
+                                        const GridSpacing& spacing) {
+  std::vector<RatioOptimum> nodes;
+  SupportWorkspace workspace;
+  for (const double log_ratio :
+       Grid(support.hypotheses().front().log_ratio,
+            support.hypotheses().back().log_ratio, mode, spacing)) {
+    nodes.push_back(
+        {log_ratio,
+         criterion.Evaluate(log_ratio, support.Count(log_ratio, &workspace))});
+  }
+  return nodes;
+}
+
+// Whether the ratio was estimated from no more than this.
+bool HoldsAllOf(const TripletEvidence& evidence, const ScaleRatio& ratio) {
+  return std::all_of(
+      ratio.kinds.begin(), ratio.kinds.end(), [&](const KindSupport& kind) {
+        return std::any_of(
+            evidence.kinds.begin(), evidence.kinds.end(),
+            [&](const auto& asked) { return asked.name == kind.kind; });
+      });
+}
+
+RatioProfile SketchRatio(const TripletView& triplet,
+                         const TripletEvidence& evidence,
+                         const ScaleRatio& ratio) {
+  RatioProfile sketch;
+  if (!HoldsAllOf(evidence, ratio)) {
+    sketch.ratio.verdict = RatioVerdict::kNotMeaningful;  // ask the other kinds
+    return sketch;
+  }
+  sketch.ratio = ratio;
+  const RatioSupport support(evidence);
+  if (support.hypotheses().empty()) return sketch;
+  sketch.kinds = NamesOf(support, evidence);
+  const RatioNfaCriterion criterion(support, triplet, NfaForm::kCalibrated);
+  sketch.nodes =
+      EvaluateNodes(support, criterion, ratio.log_ratio, kSketchGrid);
+  for (RatioOptimum& node : sketch.nodes) PayForTests(evidence, &node);
+  return sketch;
+}
+
 }  // namespace
 
 Result<RatioProfile> ProfileRatio(const TripletView& triplet,
@@ -93,28 +162,16 @@ Result<RatioProfile> ProfileRatio(const TripletView& triplet,
   const RatioSupport support(evidence);
   if (support.hypotheses().empty()) return profile;
 
-  for (int k = 0; k < support.num_kinds(); ++k) {
-    profile.kinds.push_back(evidence.kinds[support.PlaceOf(k)].name);
-  }
+  profile.kinds = NamesOf(support, evidence);
   const RatioNfaCriterion criterion(support, triplet, NfaForm::kCalibrated);
   profile.mode = SweepRatios(support, criterion);
-  SupportWorkspace workspace;
-  for (const double log_ratio :
-       Grid(support.hypotheses().front().log_ratio,
-            support.hypotheses().back().log_ratio, profile.mode.log_ratio)) {
-    profile.nodes.push_back(
-        {log_ratio,
-         criterion.Evaluate(log_ratio, support.Count(log_ratio, &workspace))});
-  }
+  profile.nodes =
+      EvaluateNodes(support, criterion, profile.mode.log_ratio, kProfileGrid);
   profile.second_mode = SecondMode(support, criterion, profile);
-  // The ratio has paid for its tests.
-  const auto pay = [&](RatioOptimum* optimum) {
-    optimum->nfa.log10_nfa +=
-        std::log10(static_cast<double>(evidence.num_tests));
-  };
-  pay(&profile.mode);
-  if (profile.second_mode) pay(&*profile.second_mode);
-  for (RatioOptimum& node : profile.nodes) pay(&node);
+  // The ratio has paid for them.
+  PayForTests(evidence, &profile.mode);
+  if (profile.second_mode) PayForTests(evidence, &*profile.second_mode);
+  for (RatioOptimum& node : profile.nodes) PayForTests(evidence, &node);
   return profile;
 }
 
@@ -123,6 +180,24 @@ Result<std::vector<RatioProfile>> ProfileScaleRatios(
     const EvidenceKinds& kinds, const RunContext& context) {
   return TestTriplets<RatioProfile>(scene, triplets, kinds, context,
                                     "ratio profiles", ProfileRatio);
+}
+
+Result<std::vector<RatioProfile>> SketchScaleRatios(const Scene& scene,
+                                                    const EvidenceKinds& kinds,
+                                                    const RunContext& context) {
+  std::vector<ViewTriplet> triplets;
+  std::map<ViewTriplet, const ScaleRatio*> ratios;
+  for (const ScaleRatio& ratio : scene.scale_ratios) {
+    triplets.push_back(ratio.views);
+    ratios[ratio.views] = &ratio;
+  }
+  const auto sketch = [&](const TripletView& triplet,
+                          const TripletEvidence& evidence) {
+    return Result<RatioProfile>(
+        SketchRatio(triplet, evidence, *ratios.at(triplet.views)));
+  };
+  return TestTriplets<RatioProfile>(scene, triplets, kinds, context,
+                                    "ratio profiles", sketch);
 }
 
 }  // namespace lowlap
