@@ -1,5 +1,8 @@
 #include "lowlap/averaging/internal/pose_warnings.h"
 
+#include <set>
+#include <utility>
+
 #include "lowlap/core/internal/format.h"
 
 namespace lowlap {
@@ -65,52 +68,68 @@ class Writer {
   const Scene& scene_;
 };
 
+std::vector<ViewId> ViewsOf(const std::vector<ViewTriplet>& triplets) {
+  std::set<ViewId> views;
+  for (const ViewTriplet& triplet : triplets) {
+    views.insert({triplet.first, triplet.middle, triplet.last});
+  }
+  return {views.begin(), views.end()};
+}
+
 }  // namespace
 
-std::vector<std::string> PoseWarnings(const PoseSummary& summary,
-                                      const Scene& scene) {
+std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
+                                            const Scene& scene) {
   const Writer writer(scene);
-  std::vector<std::string> warnings;
+  std::vector<PoseWarning> warnings;
   if (!summary.unplaced.empty()) {
     warnings.push_back(
-        "Not placed, since no reliable relative pose and scale joins them to "
-        "the others: " +
-        writer.Names(summary.unplaced) + ".");
+        {"Not placed, since no reliable relative pose and scale joins them to "
+         "the others: " +
+             writer.Names(summary.unplaced) + ".",
+         summary.unplaced});
   }
   for (const ContestedLink& link : summary.contested) {
     warnings.push_back(
-        "Doubtful: only the relative pose " + writer.Pairs({link.edge}) +
-        " places " + writer.Names(link.views) + ", and it is contradicted by " +
-        writer.Pairs(link.contradictions) + ", which have less evidence.");
+        {"Doubtful: only the relative pose " + writer.Pairs({link.edge}) +
+             " places " + writer.Names(link.views) +
+             ", and it is contradicted by " +
+             writer.Pairs(link.contradictions) + ", which have less evidence.",
+         link.views});
   }
   for (const LoopClosing& loop : summary.loops) {
     warnings.push_back(
-        "Doubtful: a loop of " + std::to_string(loop.edges.size()) +
-        " relative poses does not close by " +
-        Format("%.2f", loop.closing_deg) + " degrees (" +
-        Format("%.2f", loop.expected_deg) +
-        " expected). Nothing tells which is wrong; " +
-        (loop.left_out ? "the one of least evidence, " +
-                             writer.Pairs({*loop.left_out}) + ", was left out: "
-                       : std::string("all are used: ")) +
-        writer.Pairs(loop.edges) + ".");
+        {"Doubtful: a loop of " + std::to_string(loop.edges.size()) +
+             " relative poses does not close by " +
+             Format("%.2f", loop.closing_deg) + " degrees (" +
+             Format("%.2f", loop.expected_deg) +
+             " expected). Nothing tells which is wrong; " +
+             (loop.left_out
+                  ? "the one of least evidence, " +
+                        writer.Pairs({*loop.left_out}) + ", was left out: "
+                  : std::string("all are used: ")) +
+             writer.Pairs(loop.edges) + ".",
+         {}});
   }
   if (!summary.weak_ratios.empty()) {
     warnings.push_back(
-        "Doubtful: scale ratios in use that chance explains as well, since "
-        "nothing else places one of their views: " +
-        writer.Triplets(summary.weak_ratios) + ".");
+        {"Doubtful: scale ratios in use that chance explains as well, since "
+         "nothing else places one of their views: " +
+             writer.Triplets(summary.weak_ratios) + ".",
+         ViewsOf(summary.weak_ratios)});
   }
   for (const ReliabilityWarning& doubt : summary.reliability_warnings) {
-    warnings.push_back("Doubtful: " + writer.Names(doubt.views) + ": " +
-                       writer.Why(doubt) + ".");
+    warnings.push_back({"Doubtful: " + writer.Names(doubt.views) + ": " +
+                            writer.Why(doubt) + ".",
+                        doubt.views});
   }
   if (!summary.unchecked.empty()) {
     warnings.push_back(
-        "Relative poses in use that lie on no cycle, so that no "
-        "other one can confirm them: " +
-        std::to_string(summary.unchecked.size()) + " of " +
-        std::to_string(summary.num_edges) + ".");
+        {"Relative poses in use that lie on no cycle, so that no "
+         "other one can confirm them: " +
+             std::to_string(summary.unchecked.size()) + " of " +
+             std::to_string(summary.num_edges) + ".",
+         {}});
   }
   const auto left_out = [&](OutlierReason reason, const std::string& why) {
     std::vector<ViewPair> pairs;
@@ -118,9 +137,10 @@ std::vector<std::string> PoseWarnings(const PoseSummary& summary,
       if (edge.reason == reason) pairs.push_back(edge.views);
     }
     if (pairs.empty()) return;
-    warnings.push_back("Relative poses left out because " + why + " (" +
-                       std::to_string(pairs.size()) +
-                       "): " + writer.Pairs(pairs) + ".");
+    warnings.push_back({"Relative poses left out because " + why + " (" +
+                            std::to_string(pairs.size()) +
+                            "): " + writer.Pairs(pairs) + ".",
+                        {}});
   };
   left_out(OutlierReason::kRotation, "their rotations contradict the others");
   left_out(OutlierReason::kDirection,
@@ -129,6 +149,15 @@ std::vector<std::string> PoseWarnings(const PoseSummary& summary,
            "no cycle confirms them and what contradicts them has more "
            "evidence");
   return warnings;
+}
+
+std::vector<std::string> PoseWarnings(const PoseSummary& summary,
+                                      const Scene& scene) {
+  std::vector<std::string> texts;
+  for (PoseWarning& warning : PoseWarningsByView(summary, scene)) {
+    texts.push_back(std::move(warning.text));
+  }
+  return texts;
 }
 
 }  // namespace lowlap

@@ -15,4 +15,14 @@ namespace lowlap {
 std::vector<std::string> PoseWarnings(const PoseSummary& summary,
                                       const Scene& scene);
 
+/// The same, each with the views whose place it is about: none where it is
+/// about relative poses.
+struct PoseWarning {
+  std::string text;
+  std::vector<ViewId> views;
+};
+
+std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
+                                            const Scene& scene);
+
 }  // namespace lowlap
