@@ -14,6 +14,7 @@ packages=(
   nlohmann-json3-dev libcereal-dev libcli11-dev libexpected-dev
   zlib1g-dev libxxhash-dev libsqlite3-dev
   libgtest-dev libgmock-dev
+  libjs-three
   "$@"
 )
 

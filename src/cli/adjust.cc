@@ -57,6 +57,8 @@ Result<int> Adjust(const Flags& flags) {
     LOWLAP_ASSIGN_OR_RETURN(
         result.structure, BuildStructure(&scene, StructureOptions{}, context));
   }
+  result.poses_before_adjustment = scene.poses;
+  result.structure_before_adjustment = PositionsOf(scene);
   {
     const StageLog::Scope scope(&stages, "adjustment");
     auto adjustment = AdjustScene(&scene, options, context);
@@ -68,7 +70,10 @@ Result<int> Adjust(const Flags& flags) {
     }
     result.adjustment = std::move(*adjustment);
   }
-  if (truth) summary.evaluation = EvaluatePoses(scene, *truth);
+  if (truth) {
+    summary.evaluation = EvaluatePoses(scene, *truth);
+    summary.truth = *truth;
+  }
   result.ratios = SummarizeRatios(scene.scale_ratios);
   result.poses.num_views = static_cast<int>(scene.views.size());
   for (const auto& entry : scene.views) {
@@ -80,7 +85,7 @@ Result<int> Adjust(const Flags& flags) {
   }
   summary.solve = std::move(result);
   summary.stages = stages.stages();
-  LOWLAP_RETURN_IF_ERROR(WriteOutputs(scene, summary, flags.output));
+  LOWLAP_RETURN_IF_ERROR(WriteOutputs(scene, summary, context, flags.output));
   const AdjustmentSummary& adjustment = *summary.solve->adjustment;
   std::printf("cost %.6g -> %.6g in %d iterations, %d outlier rounds\n",
               adjustment.initial_cost, adjustment.final_cost,

@@ -73,6 +73,7 @@ Result<Scene> Measure(const Flags& flags, const ViewCheck& check,
       MeasurePhotographs(photographs, flags.solve, context, stages, &scene));
   summary->pairs = std::move(report.pairs);
   summary->unrelated = std::move(report.unrelated);
+  summary->detected = std::move(report.detected);
   return scene;
 }
 

@@ -39,6 +39,7 @@ Result<int> Run(const RunFlags& flags) {
       MeasurePhotographs(photographs, flags.solve, context, &stages, &scene));
   summary.pairs = std::move(report.pairs);
   summary.unrelated = std::move(report.unrelated);
+  summary.detected = std::move(report.detected);
   return SolveAndWrite(std::move(scene), flags.solve, std::move(summary),
                        &stages, context, photographs.images, {flags.output});
 }

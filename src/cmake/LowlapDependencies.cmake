@@ -26,6 +26,19 @@ find_library(COINUTILS_LIBRARY CoinUtils REQUIRED)
 find_library(CHOLMOD_LIBRARY cholmod REQUIRED)
 find_path(CHOLMOD_INCLUDE_DIR cholmod.h PATH_SUFFIXES suitesparse REQUIRED)
 
+# three.js draws the space of report.html (Debian: libjs-three); its text becomes
+# part of the library. Versions after r147 have no OrbitControls for pages
+# without modules.
+find_file(LOWLAP_THREE_JS three.min.js
+          PATHS /usr/share/javascript/three /usr/share/nodejs/three/build)
+find_file(LOWLAP_ORBIT_CONTROLS_JS OrbitControls.js
+          PATHS /usr/share/javascript/three /usr/share/nodejs/three
+          PATH_SUFFIXES examples/js/controls)
+if(NOT LOWLAP_THREE_JS OR NOT LOWLAP_ORBIT_CONTROLS_JS)
+  message(STATUS "three.js (libjs-three) was not found: report.html will show "
+                 "no space, only the rest")
+endif()
+
 # Debian's packages of what the static libraries are linked with.
 set(LOWLAP_DEVELOPMENT_PACKAGES
     libeigen3-dev libceres-dev libsuitesparse-dev coinor-libclp-dev

@@ -186,6 +186,7 @@ Solution MeasurePhotographs(const Photographs& photographs,
   });
   solution.summary.pairs = std::move(report.pairs);
   solution.summary.unrelated = std::move(report.unrelated);
+  solution.summary.detected = std::move(report.detected);
   return solution;
 }
 
@@ -204,10 +205,14 @@ void SolveInPlace(const SolveArguments& arguments, Call* call, StageLog* stages,
           scene->views, summary.solve->poses_before_adjustment, *truth);
     }
     summary.evaluation = EvaluatePoses(*scene, *truth);
+    summary.truth = *truth;
   }
+  summary.kinds = options.scale_estimator->kinds();
   summary.stages = stages->stages();
   if (arguments.output.empty()) return;
-  call->Run([&] { return WriteOutputs(*scene, summary, arguments.output); });
+  call->Run([&] {
+    return WriteOutputs(*scene, summary, call->context(), arguments.output);
+  });
 }
 
 void BindSolve(py::module_& module) {
@@ -268,7 +273,7 @@ void BindSolve(py::module_& module) {
           "write",
           [](const Solution& s, const std::filesystem::path& folder) {
             const Status written =
-                WriteOutputs(*s.scene, s.summary, folder.string());
+                WriteOutputs(*s.scene, s.summary, {}, folder.string());
             RaiseIfError(written);
           },
           py::arg("folder"),

@@ -3,60 +3,268 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "lowlap/report/internal/scene_drawing.h"
+#include <cmath>
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "lowlap/report/internal/base64.h"
+#include "lowlap/report/internal/page_data.h"
+#include "lowlap/report/internal/page_source.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
 namespace lowlap {
 namespace {
 
+using nlohmann::json;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-// The numbers of one list of the drawing.
-std::vector<double> Numbers(const std::string& drawing,
-                            const std::string& name) {
-  std::vector<double> numbers;
-  std::size_t at = drawing.find(name + ":[") + name.size() + 2;
-  while (drawing[at] != ']') {
-    numbers.push_back(std::stod(drawing.substr(at)));
-    at = drawing.find(',', at) + 1;
+template <class Number>
+std::vector<Number> Decode(const std::string& base64) {
+  std::string bytes;
+  unsigned group = 0;
+  int num_bits = 0;
+  for (const char c : base64) {
+    const std::string digits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    if (c == '=') break;
+    group = group << 6 | static_cast<unsigned>(digits.find(c));
+    num_bits += 6;
+    if (num_bits < 8) continue;
+    num_bits -= 8;
+    bytes += static_cast<char>(group >> num_bits & 0xFF);
   }
+  std::vector<Number> numbers(bytes.size() / sizeof(Number));
+  std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));
   return numbers;
 }
 
-TEST(DrawingData, HoldsEveryCameraLineAndTheRightShareOfPoints) {
+TEST(Base64, IsThatOfTheRfc) {
+  EXPECT_EQ(Base64(std::string_view("")), "");
+  EXPECT_EQ(Base64(std::string_view("f")), "Zg==");
+  EXPECT_EQ(Base64(std::string_view("fo")), "Zm8=");
+  EXPECT_EQ(Base64(std::string_view("foo")), "Zm9v");
+  EXPECT_EQ(Base64(std::string_view("\xff\xfe\xfd")), "//79");
+  EXPECT_THAT(Decode<float>(Base64(std::vector<float>{1.5f, -2.0f})),
+              ElementsAre(1.5f, -2.0f));
+}
+
+Scene Room(int num_views, int points_per_wall) {
   SyntheticOptions options;
-  options.num_views = 7;
-  const Scene scene = TrueSolution(*Simulate(options));
-  const std::string drawing = DrawingData(scene, 50);
-  EXPECT_EQ(Numbers(drawing, "cameras").size(), 7u * 5 * 3);
-  EXPECT_EQ(Numbers(drawing, "segments").size(),
-            scene.line_structure.size() * 6);
-  const std::size_t points = Numbers(drawing, "points").size() / 3;
-  EXPECT_LE(points, 50u);
-  EXPECT_GE(points, 25u);
-  // All cameras lie within the frame, their frusta a little outside at most.
-  for (const double x : Numbers(drawing, "cameras")) EXPECT_LT(x, 1.2);
+  options.num_views = num_views;
+  options.points_per_wall = points_per_wall;
+  return TrueSolution(*Simulate(options));
 }
 
-TEST(DrawingData, AnEmptySceneIsAnEmptyDrawing) {
-  EXPECT_EQ(DrawingData(Scene(), 10), "{points:[],segments:[],cameras:[]}");
-}
-
-TEST(FormatReport, EscapesTextAndHoldsTheTables) {
+// What a run would say of the scene.
+ReportContent ContentOf(const Scene& scene) {
   ReportContent content;
+  content.title = "lowlap run";
+  content.figures = {{"cameras placed", "7 of 7"}};
+  content.warnings = {{"of a view", {scene.views.begin()->first}}};
+  for (const auto& [views, pose] : scene.relative_poses) {
+    ReportPair pair;
+    pair.views = views;
+    pair.is_used = true;
+    pair.log10_nfa = -12;
+    content.pairs.push_back(pair);
+  }
+  ReportStage before;
+  before.poses = scene.poses;
+  for (const auto& [id, landmark] : scene.structure) {
+    before.points[id] = landmark.position;
+  }
+  content.before_adjustment = before;
+  ReportTruth truth;
+  for (const auto& [id, view] : scene.views) {
+    truth.poses[id] = *scene.FindPose(id);
+    truth.position_errors[id] = 0.25;
+  }
+  content.truth = truth;
+  return content;
+}
+
+TEST(PageData, HasAllSections) {
+  Scene scene = Room(7, 60);
+  scene.scale_ratios.push_back({});
+  scene.scale_ratios.back().views = {0, 1, 2};
+  scene.scale_ratios.back().verdict = RatioVerdict::kMeaningful;
+  scene.scale_ratios.back().log10_nfa = -40;
+  ReportContent content = ContentOf(scene);
+  content.profiles[{0, 1, 2}] = {
+      {-1, 0, 1}, {0, -40, 0}, {{"lines", {0, -40, 0}}}};
+  const json page = json::parse(PageData(scene, content));
+  for (const char* section :
+       {"title", "figures", "warnings", "views", "points", "lines",
+        "coplanar_pairs", "pairs", "triplets", "residuals", "thinning"}) {
+    EXPECT_TRUE(page.contains(section)) << section;
+  }
+  ASSERT_EQ(page["views"].size(), 7u);
+  for (const json& view : page["views"]) {
+    // Every camera lies within the frame, as it was before and as it is true.
+    for (const char* camera : {"camera", "camera_before", "camera_true"}) {
+      ASSERT_TRUE(view.contains(camera)) << camera;
+      double square = 0;
+      for (const double x : view[camera]["center"]) square += x * x;
+      EXPECT_LT(std::sqrt(square), 1 + 1e-6) << camera;
+    }
+    EXPECT_EQ(view["position_error"], 0.25);
+    const auto landmarks = Decode<std::uint32_t>(view["features"]["landmarks"]);
+    EXPECT_EQ(Decode<std::uint16_t>(view["features"]["points"]).size(),
+              2 * landmarks.size());
+    for (const std::uint32_t landmark : landmarks) {
+      EXPECT_TRUE(landmark == 0xFFFFFFFF || landmark < scene.structure.size());
+    }
+  }
+  EXPECT_EQ(Decode<float>(page["points"]["positions"]).size(),
+            3 * scene.structure.size());
+  EXPECT_EQ(Decode<float>(page["points"]["before"]),
+            Decode<float>(page["points"]["positions"]));
+  EXPECT_EQ(Decode<float>(page["lines"]["positions"]).size(),
+            6 * scene.line_structure.size());
+  EXPECT_TRUE(std::isnan(Decode<float>(page["lines"]["before"]).front()));
+  EXPECT_EQ(page["warnings"][0]["views"], json({0}));
+  const json& triplet = page["triplets"][0];
+  EXPECT_THAT(Decode<std::int16_t>(triplet["profile"]["total"]),
+              ElementsAre(0, -400, 0));
+  EXPECT_TRUE(triplet.contains("true_log_ratio"));
+  // The truth has no residuals but rounding, on every observation.
+  const json& points = page["residuals"]["points"];
+  EXPECT_GT(points["after"]["total"], 300);
+  EXPECT_NEAR(points["after"]["rmse_px"].get<double>(), 0, 2);
+  EXPECT_EQ(points["before"]["total"], points["after"]["total"]);
+  EXPECT_EQ(points["views"].size(), 7u);
+}
+
+TEST(PageData, MatchesReferToTheFeaturesThatAreKept) {
+  const Scene scene = Room(5, 100);
+  PageLimits limits;
+  limits.features = 300;
+  limits.points = 100;
+  const json page = json::parse(PageData(scene, ContentOf(scene), limits));
+  EXPECT_GT(page["thinning"]["feature_stride"], 1);
+  EXPECT_LE(Decode<float>(page["points"]["positions"]).size(), 300u);
+  std::size_t num_matches = 0;
+  for (const json& pair : page["pairs"]) {
+    const auto places = Decode<std::uint32_t>(pair["points"]);
+    num_matches += places.size() / 2;
+    for (std::size_t n = 0; n < places.size(); ++n) {
+      const json& view = page["views"][pair["views"][n % 2].get<int>()];
+      ASSERT_LT(places[n],
+                Decode<std::uint16_t>(view["features"]["points"]).size() / 2);
+    }
+  }
+  EXPECT_GT(num_matches, 20u);
+}
+
+TEST(PageData, IsSafeInAScriptElement) {
+  Scene scene = Room(3, 20);
+  scene.views.begin()->second.filename =
+      "</script><script>bad()</script><!-- \xff \"quoted\".jpg";
+  ReportContent content = ContentOf(scene);
   content.title = "a <b> & c";
-  content.figures.emplace_back("cameras", "3 of 4");
-  content.warnings.emplace_back("<script>bad</script>");
-  content.notes.emplace_back("1 < 2");
-  content.tables.push_back({"Ratios", "", {"name", "value"}, {{"x<y", "1.5"}}});
-  const std::string page = FormatReport(Scene(), content);
-  EXPECT_THAT(page, HasSubstr("<h1>a &lt;b&gt; &amp; c</h1>"));
-  EXPECT_THAT(page, HasSubstr("3 of 4"));
-  EXPECT_THAT(page, HasSubstr("<td>x&lt;y</td><td>1.5</td>"));
-  EXPECT_THAT(page, Not(HasSubstr("<script>bad")));
-  EXPECT_THAT(page, HasSubstr("<ul class=\"warnings\">\n<li>&lt;script"));
-  EXPECT_THAT(page, HasSubstr("<ul class=\"notes\">\n<li>1 &lt; 2</li>"));
+  content.warnings.push_back({"</ScRiPt>", {}});
+  content.notes.push_back("1 < 2");
+  const std::string data = PageData(scene, content);
+  EXPECT_THAT(data, Not(HasSubstr("<")));
+  const json page = json::parse(data);
+  EXPECT_THAT(page["views"][0]["name"].get<std::string>(),
+              HasSubstr("</script><script>bad()</script><!-- "));
+  EXPECT_EQ(page["title"], "a <b> & c");
+  EXPECT_EQ(page["notes"], json({"1 < 2"}));
+
+  const std::string html = FormatReport(scene, content);
+  EXPECT_THAT(html, HasSubstr("<title>a &lt;b&gt; &amp; c</title>"));
+  EXPECT_THAT(html, Not(HasSubstr("bad()</script>")));
+}
+
+TEST(PageData, OfAnEmptySceneParses) {
+  const json page = json::parse(PageData(Scene(), ReportContent()));
+  EXPECT_TRUE(page["views"].empty());
+  EXPECT_EQ(page["residuals"]["points"]["after"]["total"], 0);
+}
+
+TEST(PageData, ShowsTheSolutionBeforeTheAdjustmentInItsGauge) {
+  const Scene scene = Room(5, 50);
+  ReportContent content = ContentOf(scene);
+  // The same solution, twice as large and elsewhere.
+  ReportStage& before = *content.before_adjustment;
+  for (auto& [id, pose] : before.poses) {
+    pose.center = 2 * pose.center + Vec3(1, 2, 3);
+  }
+  for (auto& [id, point] : before.points) point = 2 * point + Vec3(1, 2, 3);
+  const json page = json::parse(PageData(scene, content));
+  const auto after = Decode<float>(page["points"]["positions"]);
+  const auto aligned = Decode<float>(page["points"]["before"]);
+  ASSERT_EQ(after.size(), aligned.size());
+  for (std::size_t n = 0; n < after.size(); ++n) {
+    EXPECT_NEAR(after[n], aligned[n], 1e-5);
+  }
+}
+
+// The size that a page of usual photographs has at most.
+TEST(FormatReport, StaysSmall) {
+  Scene scene = Room(30, 0);
+  // Every view sees six thousand points, each of them seen by four neighbours.
+  for (std::uint32_t n = 0; n < 50000; ++n) {
+    const double angle = 0.7 * n;
+    Landmark& landmark = scene.structure[n];
+    landmark.position = Vec3(std::cos(angle), std::sin(angle), 1e-4 * n);
+    for (std::uint32_t k = 0; k < 4; ++k) {
+      const ViewId view = (n + k) % 30;
+      ViewFeatures& features = scene.features[view];
+      const auto feature = static_cast<FeatureIndex>(features.points_px.size());
+      features.points_px.emplace_back(n % 1201, n % 797);
+      landmark.observations.push_back(
+          {view, feature, features.points_px.back()});
+      scene.point_tracks[n].push_back({view, feature});
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t l = k + 1; l < 4; ++l) {
+        const PointObservation& a = landmark.observations[k];
+        const PointObservation& b = landmark.observations[l];
+        RelativePose& pose = scene.relative_poses[{std::min(a.view, b.view),
+                                                   std::max(a.view, b.view)}];
+        pose.point_inliers.push_back(a.view < b.view
+                                         ? FeatureMatch{a.feature, b.feature}
+                                         : FeatureMatch{b.feature, a.feature});
+      }
+    }
+  }
+  for (auto& [views, pose] : scene.relative_poses) pose.views = views;
+  ReportContent content = ContentOf(scene);
+  for (const auto& [id, view] : scene.views) {
+    content.photographs[id] = std::string(45000, 'x');
+    content.detected[id].points_px.assign(20000, Vec2(5, 5));
+    content.detected[id].segments.resize(3000);
+  }
+  for (std::uint32_t n = 0; n < 1000; ++n) {
+    ScaleRatio ratio;
+    ratio.views = {n % 30, (n + 1) % 30, (n + 2 + n / 30) % 30};
+    ratio.verdict = RatioVerdict::kMeaningful;
+    scene.scale_ratios.push_back(ratio);
+    const std::vector<double> values(80, -5.0);
+    content.profiles[ratio.views] = {
+        values,
+        values,
+        {{"points", values}, {"lines", values}, {"coplanar", values}}};
+  }
+  const std::string page = FormatReport(scene, content);
+  EXPECT_LT(page.size(), 15e6);
+  EXPECT_GT(page.size(), 4e6);
+}
+
+TEST(FormatReport, HoldsAllThatThePageNeeds) {
+  const std::string page = FormatReport(Room(3, 10), ReportContent());
+  EXPECT_THAT(page, HasSubstr("<!DOCTYPE html>"));
+  EXPECT_THAT(page, HasSubstr(std::string(kPageSource.style.substr(0, 60))));
+  EXPECT_THAT(page, HasSubstr(std::string(kPageSource.script.substr(0, 60))));
+  // Nothing is fetched.
+  EXPECT_THAT(page, Not(HasSubstr("src=\"http")));
+  EXPECT_THAT(page, Not(HasSubstr("<link rel=\"stylesheet\"")));
 }
 
 }  // namespace

@@ -262,7 +262,9 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
           EvaluatePoses(scene.views, result->poses_before_adjustment, *truth);
     }
     summary.evaluation = EvaluatePoses(scene, *truth);
+    summary.truth = *truth;
   }
+  summary.kinds = options.scale_estimator->kinds();
   summary.solve = std::move(*result);
   summary.stages = stages->stages();
   if (IsInterrupted()) return MakeError(ErrorCode::kCancelled, {});
@@ -275,7 +277,7 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
     return {};
   };
   LOWLAP_RETURN_IF_ERROR(
-      WriteOutputs(scene, summary, output.folder, add_scene_file));
+      WriteOutputs(scene, summary, context, output.folder, add_scene_file));
   for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
 
   PrintPoses(summary.solve->poses, scene);

@@ -106,6 +106,19 @@ std::size_t CountScaleParts(const Scene& scene, const PoseSummary& summary) {
 
 }  // namespace
 
+StructurePositions PositionsOf(const Scene& scene) {
+  StructurePositions positions;
+  for (const auto& [id, landmark] : scene.structure) {
+    positions.points.emplace_hint(positions.points.end(), id,
+                                  landmark.position);
+  }
+  for (const auto& [id, line] : scene.line_structure) {
+    positions.lines.emplace_hint(positions.lines.end(), id,
+                                 std::array{line.start, line.end});
+  }
+  return positions;
+}
+
 Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
                                  const RunContext& context, StageLog* stages) {
   const StageLog::Scope scope(stages, "rotations");
@@ -168,6 +181,7 @@ Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
   }
   if (options.adjust) {
     const StageLog::Scope scope(stages, "adjustment");
+    refinement.before_adjustment = PositionsOf(*scene);
     LOWLAP_ASSIGN_OR_RETURN(refinement.adjustment,
                             AdjustScene(scene, options.adjustment, context));
   }
@@ -193,6 +207,8 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
   if (!refinement) return tl::unexpected<Error>(refinement.error());
   result->structure = std::move(refinement->structure);
   result->adjustment = std::move(refinement->adjustment);
+  result->structure_before_adjustment =
+      std::move(refinement->before_adjustment);
   for (ReliabilityWarning& doubt : FindLostFeatures(*scene)) {
     result->poses.reliability_warnings.push_back(std::move(doubt));
   }

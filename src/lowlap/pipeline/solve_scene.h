@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <map>
 #include <memory>
 #include <optional>
@@ -43,6 +44,14 @@ struct RatioSummary {
 
 RatioSummary SummarizeRatios(const std::vector<ScaleRatio>& ratios);
 
+/// Where structure is, in world, without what observes it.
+struct StructurePositions {
+  std::map<PointTrackId, Vec3> points;
+  std::map<LineTrackId, std::array<Vec3, 2>> lines;  // ends
+};
+
+StructurePositions PositionsOf(const Scene& scene);
+
 struct SolveResult {
   /// One for every relative pose that came with alternatives, by views.
   std::vector<HypothesisDecision> motions;
@@ -50,8 +59,10 @@ struct SolveResult {
   PoseSummary poses;
   StructureSummary structure;
   std::optional<AdjustmentSummary> adjustment;
-  /// Poses before the adjustment, for comparison.
+  /// Poses before the adjustment, for comparison, and, if there was one, the
+  /// structure.
   std::map<PoseId, Pose> poses_before_adjustment;
+  StructurePositions structure_before_adjustment;
 };
 
 /// What every strategy of composing poses starts from.
@@ -85,6 +96,7 @@ Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
 struct Refinement {
   StructureSummary structure;
   std::optional<AdjustmentSummary> adjustment;
+  StructurePositions before_adjustment;
 };
 
 /// The last stages: structure from scene->poses and, if options.adjust, bundle

@@ -42,7 +42,7 @@ Result<ImageReport> MeasureAndRefine(Scene* scene,
                                      const IntrinsicRefinement& refinement,
                                      const RunContext& context,
                                      StageLog* stages) {
-  LOWLAP_ASSIGN_OR_RETURN(const auto measurements,
+  LOWLAP_ASSIGN_OR_RETURN(auto measurements,
                           MatchImages(*scene, options, context, stages));
   ImageReport report;
   LOWLAP_ASSIGN_OR_RETURN(
@@ -62,6 +62,9 @@ Result<ImageReport> MeasureAndRefine(Scene* scene,
   }
   if (scene->relative_poses.empty()) {
     return MakeError(ErrorCode::kInsufficientData, ExplainNoPose(report.pairs));
+  }
+  for (auto& [view, features] : measurements.features) {
+    report.detected[view] = std::move(features.features);
   }
   return report;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <vector>
 
 #include "lowlap/adjustment/adjustment_options.h"
@@ -16,6 +17,8 @@ namespace lowlap {
 struct ImageReport {
   std::vector<PairReport> pairs;
   std::vector<UnrelatedView> unrelated;
+  /// All features, of which the scene keeps those with a match.
+  std::map<ViewId, ViewFeatures> detected;
 };
 
 /// MeasureImages for a scene that SolveScene is to solve with `solve` and with

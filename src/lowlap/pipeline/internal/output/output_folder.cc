@@ -56,7 +56,8 @@ Status PrepareOutputFolder(const std::string& folder) {
 }
 
 Status WriteOutputs(
-    Scene scene, const RunSummary& summary, const std::string& folder,
+    Scene scene, const RunSummary& summary, const RunContext& context,
+    const std::string& folder,
     const std::function<Status(const Scene&, FileSet*)>& add_more) {
   if (!scene.root_path.empty()) {
     std::error_code error;
@@ -74,8 +75,9 @@ Status WriteOutputs(
   LOWLAP_RETURN_IF_ERROR(add("sfm_data.json", FormatSceneJson(scene)));
   LOWLAP_RETURN_IF_ERROR(add("scene.lowlap", FormatSceneBinary(scene)));
   LOWLAP_RETURN_IF_ERROR(add("cloud.ply", FormatPly(scene)));
-  LOWLAP_RETURN_IF_ERROR(
-      add("report.html", FormatReport(scene, MakeReport(summary, scene))));
+  LOWLAP_ASSIGN_OR_RETURN(const auto report,
+                          MakeReport(summary, scene, context));
+  LOWLAP_RETURN_IF_ERROR(add("report.html", FormatReport(scene, report)));
   LOWLAP_RETURN_IF_ERROR(add("summary.json", ToJson(summary, scene) + "\n"));
   if (add_more) LOWLAP_RETURN_IF_ERROR(add_more(scene, &files));
   return files.Commit();

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "lowlap/pipeline/measure_images.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/pipeline/stage_log.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -21,11 +23,17 @@ struct RunSummary {
   std::string command;
   std::vector<PairReport> pairs;
   std::vector<UnrelatedView> unrelated;
+  /// All features of the photographs, if they were detected in this run.
+  std::map<ViewId, ViewFeatures> detected;
   /// What a command has to say beyond that, for people.
   std::vector<std::string> notes;
   std::optional<SolveResult> solve;
   std::optional<PoseEvaluation> evaluation_before_adjustment;
   std::optional<PoseEvaluation> evaluation;
+  /// What the two are made against.
+  std::optional<GroundTruth> truth;
+  /// What the ratios were estimated from; empty: the page has no profiles.
+  EvidenceKinds kinds;
   std::vector<StageCost> stages;
 };
 
@@ -38,10 +46,12 @@ Status CheckOutputFolder(const std::string& folder);
 /// sfm_data.json (OpenMVG loads it), scene.lowlap (everything), cloud.ply
 /// (points, lines, cameras), report.html (for a person) and summary.json (for
 /// a program). A relative root_path is made absolute, since the files move away
-/// from what it was relative to. `add_more`, if it is not null, may add further
-/// files of the scene.
+/// from what it was relative to. The page shows the photographs, if they are
+/// where the scene says. `add_more`, if it is not null, may add further files
+/// of the scene. Errors: kIo; kCancelled, with nothing written.
 Status WriteOutputs(
-    Scene scene, const RunSummary& summary, const std::string& folder,
+    Scene scene, const RunSummary& summary, const RunContext& context,
+    const std::string& folder,
     const std::function<Status(const Scene&, FileSet*)>& add_more = nullptr);
 
 }  // namespace lowlap

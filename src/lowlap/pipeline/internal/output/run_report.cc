@@ -1,81 +1,17 @@
 #include "lowlap/pipeline/internal/output/run_report.h"
 
-#include <cstdio>
+#include <map>
 #include <utility>
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
-#include "lowlap/pipeline/internal/output/ratio_table.h"
+#include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/output/page_photographs.h"
+#include "lowlap/pipeline/internal/output/ratio_profiles.h"
 
 namespace lowlap {
 namespace {
-
-std::string Number(double value, const char* format = "%.4g") {
-  char text[32];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-std::string NameOf(const Scene& scene, ViewId view) {
-  return scene.views.at(view).filename;
-}
-
-ReportTable ScaleRatioTable(const Scene& scene) {
-  ReportTable table;
-  table.title = "Scale ratios";
-  table.note =
-      "Baseline (middle, last) over baseline (first, middle), with the "
-      "interval that holds it with a probability of 95 %. A ratio is used if "
-      "chance does not explain it (log10 NFA below 0). Kinds of evidence: "
-      "inliers/candidates, and percent of the information in that order. "
-      "Second "
-      "mode: what the features that disagree would choose.";
-  RatioTable ratios = MakeRatioTable(scene.scale_ratios);
-  table.columns = std::move(ratios.columns);
-  table.columns.insert(table.columns.begin(), "first, middle, last");
-  for (std::size_t n = 0; n < scene.scale_ratios.size(); ++n) {
-    const ScaleRatio& ratio = scene.scale_ratios[n];
-    std::vector<std::string> row = std::move(ratios.rows[n]);
-    row.insert(row.begin(), NameOf(scene, ratio.views.first) + ", " +
-                                NameOf(scene, ratio.views.middle) + ", " +
-                                NameOf(scene, ratio.views.last));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
-}
-
-ReportTable PairTable(const std::vector<PairReport>& pairs,
-                      const Scene& scene) {
-  ReportTable table;
-  table.title = "Pairs of views";
-  table.columns = {"pair",      "point matches", "inliers", "line matches",
-                   "plausible", "log10 NFA",     "geometry"};
-  for (const PairReport& pair : pairs) {
-    table.rows.push_back({NameOf(scene, pair.views.first) + ", " +
-                              NameOf(scene, pair.views.second),
-                          std::to_string(pair.num_point_matches),
-                          std::to_string(pair.num_point_inliers),
-                          std::to_string(pair.num_line_matches),
-                          std::to_string(pair.num_line_inliers),
-                          Number(pair.log10_nfa, "%.1f"),
-                          pair.accepted ? pair.geometry : pair.reason});
-  }
-  return table;
-}
-
-ReportTable ErrorTable(const PoseEvaluation& evaluation) {
-  ReportTable table;
-  table.title = "Cameras against the truth";
-  table.note =
-      "After a similarity alignment of the centres; positions in the unit of "
-      "the truth.";
-  table.columns = {"camera", "position error", "rotation error (deg)"};
-  for (const ViewPoseError& view : evaluation.views) {
-    table.rows.push_back({view.name, Number(view.position_error),
-                          Number(view.rotation_error_deg)});
-  }
-  return table;
-}
 
 void AddSolve(const SolveResult& solve, const Scene& scene,
               ReportContent* content) {
@@ -87,43 +23,121 @@ void AddSolve(const SolveResult& solve, const Scene& scene,
                                 std::to_string(scene.structure.size()));
   content->figures.emplace_back("lines",
                                 std::to_string(scene.line_structure.size()));
+  content->figures.emplace_back("coplanar pairs",
+                                std::to_string(scene.coplanar_pairs.size()));
   if (solve.adjustment) {
-    content->figures.emplace_back(
-        "point RMSE",
-        Number(solve.adjustment->points.final_rmse_px, "%.2f px"));
-    content->figures.emplace_back(
-        "line RMSE", Number(solve.adjustment->lines.final_rmse_px, "%.2f px"));
-    for (std::string& note :
-         DescribeCalibrationPreferences(*solve.adjustment)) {
+    const AdjustmentSummary& adjustment = *solve.adjustment;
+    if (adjustment.points.observations_used > 0) {
+      content->figures.emplace_back(
+          "point RMSE", Format("%.2f px", adjustment.points.final_rmse_px));
+    }
+    if (adjustment.lines.observations_used > 0) {
+      content->figures.emplace_back(
+          "line RMSE", Format("%.2f px", adjustment.lines.final_rmse_px));
+    }
+    for (std::string& note : DescribeCalibrationPreferences(adjustment)) {
       content->notes.push_back(std::move(note));
     }
+    content->before_adjustment = ReportStage{
+        solve.poses_before_adjustment, solve.structure_before_adjustment.points,
+        solve.structure_before_adjustment.lines};
   }
-  for (std::string& warning : PoseWarnings(poses, scene)) {
-    content->warnings.push_back(std::move(warning));
+  for (PoseWarning& warning : PoseWarningsByView(poses, scene)) {
+    content->warnings.push_back(
+        {std::move(warning.text), std::move(warning.views)});
   }
+}
+
+std::string OutlierNote(OutlierReason reason) {
+  switch (reason) {
+    case OutlierReason::kRotation:
+      return "its rotation contradicts the others";
+    case OutlierReason::kDirection:
+      return "its direction contradicts the solved centres";
+    case OutlierReason::kContradicted:
+      return "contradicted by more evidence, confirmed by no cycle";
+    case OutlierReason::kOpenLoop:
+      return "least evidence in a loop that does not close";
+  }
+  return "";
+}
+
+// Those that were tried, and all relative poses.
+std::vector<ReportPair> MakePairs(const RunSummary& summary,
+                                  const Scene& scene) {
+  std::map<ViewPair, ReportPair> pairs;
+  for (const PairReport& report : summary.pairs) {
+    ReportPair& pair = pairs[report.views];
+    pair.note = report.accepted ? report.geometry : report.reason;
+    pair.num_point_matches = report.num_point_matches;
+    pair.num_line_matches = report.num_line_matches;
+    pair.log10_nfa = report.log10_nfa;
+  }
+  for (const auto& [views, pose] : scene.relative_poses) {
+    ReportPair& pair = pairs[views];
+    pair.log10_nfa = pose.log10_nfa;
+    pair.is_used = scene.FindPose(views.first) && scene.FindPose(views.second);
+  }
+  if (summary.solve) {
+    for (const OutlierEdge& edge : summary.solve->poses.outlier_edges) {
+      pairs[edge.views].is_used = false;
+      pairs[edge.views].note = OutlierNote(edge.reason);
+    }
+  }
+  std::vector<ReportPair> list;
+  for (auto& [views, pair] : pairs) {
+    pair.views = views;
+    list.push_back(std::move(pair));
+  }
+  return list;
+}
+
+// The truth in the frame of the scene, where the two can be aligned.
+std::optional<ReportTruth> MakeTruth(const RunSummary& summary) {
+  if (!summary.truth || !summary.evaluation ||
+      summary.evaluation->scope != EvaluationScope::kFull) {
+    return std::nullopt;
+  }
+  const Similarity& truth_from_scene = summary.evaluation->truth_from_solution;
+  const Similarity scene_from_truth = truth_from_scene.Inverse();
+  ReportTruth truth;
+  for (const auto& [view, pose] : *summary.truth) {
+    truth.poses[view] = {pose.rotation * truth_from_scene.rotation,
+                         scene_from_truth * pose.center};
+  }
+  for (const ViewPoseError& error : summary.evaluation->views) {
+    truth.position_errors[error.view] = error.position_error;
+    truth.rotation_errors_deg[error.view] = error.rotation_error_deg;
+  }
+  return truth;
+}
+
+void AddTruth(const RunSummary& summary, ReportContent* content) {
+  if (!summary.evaluation || summary.evaluation->position.count == 0) return;
+  content->figures.emplace_back(
+      "mean position error", Format("%.4g", summary.evaluation->position.mean));
+  content->truth = MakeTruth(summary);
 }
 
 }  // namespace
 
-ReportContent MakeReport(const RunSummary& summary, const Scene& scene) {
+Result<ReportContent> MakeReport(const RunSummary& summary, const Scene& scene,
+                                 const RunContext& context) {
   ReportContent content;
   content.title = "lowlap " + summary.command;
   for (const UnrelatedView& view : summary.unrelated) {
-    content.warnings.push_back(NameOf(scene, view.view) +
-                               " has no relative pose: " + view.reason);
+    content.warnings.push_back({scene.views.at(view.view).filename +
+                                    " has no relative pose: " + view.reason,
+                                {view.view}});
   }
   content.notes = summary.notes;
   if (summary.solve) AddSolve(*summary.solve, scene, &content);
-  if (summary.evaluation && summary.evaluation->position.count > 0) {
-    content.figures.emplace_back("mean position error",
-                                 Number(summary.evaluation->position.mean));
-    content.tables.push_back(ErrorTable(*summary.evaluation));
-  }
-  if (!scene.scale_ratios.empty())
-    content.tables.push_back(ScaleRatioTable(scene));
-  if (!summary.pairs.empty()) {
-    content.tables.push_back(PairTable(summary.pairs, scene));
-  }
+  AddTruth(summary, &content);
+  content.pairs = MakePairs(summary, scene);
+  content.detected = summary.detected;
+  LOWLAP_ASSIGN_OR_RETURN(content.photographs, PagePhotographs(scene, context));
+  LOWLAP_ASSIGN_OR_RETURN(content.profiles,
+                          ProfilesForPage(scene, summary.kinds, context));
   return content;
 }
 

@@ -1,13 +1,17 @@
 #pragma once
 
-#include "lowlap/pipeline/internal/output/summary_json.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
 #include "lowlap/report/internal/report.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
 
-/// What a run has to tell a person: figures, warnings, and tables of the scale
-/// ratios, the pairs, the cameras' errors (if there is a truth) and the cost.
-ReportContent MakeReport(const RunSummary& summary, const Scene& scene);
+/// What a run has to show a person: figures, warnings, photographs, pairs,
+/// profiles of the ratios, the solution before its adjustment, and the truth.
+/// Errors: those of PagePhotographs and ProfilesForPage.
+Result<ReportContent> MakeReport(const RunSummary& summary, const Scene& scene,
+                                 const RunContext& context);
 
 }  // namespace lowlap

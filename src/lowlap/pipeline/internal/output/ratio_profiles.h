@@ -1,0 +1,18 @@
+#pragma once
+
+#include <map>
+
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/report/internal/report.h"
+#include "lowlap/scale/evidence/evidence_kind.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// The profiles of the scene's ratios (SketchScaleRatios), without the nodes of
+/// flat stretches; none without kinds. Errors: those of SketchScaleRatios.
+Result<std::map<ViewTriplet, ReportProfile>> ProfilesForPage(
+    const Scene& scene, const EvidenceKinds& kinds, const RunContext& context);
+
+}  // namespace lowlap

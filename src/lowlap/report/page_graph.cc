@@ -1,0 +1,158 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "lowlap/report/internal/base64.h"
+#include "lowlap/report/internal/page_parts.h"
+
+namespace lowlap {
+namespace {
+
+// In tenths, as 16 bits.
+std::string EncodedNfas(const std::vector<double>& log10_nfas) {
+  std::vector<std::int16_t> tenths;
+  for (const double nfa : log10_nfas) {
+    tenths.push_back(
+        static_cast<std::int16_t>(std::clamp(10 * nfa, -32767.0, 32767.0)));
+  }
+  return Base64(tenths);
+}
+
+// Places of the two features of each match that the page has.
+std::string PointMatches(const RelativePose& pose, const PageIndex& index) {
+  std::vector<std::uint32_t> places;
+  const auto first = index.features.find(pose.views.first);
+  const auto second = index.features.find(pose.views.second);
+  if (first == index.features.end() || second == index.features.end())
+    return "";
+  for (const FeatureMatch& match : pose.point_inliers) {
+    if (match.first >= first->second.size() ||
+        match.second >= second->second.size()) {
+      continue;
+    }
+    const std::uint32_t from = first->second[match.first];
+    const std::uint32_t to = second->second[match.second];
+    if (from == kNoLandmark || to == kNoLandmark) continue;
+    places.push_back(from);
+    places.push_back(to);
+  }
+  return Base64(places);
+}
+
+std::string LineMatches(const RelativePose& pose) {
+  std::vector<std::uint32_t> places;
+  for (const FeatureMatch& match : pose.line_inliers) {
+    places.push_back(match.first);
+    places.push_back(match.second);
+  }
+  return Base64(places);
+}
+
+PageJson RatioJson(const ScaleRatio& ratio) {
+  PageJson json = {{"verdict", RatioVerdictName(ratio.verdict)}};
+  if (ratio.verdict == RatioVerdict::kNoCandidates) return json;
+  json["log_ratio"] = ratio.log_ratio;
+  json["low"] = ratio.IntervalLow();
+  json["high"] = ratio.IntervalHigh();
+  json["log10_nfa"] = ratio.log10_nfa;
+  if (ratio.second_mode) {
+    json["second"] = {ratio.second_mode->log_ratio,
+                      ratio.second_mode->log10_nfa};
+  }
+  PageJson& kinds = json["kinds"] = PageJson::array();
+  for (const KindSupport& kind : ratio.kinds) {
+    kinds.push_back({kind.kind, kind.inliers, kind.candidates, kind.log10_nfa,
+                     kind.information_share});
+  }
+  return json;
+}
+
+PageJson ProfileJson(const ReportProfile& profile, bool by_kind) {
+  const std::vector<float> log_ratios(profile.log_ratios.begin(),
+                                      profile.log_ratios.end());
+  PageJson json = {{"log_ratios", Base64(log_ratios)},
+                   {"total", EncodedNfas(profile.log10_nfas)}};
+  if (!by_kind) return json;
+  for (const auto& [kind, values] : profile.kinds) {
+    json["kinds"].push_back({kind, EncodedNfas(values)});
+  }
+  return json;
+}
+
+// log(|last - middle| / |middle - first|) of the true centres.
+std::optional<double> TrueLogRatio(const ViewTriplet& views,
+                                   const ReportTruth& truth) {
+  const auto first = truth.poses.find(views.first);
+  const auto middle = truth.poses.find(views.middle);
+  const auto last = truth.poses.find(views.last);
+  for (const auto& pose : {first, middle, last}) {
+    if (pose == truth.poses.end()) return std::nullopt;
+  }
+  const Vec3& center = middle->second.center;
+  const double log_ratio = std::log((last->second.center - center).norm() /
+                                    (first->second.center - center).norm());
+  if (!std::isfinite(log_ratio)) return std::nullopt;
+  return log_ratio;
+}
+
+}  // namespace
+
+PageJson PairsJson(const Scene& scene, const ReportContent& content,
+                   const PageIndex& index) {
+  PageJson pairs = PageJson::array();
+  for (const ReportPair& pair : content.pairs) {
+    PageJson json = {
+        {"views",
+         {index.views.at(pair.views.first), index.views.at(pair.views.second)}},
+        {"used", pair.is_used},
+        {"note", pair.note},
+        {"point_matches", pair.num_point_matches},
+        {"line_matches", pair.num_line_matches},
+        {"log10_nfa", pair.log10_nfa}};
+    const auto pose = scene.relative_poses.find(pair.views);
+    if (pose != scene.relative_poses.end()) {
+      json["point_inliers"] = pose->second.point_inliers.size();
+      json["line_inliers"] = pose->second.line_inliers.size();
+      json["points"] = PointMatches(pose->second, index);
+      json["lines"] = LineMatches(pose->second);
+    }
+    pairs.push_back(std::move(json));
+  }
+  return pairs;
+}
+
+PageJson TripletsJson(const Scene& scene, const ReportContent& content,
+                      const PageIndex& index, const PageLimits& limits) {
+  const std::vector<ScaleRatio>& ratios = scene.scale_ratios;
+  std::vector<std::size_t> order(ratios.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  if (order.size() > limits.triplets) {
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) {
+                       return ratios[a].log10_nfa < ratios[b].log10_nfa;
+                     });
+    order.resize(limits.triplets);
+    std::sort(order.begin(), order.end());
+  }
+  const bool by_kind = content.profiles.size() <= limits.profiles_by_kind;
+  PageJson triplets = PageJson::array();
+  for (const std::size_t n : order) {
+    const ViewTriplet& views = ratios[n].views;
+    PageJson json = RatioJson(ratios[n]);
+    json["views"] = {index.views.at(views.first), index.views.at(views.middle),
+                     index.views.at(views.last)};
+    if (content.truth) {
+      if (const auto log_ratio = TrueLogRatio(views, *content.truth)) {
+        json["true_log_ratio"] = *log_ratio;
+      }
+    }
+    if (const auto profile = content.profiles.find(views);
+        profile != content.profiles.end()) {
+      json["profile"] = ProfileJson(profile->second, by_kind);
+    }
+    triplets.push_back(std::move(json));
+  }
+  return triplets;
+}
+
+}  // namespace lowlap
