@@ -1,5 +1,5 @@
 // Uses the page as a person would, by events, and writes what came of it as
-// JSON into <pre id="self-test">. Appended to a page by page_browser_test.cc.
+// JSON into an element "self-test". Appended to a page by page_browser_test.cc.
 'use strict';
 
 const outcome = { errors: [] };

@@ -143,9 +143,8 @@ TEST(ProfileScaleRatios, AreThoseOfTheEstimatedRatios) {
     EXPECT_GT(with_nodes, 0) << has_lines;
 
     // A sketch asks the same kinds, and evaluates the same NFA.
-    row.scene.scale_ratios = *ratios;
-    const auto sketches =
-        SketchScaleRatios(row.scene, MakeScaleEstimator({})->kinds(), {});
+    const auto sketches = SketchScaleRatios(
+        row.scene, *ratios, MakeScaleEstimator({})->kinds(), {});
     ASSERT_TRUE(sketches.has_value());
     for (std::size_t n = 0; n < ratios->size(); ++n) {
       const RatioProfile& sketch = (*sketches)[n];

@@ -6,7 +6,7 @@ const RAMP = [[190, 58, 45], [226, 158, 57], [120, 175, 110], [25, 125, 135],
 // Digits of evidence, -log10 NFA, on a scale that is finest where it is weak.
 function evidenceShare(log10Nfa) {
   const digits = Math.max(0, -log10Nfa);
-  return Math.min(1, Math.log10(1 + digits) / 3);
+  return Math.min(1, Math.log10(1 + digits) / 4);
 }
 
 function rampColor(share) {
@@ -25,7 +25,7 @@ function evidenceLegend(label) {
   const stops = RAMP.map((_, n) => rampColor(n / (RAMP.length - 1)));
   return make('div', { class: 'legend' }, `${label}: 0`,
               make('i', { style: `background: linear-gradient(90deg, ${stops})` }),
-              '1000 digits');
+              '10,000 digits');
 }
 
 // Distinct for neighbouring indices: the hue turns by the golden ratio.

@@ -65,8 +65,8 @@ function describeView(view) {
                         `${view.focal_px.map(f => fixed(f, 1)).join(', ')} px`],
       view.detected && ['detected', `${view.detected.num_points} points, ` +
                                         `${view.detected.num_segments} segments`],
-      ['matched points in the model', inModel(features.landmarks)],
-      ['matched segments in the model', inModel(features.lines)],
+      ['points in the model', inModel(features.landmarks)],
+      ['segments in the model', inModel(features.lines)],
       ['RMSE of points, lines', `${rmse('points')}, ${rmse('lines')}`],
       view.position_error !== undefined &&
           ['error of the position', number(view.position_error)],
@@ -139,7 +139,11 @@ function describeTriplet(triplet) {
       KIND_COLORS[names.indexOf(name) % KIND_COLORS.length] : 'var(--faint)';
   return [
     head,
-    triplet.profile && plotBoth(triplet),
+    triplet.profile ? plotBoth(triplet) : make(
+        'p', { class: 'note' },
+        `The NFA of all its ratios is not in this page, which has ` +
+        `${page.triplets.filter(other => other.profile).length} of ` +
+        `${page.triplets.length}: “lowlap scales --profile” writes all.`),
     facts([
       ['ratio', ratio(triplet.log_ratio)],
       ['95 % interval', `${ratio(triplet.low)} to ${ratio(triplet.high)}`],

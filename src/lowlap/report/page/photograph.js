@@ -95,8 +95,12 @@ function drawOverlay(context, view, box, size) {
   }
 }
 
-// The view at the width that the canvas has in the page.
-function drawPhotograph(canvas, view, size) {
+// The view at the width that the canvas has in the page. Features are drawn
+// smaller where there are many, so that the photograph can be seen.
+function drawPhotograph(canvas, view, largest) {
+  const { points, segments } = page.views[view].features;
+  const count = points.length / 2 + segments.length / 4;
+  const size = largest * Math.max(.45, Math.min(1, Math.sqrt(800 / count)));
   const width = canvas.clientWidth || 200;
   const height = Math.round(width * aspectOf(view));
   canvas.style.height = `${height}px`;

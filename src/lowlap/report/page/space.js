@@ -39,6 +39,7 @@ class Space {
     const colored = { vertexColors: THREE.VertexColors || true };
     const ratio = window.devicePixelRatio || 1;
     const numViews = page.views.length;
+    const pointSize = page.points.positions.length > 45000 ? 1.5 : 2.5;
     this.pointColors = new Uint8Array(page.points.positions.length);
     this.objects = {
       planes: this.addObject(
@@ -52,10 +53,11 @@ class Space {
       points: this.addObject(
           THREE.Points,
           new THREE.PointsMaterial(
-              { ...colored, size: 2 * ratio, sizeAttenuation: false }),
+              { ...colored, size: pointSize * ratio, sizeAttenuation: false }),
           page.points.positions.length / 3, true),
       lines: this.addObject(THREE.LineSegments,
-                            new THREE.LineBasicMaterial(colored),
+                            new THREE.LineBasicMaterial(
+                                { ...colored, transparent: true, opacity: .7 }),
                             page.lines.positions.length / 3, true),
       links: this.addObject(
           THREE.LineSegments,

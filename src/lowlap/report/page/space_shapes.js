@@ -104,7 +104,7 @@ function samplePointColors(colors, changed) {
         const y = Math.floor(features.points[2 * n + 1] / 65536 * height);
         const at = 4 * (y * width + x);
         for (let c = 0; c < 3; ++c) {
-          colors[3 * landmark + c] = .72 * pixels[at + c];
+          colors[3 * landmark + c] = .85 * pixels[at + c];
         }
       });
       changed();

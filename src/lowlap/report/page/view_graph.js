@@ -2,6 +2,7 @@
 // coloured by evidence. The selected view shows its ratios as arcs.
 
 const MOST_EDGES = 3000;
+const MOST_ARCS = 24;  // the strongest
 
 // Positions in the drawing; views without a camera stand in a row below. Views
 // that lie on one another (or without any camera) stand on a circle instead.
@@ -61,7 +62,7 @@ function drawArc(triplet, places, n) {
   const from = angleTo(first);
   let turn = angleTo(last) - from;
   turn -= 2 * Math.PI * Math.round(turn / (2 * Math.PI));
-  const radius = 15 + 4 * (n % 12);
+  const radius = 15 + 4 * (n % (MOST_ARCS / 2));
   const at = angle => `${(middle[0] + radius * Math.cos(angle)).toFixed(1)} ` +
       `${(middle[1] + radius * Math.sin(angle)).toFixed(1)}`;
   const arc = `M${at(from)}A${radius} ${radius} 0 0 ${turn > 0 ? 1 : 0} ` +
@@ -108,12 +109,14 @@ function drawGraph(tab) {
       .filter(pair => pair.used || pair.point_inliers > 0 ||
                   isSelected('pair', pair.index)).slice(-MOST_EDGES);
   const middle = middleView();
-  const arcs = middle < 0 ? [] : page.views[middle].triplets.filter(
-      triplet => triplet.views[1] === middle && isMeaningful(triplet));
+  const arcs = middle < 0 ? [] : page.views[middle].triplets
+      .filter(triplet => triplet.views[1] === middle && isMeaningful(triplet))
+      .sort((a, b) => isSelected('triplet', b.index) -
+                isSelected('triplet', a.index) || a.log10_nfa - b.log10_nfa);
   tab.replaceChildren(
       makeSvg('svg', { viewBox: `0 0 ${width} ${height}` },
               edges.map(pair => drawEdge(pair, places)),
-              arcs.slice(0, 60).map((t, n) => drawArc(t, places, n)),
+              arcs.slice(0, MOST_ARCS).map((t, n) => drawArc(t, places, n)),
               page.views.map(view => drawNode(view, places))),
       evidenceLegend('evidence'));
 }

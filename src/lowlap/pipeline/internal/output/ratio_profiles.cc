@@ -1,5 +1,6 @@
 #include "lowlap/pipeline/internal/output/ratio_profiles.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -42,14 +43,34 @@ ReportProfile MakeProfile(const RatioProfile& profile) {
   return page;
 }
 
+std::vector<ScaleRatio> ChooseRatios(const Scene& scene) {
+  constexpr std::size_t kMostWeak = 200, kMostOthers = 200;
+  std::vector<ScaleRatio> ratios;
+  for (const ScaleRatio& ratio : scene.scale_ratios) {
+    if (ratio.verdict != RatioVerdict::kNoCandidates) ratios.push_back(ratio);
+  }
+  if (ratios.size() <= kMostWeak + kMostOthers) return ratios;
+  std::stable_sort(ratios.begin(), ratios.end(),
+                   [](const ScaleRatio& a, const ScaleRatio& b) {
+                     return a.log10_nfa > b.log10_nfa;
+                   });
+  const std::size_t num_others = ratios.size() - kMostWeak;
+  std::vector<ScaleRatio> chosen(ratios.begin(), ratios.begin() + kMostWeak);
+  for (std::size_t n = 0; n < kMostOthers; ++n) {
+    chosen.push_back(ratios[kMostWeak + n * num_others / kMostOthers]);
+  }
+  return chosen;
+}
+
 }  // namespace
 
 Result<std::map<ViewTriplet, ReportProfile>> ProfilesForPage(
     const Scene& scene, const EvidenceKinds& kinds, const RunContext& context) {
   std::map<ViewTriplet, ReportProfile> pages;
   if (kinds.empty()) return pages;
-  LOWLAP_ASSIGN_OR_RETURN(const auto profiles,
-                          SketchScaleRatios(scene, kinds, context));
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto profiles,
+      SketchScaleRatios(scene, ChooseRatios(scene), kinds, context));
   for (const RatioProfile& profile : profiles) {
     if (!profile.nodes.empty())
       pages[profile.ratio.views] = MakeProfile(profile);

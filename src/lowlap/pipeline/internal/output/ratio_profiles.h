@@ -10,8 +10,11 @@
 
 namespace lowlap {
 
-/// The profiles of the scene's ratios (SketchScaleRatios), without the nodes of
-/// flat stretches; none without kinds. Errors: those of SketchScaleRatios.
+/// Profiles of the scene's ratios (SketchScaleRatios), without the nodes of
+/// flat stretches; none without kinds. They take time, so of more than 400
+/// ratios they are those of the 200 with the least evidence, which a person
+/// doubts first, and of an even choice of the others. Errors: those of
+/// SketchScaleRatios.
 Result<std::map<ViewTriplet, ReportProfile>> ProfilesForPage(
     const Scene& scene, const EvidenceKinds& kinds, const RunContext& context);
 

@@ -182,19 +182,19 @@ Result<std::vector<RatioProfile>> ProfileScaleRatios(
                                     "ratio profiles", ProfileRatio);
 }
 
-Result<std::vector<RatioProfile>> SketchScaleRatios(const Scene& scene,
-                                                    const EvidenceKinds& kinds,
-                                                    const RunContext& context) {
+Result<std::vector<RatioProfile>> SketchScaleRatios(
+    const Scene& scene, const std::vector<ScaleRatio>& ratios,
+    const EvidenceKinds& kinds, const RunContext& context) {
   std::vector<ViewTriplet> triplets;
-  std::map<ViewTriplet, const ScaleRatio*> ratios;
-  for (const ScaleRatio& ratio : scene.scale_ratios) {
+  std::map<ViewTriplet, const ScaleRatio*> ratio_of;
+  for (const ScaleRatio& ratio : ratios) {
     triplets.push_back(ratio.views);
-    ratios[ratio.views] = &ratio;
+    ratio_of[ratio.views] = &ratio;
   }
   const auto sketch = [&](const TripletView& triplet,
                           const TripletEvidence& evidence) {
     return Result<RatioProfile>(
-        SketchRatio(triplet, evidence, *ratios.at(triplet.views)));
+        SketchRatio(triplet, evidence, *ratio_of.at(triplet.views)));
   };
   return TestTriplets<RatioProfile>(scene, triplets, kinds, context,
                                     "ratio profiles", sketch);

@@ -50,12 +50,12 @@ Result<std::vector<RatioProfile>> ProfileScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
     const EvidenceKinds& kinds, const RunContext& context);
 
-/// For a drawing, at a fraction of the cost: only `nodes`, on a coarser grid
-/// about the ratios that the scene holds (`ratio`), and nothing is searched.
-/// `kinds` are those that these were estimated from. In the order of
-/// scene.scale_ratios; those without candidates have no nodes. Errors as there.
-Result<std::vector<RatioProfile>> SketchScaleRatios(const Scene& scene,
-                                                    const EvidenceKinds& kinds,
-                                                    const RunContext& context);
+/// For a drawing of ratios that were estimated from these kinds: only `nodes`,
+/// on a coarser grid, and nothing is searched. What it costs is to gather the
+/// evidence. In the order of the ratios, which are `ratio`; those without
+/// candidates have no nodes. Errors as there.
+Result<std::vector<RatioProfile>> SketchScaleRatios(
+    const Scene& scene, const std::vector<ScaleRatio>& ratios,
+    const EvidenceKinds& kinds, const RunContext& context);
 
 }  // namespace lowlap
