@@ -17,7 +17,9 @@ function rampColor(share) {
   return `rgb(${channels.join(',')})`;
 }
 
+// Grey where it is not known, as in scenes of other programs.
 function evidenceColor(log10Nfa) {
+  if (!log10Nfa) return 'rgb(135,147,160)';
   return rampColor(evidenceShare(log10Nfa));
 }
 

@@ -73,7 +73,7 @@ function describeView(view) {
       view.rotation_error_deg !== undefined &&
           ['error of the rotation', `${number(view.rotation_error_deg, 2)}°`],
       moved && ['moved by the adjustment',
-                `${number(100 * moved, 2)} % of the scene's radius`],
+                `${number(100 * moved, 2)} % of the scene`],
     ]),
     view.camera && space && make('p', {}, make('button', {
       class: 'link', onclick: () => space.lookThrough(view.index),

@@ -1,0 +1,124 @@
+#include "lowlap/pipeline/internal/output/run_report.h"
+
+#include <gmock/gmock.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/imgcodecs.hpp>
+
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/synthetic/synthetic_scene.h"
+#include "support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using testing::IsError;
+using testing::IsOk;
+using testing::VectorNear;
+
+// A simulated room, solved, and what a command would say of it.
+class MakeReportTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    SyntheticOptions options;
+    options.num_views = 6;
+    options.pairs = "window:2";
+    const auto simulated = Simulate(options);
+    ASSERT_THAT(simulated, IsOk());
+    scene_ = simulated->scene;
+    SolveOptions solve;
+    auto solved = SolveScene(&scene_, solve, {}, nullptr);
+    ASSERT_THAT(solved, IsOk());
+    summary_.command = "solve";
+    summary_.truth = GroundTruthFromScene(TrueSolution(*simulated));
+    summary_.evaluation = EvaluatePoses(scene_, *summary_.truth);
+    summary_.kinds = solve.scale_estimator->kinds();
+    summary_.solve = std::move(*solved);
+  }
+
+  Scene scene_;
+  RunSummary summary_;
+};
+
+TEST_F(MakeReportTest, HasTheTruthAndTheStartInTheFrameOfTheScene) {
+  const auto report = MakeReport(summary_, scene_, {});
+  ASSERT_THAT(report, IsOk());
+  ASSERT_TRUE(report->truth.has_value());
+  for (const auto& [view, pose] : report->truth->poses) {
+    EXPECT_THAT(pose.center, VectorNear(scene_.FindPose(view)->center, 0.05));
+    EXPECT_LT((pose.rotation - scene_.FindPose(view)->rotation).norm(), 0.05);
+    EXPECT_TRUE(report->truth->position_errors.count(view));
+  }
+  ASSERT_TRUE(report->before_adjustment.has_value());
+  EXPECT_EQ(report->before_adjustment->poses.size(), 6u);
+  EXPECT_GT(report->before_adjustment->points.size(), 50u);
+  EXPECT_GT(report->before_adjustment->lines.size(), 10u);
+}
+
+TEST_F(MakeReportTest, HasEveryPairAndAProfileOfEveryRatio) {
+  const ViewPair left_out = scene_.relative_poses.begin()->first;
+  summary_.solve->poses.outlier_edges.push_back(
+      {left_out, OutlierReason::kDirection, 3});
+  const auto report = MakeReport(summary_, scene_, {});
+  ASSERT_THAT(report, IsOk());
+  ASSERT_EQ(report->pairs.size(), scene_.relative_poses.size());
+  for (const ReportPair& pair : report->pairs) {
+    EXPECT_EQ(pair.is_used, pair.views != left_out);
+    EXPECT_EQ(pair.note.empty(), pair.views != left_out);
+  }
+  ASSERT_FALSE(scene_.scale_ratios.empty());
+  for (const ScaleRatio& ratio : scene_.scale_ratios) {
+    ASSERT_TRUE(report->profiles.count(ratio.views));
+    const ReportProfile& profile = report->profiles.at(ratio.views);
+    // It is least near the ratio, at about its NFA.
+    const auto least =
+        std::min_element(profile.log10_nfas.begin(), profile.log10_nfas.end());
+    const auto at = least - profile.log10_nfas.begin();
+    EXPECT_NEAR(profile.log_ratios[at], ratio.log_ratio, 0.05);
+    EXPECT_LE(*least, 0.8 * ratio.log10_nfa);
+    EXPECT_EQ(profile.kinds.front().second.size(), profile.log_ratios.size());
+  }
+  summary_.kinds.clear();
+  EXPECT_TRUE(MakeReport(summary_, scene_, {})->profiles.empty());
+}
+
+TEST_F(MakeReportTest, TellsWhichViewsAWarningConcerns) {
+  ReliabilityWarning doubt;
+  doubt.reason = WarningReason::kLostFeatures;
+  doubt.views = {2};
+  summary_.solve->poses.reliability_warnings = {doubt};
+  const auto report = MakeReport(summary_, scene_, {});
+  ASSERT_THAT(report, IsOk());
+  EXPECT_THAT(report->warnings,
+              ::testing::Contains(::testing::Field(&ReportWarning::views,
+                                                   std::vector<ViewId>{2})));
+}
+
+TEST_F(MakeReportTest, LeavesOutPhotographsThatCannotBeRead) {
+  const auto folder =
+      std::filesystem::temp_directory_path() /
+      ("lowlap_report_photographs_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  scene_.root_path = folder.string();
+  cv::imwrite(scene_.ImagePath(1), cv::Mat(60, 90, CV_8UC3, cv::Scalar(9)));
+  std::ofstream(scene_.ImagePath(2)) << "no image";
+  const auto report = MakeReport(summary_, scene_, {});
+  std::filesystem::remove_all(folder);
+  ASSERT_THAT(report, IsOk());
+  EXPECT_EQ(report->photographs.size(), 1u);
+  EXPECT_TRUE(report->photographs.count(1));
+}
+
+TEST_F(MakeReportTest, CanBeCancelled) {
+  RunContext context;
+  context.progress = [](const std::string&, std::size_t, std::size_t) {
+    return false;
+  };
+  EXPECT_THAT(MakeReport(summary_, scene_, context),
+              IsError(ErrorCode::kCancelled, ""));
+}
+
+}  // namespace
+}  // namespace lowlap
