@@ -160,6 +160,33 @@ TEST(PageData, MatchesReferToTheFeaturesThatAreKept) {
   EXPECT_GT(num_matches, 20u);
 }
 
+TEST(PageData, KeepsThePairsInUseAndTheRatiosOfMostEvidence) {
+  Scene scene = Room(6, 20);
+  for (std::uint32_t n = 0; n < 4; ++n) {
+    ScaleRatio ratio;
+    ratio.views = {n, n + 1, n + 2};
+    ratio.verdict = RatioVerdict::kMeaningful;
+    ratio.log10_nfa = n % 2 == 0 ? -5 : -50;
+    scene.scale_ratios.push_back(ratio);
+  }
+  ReportContent content = ContentOf(scene);
+  for (std::size_t n = 0; n < content.pairs.size(); ++n) {
+    content.pairs[n].is_used = n == 1;
+    content.pairs[n].log10_nfa = n == 3 ? -99 : -9;
+  }
+  PageLimits limits;
+  limits.pairs = 2;
+  limits.triplets = 2;
+  const json page = json::parse(PageData(scene, content, limits));
+  ASSERT_EQ(page["pairs"].size(), 2u);
+  EXPECT_EQ(page["pairs"][0]["used"], true);
+  EXPECT_EQ(page["pairs"][1]["log10_nfa"], -99);
+  EXPECT_EQ(page["thinning"]["num_pairs"], content.pairs.size());
+  ASSERT_EQ(page["triplets"].size(), 2u);
+  EXPECT_EQ(page["triplets"][0]["views"], json({1, 2, 3}));
+  EXPECT_EQ(page["triplets"][1]["views"], json({3, 4, 5}));
+}
+
 TEST(PageData, IsSafeInAScriptElement) {
   Scene scene = Room(3, 20);
   scene.views.begin()->second.filename =

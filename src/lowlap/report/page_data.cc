@@ -47,12 +47,13 @@ std::string PageData(const Scene& scene, const ReportContent& content,
   page["notes"] = content.notes;
   page["views"] = ViewsJson(scene, content, before, index, frame, limits);
   AddStructure(scene, before, index, frame, &page);
-  page["pairs"] = PairsJson(scene, content, index);
+  page["pairs"] = PairsJson(scene, content, index, limits);
   page["triplets"] = TripletsJson(scene, content, index, limits);
   page["residuals"] = ResidualsJson(scene, content, index);
   page["thinning"] = {{"point_stride", index.point_stride},
                       {"feature_stride", index.feature_stride},
                       {"num_points", scene.structure.size()},
+                      {"num_pairs", content.pairs.size()},
                       {"num_triplets", scene.scale_ratios.size()}};
   // File names need not be UTF-8.
   return WithoutMarkup(

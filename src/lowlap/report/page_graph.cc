@@ -18,6 +18,20 @@ std::string EncodedNfas(const std::vector<double>& log10_nfas) {
   return Base64(tenths);
 }
 
+// Ascending places of `most` of so many things, those that come first in order.
+template <class Order>
+std::vector<std::size_t> ChooseFirst(std::size_t count, std::size_t most,
+                                     const Order& comes_first) {
+  std::vector<std::size_t> places(count);
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  if (count > most) {
+    std::stable_sort(places.begin(), places.end(), comes_first);
+    places.resize(most);
+    std::sort(places.begin(), places.end());
+  }
+  return places;
+}
+
 // Places of the two features of each match that the page has.
 std::string PointMatches(const RelativePose& pose, const PageIndex& index) {
   std::vector<std::uint32_t> places;
@@ -98,9 +112,17 @@ std::optional<double> TrueLogRatio(const ViewTriplet& views,
 }  // namespace
 
 PageJson PairsJson(const Scene& scene, const ReportContent& content,
-                   const PageIndex& index) {
+                   const PageIndex& index, const PageLimits& limits) {
   PageJson pairs = PageJson::array();
-  for (const ReportPair& pair : content.pairs) {
+  const std::vector<ReportPair>& all = content.pairs;
+  const auto comes_first = [&](std::size_t a, std::size_t b) {
+    return all[a].is_used != all[b].is_used
+               ? all[a].is_used
+               : all[a].log10_nfa < all[b].log10_nfa;
+  };
+  for (const std::size_t n :
+       ChooseFirst(all.size(), limits.pairs, comes_first)) {
+    const ReportPair& pair = all[n];
     PageJson json = {
         {"views",
          {index.views.at(pair.views.first), index.views.at(pair.views.second)}},
@@ -124,19 +146,13 @@ PageJson PairsJson(const Scene& scene, const ReportContent& content,
 PageJson TripletsJson(const Scene& scene, const ReportContent& content,
                       const PageIndex& index, const PageLimits& limits) {
   const std::vector<ScaleRatio>& ratios = scene.scale_ratios;
-  std::vector<std::size_t> order(ratios.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  if (order.size() > limits.triplets) {
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) {
-                       return ratios[a].log10_nfa < ratios[b].log10_nfa;
-                     });
-    order.resize(limits.triplets);
-    std::sort(order.begin(), order.end());
-  }
+  const auto comes_first = [&](std::size_t a, std::size_t b) {
+    return ratios[a].log10_nfa < ratios[b].log10_nfa;
+  };
   const bool by_kind = content.profiles.size() <= limits.profiles_by_kind;
   PageJson triplets = PageJson::array();
-  for (const std::size_t n : order) {
+  for (const std::size_t n :
+       ChooseFirst(ratios.size(), limits.triplets, comes_first)) {
     const ViewTriplet& views = ratios[n].views;
     PageJson json = RatioJson(ratios[n]);
     json["views"] = {index.views.at(views.first), index.views.at(views.middle),

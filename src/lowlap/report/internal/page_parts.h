@@ -49,7 +49,7 @@ void AddStructure(const Scene& scene, const std::optional<ReportStage>& before,
                   PageJson* page);
 
 PageJson PairsJson(const Scene& scene, const ReportContent& content,
-                   const PageIndex& index);
+                   const PageIndex& index, const PageLimits& limits);
 
 PageJson TripletsJson(const Scene& scene, const ReportContent& content,
                       const PageIndex& index, const PageLimits& limits);

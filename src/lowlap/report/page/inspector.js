@@ -8,6 +8,13 @@ function linkTo(kind, index, text) {
 const pairName = pair => pair.views.map(shortName).join(' – ');
 const tripletName = triplet => triplet.views.map(shortName).join(' – ');
 
+// Its name alone, if the page does not hold the pair.
+function linkToPair(a, b) {
+  const pair = pairOf(a, b);
+  const name = pairName({ views: [a, b] });
+  return pair ? linkTo('pair', pair.index, name) : name;
+}
+
 const MOST_ROWS = 12;
 
 // A list with a dot of evidence for each; the strongest first.
@@ -56,7 +63,8 @@ function describeView(view) {
   requestAnimationFrame(draw);
   redrawSelected = draw;
   return [
-    make('h2', {}, view.name, badgeOf(view).className !== 'soft' && badgeOf(view)),
+    make('h2', {}, view.name,
+         badgeOf(view).className !== 'soft' && badgeOf(view)),
     canvas,
     view.warnings.map(text => make('p', { class: 'warning' }, text)),
     facts([
@@ -78,7 +86,8 @@ function describeView(view) {
     view.camera && space && make('p', {}, make('button', {
       class: 'link', onclick: () => space.lookThrough(view.index),
     }, 'Look through this camera')),
-    make('h3', {}, `Relative poses in use: ${used.length} of ${view.pairs.length}`),
+    make('h3', {},
+         `Relative poses in use: ${used.length} of ${view.pairs.length}`),
     evidenceRows('pair', used, pairName),
     ratios.length > 0 &&
         make('h3', {}, `Meaningful scale ratios: ${ratios.length} of ` +
@@ -123,10 +132,8 @@ function describeTriplet(triplet) {
     make('h2', {}, tripletName(triplet), !isMeaningful(triplet) &&
         make('span', { class: 'badge' }, verdict)),
     make('p', { class: 'note' },
-         'Length of the baseline ', linkTo('pair', pairOf(middle, last).index,
-                                           pairName({ views: [middle, last] })),
-         ' over that of ', linkTo('pair', pairOf(first, middle).index,
-                                  pairName({ views: [first, middle] }))),
+         'Length of the baseline ', linkToPair(middle, last),
+         ' over that of ', linkToPair(first, middle)),
   ];
   if (triplet.log_ratio === undefined) {
     return [head, make('p', { class: 'empty' },
@@ -158,8 +165,10 @@ function describeTriplet(triplet) {
         ([name, inliers, candidates, nfa, information]) => make(
             'div', { class: 'row' },
             make('i', { style: `background: ${colorOf(name)}` }),
-            make('span', {}, `${name.replace(/_/g, ' ')}: ${inliers} of ${candidates}`),
-            make('b', {}, `${fixed(nfa, 1)}, ${Math.round(100 * information)} %`)))),
+            make('span', {}, `${name.replace(/_/g, ' ')}: ` +
+                                 `${inliers} of ${candidates}`),
+            make('b', {}, `${fixed(nfa, 1)}, ` +
+                              `${Math.round(100 * information)} %`)))),
     make('h3', {}, 'Views'),
     triplet.views.map(view => [linkTo('view', view, page.views[view].name), ' ']),
   ];
@@ -175,7 +184,7 @@ function plotBoth(triplet) {
 function describePage() {
   const ratios = page.triplets.filter(isMeaningful).length;
   const { num_points: all, point_stride: stride, feature_stride: tracks,
-          num_triplets: triplets } = page.thinning;
+          num_pairs: pairs, num_triplets: triplets } = page.thinning;
   return [
     make('h2', {}, page.title),
     make('p', { class: 'note' },
@@ -193,6 +202,9 @@ function describePage() {
                        `One of ${stride} points is shown, of ${all}.`),
     tracks > 1 && make('p', { class: 'note' },
                        `One of ${tracks} matched points is shown.`),
+    pairs > page.pairs.length &&
+        make('p', { class: 'note' }, `Of ${pairs} pairs those in use, and of ` +
+                                         'most evidence, are here.'),
     triplets > page.triplets.length &&
         make('p', { class: 'note' }, `Of ${triplets} ratios those of most ` +
                                          'evidence are here.'),

@@ -65,7 +65,7 @@ function drawPairMatches(context, pair, boxes) {
 function shownPair() {
   const { kind, index } = state.selected;
   if (kind === 'pair') return page.pairs[index];
-  if (kind === 'triplet') return pairOf(...page.triplets[index].views);
+  if (kind === 'triplet') return pairOf(...page.triplets[index].views.slice(0, 2));
   const pairs = kind === 'view' ? page.views[index].pairs : page.pairs;
   const used = pairs.filter(pair => pair.used);
   return used.sort((a, b) => a.log10_nfa - b.log10_nfa)[0] || pairs[0];

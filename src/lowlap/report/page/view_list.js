@@ -27,7 +27,8 @@ function startViewList() {
   const items = page.views.map(makeThumbnail);
   const list = make('ol', {}, items);
   const kinds = make(
-      'div', { class: 'toolbar' }, makeToggle('overlay', 'points', 'points', 'point'),
+      'div', { class: 'toolbar' },
+      makeToggle('overlay', 'points', 'points', 'point'),
       makeToggle('overlay', 'segments', 'segments', 'line'));
   const sets = make(
       'div', { class: 'toolbar' }, makeToggle('overlay', 'model', 'in model'),
