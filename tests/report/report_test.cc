@@ -136,6 +136,7 @@ TEST(PageData, HasAllSections) {
   EXPECT_GT(points["after"]["total"], 300);
   EXPECT_NEAR(points["after"]["rmse_px"].get<double>(), 0, 2);
   EXPECT_EQ(points["before"]["total"], points["after"]["total"]);
+  EXPECT_LE(points["after"]["median_px"], points["after"]["rmse_px"]);
   EXPECT_EQ(points["views"].size(), 7u);
 }
 

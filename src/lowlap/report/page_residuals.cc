@@ -2,7 +2,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <utility>
 
+#include "lowlap/core/internal/median.h"
 #include "lowlap/report/internal/page_parts.h"
 
 namespace lowlap {
@@ -139,12 +141,19 @@ struct Histogram {
   }
 };
 
-Histogram HistogramOf(const std::vector<Residual>& residuals, double bin_px) {
+// With the median: before the adjustment a few residuals, however large, are
+// most of the RMSE.
+PageJson StageJson(const std::vector<Residual>& residuals, double bin_px) {
   Histogram histogram;
+  std::vector<double> errors;
+  errors.reserve(residuals.size());
   for (const Residual& residual : residuals) {
     histogram.Add(residual.error_px, bin_px);
+    errors.push_back(residual.error_px);
   }
-  return histogram;
+  PageJson json = histogram.ToJson();
+  json["median_px"] = errors.empty() ? 0.0 : Median(std::move(errors));
+  return json;
 }
 
 // All but a hundredth lie within the bins.
@@ -163,10 +172,9 @@ double ChooseBin(const std::vector<Residual>& residuals) {
 PageJson KindJson(const std::vector<Residual>& after,
                   const std::vector<Residual>* before, const PageIndex& index) {
   const double bin_px = ChooseBin(after);
-  PageJson json = {{"bin_px", bin_px},
-                   {"after", HistogramOf(after, bin_px).ToJson()}};
+  PageJson json = {{"bin_px", bin_px}, {"after", StageJson(after, bin_px)}};
   if (before != nullptr) {
-    json["before"] = HistogramOf(*before, bin_px).ToJson();
+    json["before"] = StageJson(*before, bin_px);
   }
   std::vector<Histogram> views(index.views.size());
   for (const Residual& residual : after) {

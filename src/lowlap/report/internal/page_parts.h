@@ -55,7 +55,8 @@ PageJson TripletsJson(const Scene& scene, const ReportContent& content,
                       const PageIndex& index, const PageLimits& limits);
 
 /// Histograms of the residuals of points and lines in px over equal bins, and
-/// their RMSE, of the scene, of every view, and before the adjustment.
+/// their RMSE, of the scene, of every view, and before the adjustment; the
+/// median of the scene.
 PageJson ResidualsJson(const Scene& scene, const ReportContent& content,
                        const PageIndex& index);
 

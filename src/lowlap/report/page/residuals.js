@@ -19,10 +19,11 @@ function plotHistogram(kind, view, width, height) {
   return make(
       'figure', {},
       make('figcaption', {},
-           `${kind === 'points' ? 'Points' : 'Lines'}: RMSE ` +
-               `${number(after.rmse_px, 3)} px`,
+           kind === 'points' ? 'Points: ' : 'Lines: ',
+           view >= 0 ? `RMSE ${number(after.rmse_px, 3)} px`
+                     : `median ${number(after.median_px, 3)} px`,
            make('span', { class: 'soft' },
-                before ? `, ${number(before.rmse_px, 3)} before` : '',
+                before ? `, ${number(before.median_px, 3)} before` : '',
                 `; ${after.total} observations, ${after.beyond} beyond`)),
       makeSvg(
           'svg', { width, height },
