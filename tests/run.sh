@@ -34,7 +34,7 @@ export CCACHE_SLOPPINESS=pch_defines,time_macros
 step "Packages"
 tools=(ccache clang-format doxygen dpkg-dev
        pybind11-dev python3-dev python3-numpy python3-pip python3-setuptools
-       python3-wheel groff-base)
+       python3-wheel groff-base colmap chromium)
 if $tidy; then tools+=(clang-tidy clang-tools); fi
 bash tutorials/install_dependencies.sh "${tools[@]}"
 
