@@ -56,7 +56,7 @@ BENCHMARK(PairRetrieval)
     ->Arg(200)
     ->Arg(350)
     ->Arg(500)
-    
+
     ->Iterations(1)
     ->Unit(benchmark::kSecond);
 
