@@ -19,6 +19,7 @@ struct Flags {
   std::string scene;
   std::string output;
   std::vector<std::string> features = {"points", "lines", "coplanar"};
+  std::string coplanar_ties = "pairs";
   bool retriangulate = false;
   std::string refine_intrinsics;
   double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;
@@ -29,6 +30,8 @@ Result<int> Adjust(const Flags& flags) {
   const RunContext context = MakeContext(flags.common);
   AdjustmentOptions options;
   LOWLAP_RETURN_IF_ERROR(SetAdjustedFeatures(flags.features, &options));
+  LOWLAP_ASSIGN_OR_RETURN(options.coplanar_ties,
+                          ParseCoplanarTies(flags.coplanar_ties));
   options.principal_point_stddev = flags.principal_point_stddev;
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   // A folder that cannot be written is found before the work.
@@ -114,6 +117,7 @@ void AddAdjust(CLI::App* program, Action* action) {
             "coplanar")
       .SeparatedBy(',')
       .ShowDefault();
+  AddCoplanarTiesFlag(command, &flags->coplanar_ties);
   AddFlag(command, "--retriangulate", flags->retriangulate,
           "Build the structure anew from the tracks first");
   AddRefinementFlag(command, &flags->refine_intrinsics);

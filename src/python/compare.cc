@@ -140,6 +140,7 @@ void BindCompare(py::module_& module) {
       "compare --strategies`, or a list of texts and TranslationAverager;\n"
       "None: all of lowlap's. Options: reference, output; features,\n"
       "coplanar_points, criterion, nfa, threshold; adjust_features, "
+      "coplanar_ties, "
       "no_adjust,\n"
       "principal_point_stddev; matchdir, match_file, images, exclude: as of\n"
       "measure(); threads, seed, progress, log.");

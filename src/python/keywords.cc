@@ -105,6 +105,9 @@ SolveArguments TakeComparedOptions(Keywords* keywords) {
   std::vector<std::string> features = {"points", "lines", "coplanar"};
   keywords->TakeWords("adjust_features", &features);
   RaiseIfError(SetAdjustedFeatures(features, &options.adjustment));
+  std::string ties = "pairs";
+  keywords->Take("coplanar_ties", &ties);
+  options.adjustment.coplanar_ties = ValueOf(ParseCoplanarTies(ties));
   keywords->Take("principal_point_stddev",
                  &options.adjustment.principal_point_stddev);
   bool no_adjust = false;

@@ -86,7 +86,7 @@ struct SolveArguments {
   std::string output;
 };
 
-/// Those of TakeScaleOptions, adjust_features, no_adjust and
+/// Those of TakeScaleOptions, adjust_features, coplanar_ties, no_adjust and
 /// principal_point_stddev.
 SolveArguments TakeComparedOptions(Keywords* keywords);
 /// The same, strategy, refine_intrinsics, gt and output.

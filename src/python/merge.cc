@@ -136,7 +136,8 @@ void BindMerge(py::module_& module) {
       "  scene: a scene or a path, as of solve(), with matchdir, match_file,\n"
       "  images, exclude.\n"
       "Other options: exclude, and those of solve(): features,\n"
-      "coplanar_points, criterion, nfa, threshold, strategy, adjust_features,\n"
+      "coplanar_points, criterion, nfa, threshold, strategy, adjust_features, "
+      "coplanar_ties,\n"
       "no_adjust, refine_intrinsics, principal_point_stddev, gt, output,\n"
       "threads, seed, progress, log.");
 }

@@ -1,12 +1,15 @@
 #include <ceres/gradient_checker.h>
 #include <ceres/line_manifold.h>
 #include <ceres/manifold_test_utils.h>
+#include <ceres/product_manifold.h>
+#include <ceres/sphere_manifold.h>
 #include <gtest/gtest.h>
 
 #include <memory>
 
 #include "lowlap/adjustment/internal/costs/coplanar_costs.h"
 #include "lowlap/adjustment/internal/costs/line_reprojection_cost.h"
+#include "lowlap/adjustment/internal/costs/plane_costs.h"
 #include "lowlap/adjustment/internal/costs/point_reprojection_cost.h"
 #include "lowlap/adjustment/internal/costs/relative_pose_prior.h"
 #include "lowlap/core/internal/random.h"
@@ -239,6 +242,39 @@ TEST(ResidualsTest, CoplanarGradients) {
       blocks.center.data(), blocks.line_a.data(), blocks.line_b.data()};
   ExpectGradients(CoplanarTransferCost(900), manifolds, parameters);
   ExpectGradients(CoplanarImageDistanceCost(900), manifolds, parameters);
+}
+
+TEST(ResidualsTest, PlaneGradients) {
+  const ceres::LineManifold<3> line_manifold;
+  const ceres::ProductManifold<ceres::SphereManifold<3>,
+                               ceres::EuclideanManifold<1>>
+      plane_manifold;
+  Vec3 point(0.3, -1.2, 4);
+  Eigen::Matrix<double, 6, 1> line;
+  line << 0.2, 0.5, 3, Vec3(1, -0.4, 0.3).normalized();
+  Vec4 plane;
+  plane << Vec3(0.2, -0.3, 0.9).normalized(), 0.07;
+  const Vec3 anchor(0.1, 0.4, 3.5);
+  ExpectGradients(PointOnPlaneCost(anchor, 40), {nullptr, &plane_manifold},
+                  {point.data(), plane.data()});
+  ExpectGradients(LineOnPlaneCost(anchor, 40, -0.7, 1.1),
+                  {&line_manifold, &plane_manifold},
+                  {line.data(), plane.data()});
+}
+
+TEST(ResidualsTest, WhatIsOnThePlaneHasNoDistance) {
+  const Vec3 normal = Vec3(0.2, -0.3, 0.9).normalized(), anchor(1, 2, 3);
+  Vec4 plane;
+  plane << normal, 0.5;
+  const Vec3 on_plane = anchor + 0.5 * normal + 2 * normal.unitOrthogonal();
+  const Vec3 off_plane = on_plane + 0.25 * normal;
+  double distance;
+  const double* blocks[] = {on_plane.data(), plane.data()};
+  PointOnPlaneCost(anchor, 10).Evaluate(blocks, &distance, nullptr);
+  EXPECT_NEAR(distance, 0, 1e-12);
+  blocks[0] = off_plane.data();
+  PointOnPlaneCost(anchor, 10).Evaluate(blocks, &distance, nullptr);
+  EXPECT_NEAR(distance, 2.5, 1e-12);
 }
 
 TEST(ResidualsTest, RelativePoseGradients) {

@@ -157,9 +157,19 @@ void AddAdjustFlags(CLI::App* command, SolveFlags* flags) {
             "Kinds in the bundle adjustment, separated by commas")
       .SeparatedBy(',')
       .ShowDefault();
+  AddCoplanarTiesFlag(command, &flags->coplanar_ties);
   AddPrincipalPointFlag(command, &flags->principal_point_stddev);
   AddFlag(command, "--no-adjust", flags->no_adjust,
           "Stop before the bundle adjustment");
+}
+
+void AddCoplanarTiesFlag(CLI::App* command, std::string* ties) {
+  AddOption(command, "--coplanar-ties", *ties,
+            "What of the coplanar kind holds the bundle adjustment: the pairs "
+            "of lines of the ratios, the planes of the scene with the points "
+            "and lines on them, or both")
+      .Must(Check::OneOf({"pairs", "planes", "both"}))
+      .ShowDefault();
 }
 
 void AddPrincipalPointFlag(CLI::App* command, double* stddev) {
@@ -225,6 +235,8 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
       AveragerRegistry::WithBuiltIns().Make(flags.strategy));
   LOWLAP_RETURN_IF_ERROR(
       SetAdjustedFeatures(flags.adjust_features, &options.adjustment));
+  LOWLAP_ASSIGN_OR_RETURN(options.adjustment.coplanar_ties,
+                          ParseCoplanarTies(flags.coplanar_ties));
   options.adjustment.principal_point_stddev = flags.principal_point_stddev;
   options.adjust = !flags.no_adjust;
   LOWLAP_RETURN_IF_ERROR(options.Validate());

@@ -33,6 +33,7 @@ struct SolveFlags {
   ScaleFlags scale;
   std::string strategy = "graph";
   std::vector<std::string> adjust_features = {"points", "lines", "coplanar"};
+  std::string coplanar_ties = "pairs";
   bool no_adjust = false;
   std::string refine_intrinsics;
   double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;
@@ -43,7 +44,9 @@ struct SolveFlags {
 void AddSolveFlags(CLI::App* command, SolveFlags* flags);
 Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
 
-/// --adjust-features, --principal-point-stddev and --no-adjust.
+/// --coplanar-ties
+void AddCoplanarTiesFlag(CLI::App* command, std::string* ties);
+/// --adjust-features, --coplanar-ties, --principal-point-stddev, --no-adjust.
 void AddAdjustFlags(CLI::App* command, SolveFlags* flags);
 /// --principal-point-stddev
 void AddPrincipalPointFlag(CLI::App* command, double* stddev);

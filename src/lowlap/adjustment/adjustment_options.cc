@@ -57,4 +57,13 @@ Status SetAdjustedFeatures(const std::vector<std::string>& features,
   return {};
 }
 
+Result<CoplanarTies> ParseCoplanarTies(const std::string& name) {
+  if (name == "pairs") return CoplanarTies::kPairs;
+  if (name == "planes") return CoplanarTies::kPlanes;
+  if (name == "both") return CoplanarTies::kBoth;
+  return MakeError(
+      ErrorCode::kInvalidArgument,
+      "unknown coplanar ties '" + name + "'; known: pairs, planes, both");
+}
+
 }  // namespace lowlap

@@ -21,6 +21,13 @@ enum class AdjustedCoplanarResidual {
   kImageDistance,
 };
 
+/// What the coplanar kind holds together in the adjustment.
+enum class CoplanarTies {
+  kPairs,   // the pairs of lines of the ratios (the paper's, section 5)
+  kPlanes,  // at the end the planes of the scene, with all that is on them
+  kBoth,    // at the end both
+};
+
 /// How tracks become landmarks.
 struct StructureOptions {
   bool use_points = true;
@@ -75,6 +82,7 @@ struct AdjustmentOptions {
   /// Hold poses to the measured relative poses, as far as their covariances
   /// say. It decides where structure is thin, and hardly shows elsewhere.
   bool use_relative_poses = true;
+  CoplanarTies coplanar_ties = CoplanarTies::kPairs;
   AdjustedCoplanarResidual coplanar_residual =
       AdjustedCoplanarResidual::kTransfer;
 
@@ -134,5 +142,8 @@ struct AdjustmentOptions {
 /// another name.
 Status SetAdjustedFeatures(const std::vector<std::string>& features,
                            AdjustmentOptions* options);
+
+/// CoplanarTies by name: pairs, planes, both. kInvalidArgument for another one.
+Result<CoplanarTies> ParseCoplanarTies(const std::string& name);
 
 }  // namespace lowlap

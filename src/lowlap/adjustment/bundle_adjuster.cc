@@ -8,6 +8,8 @@
 #include <string>
 #include <utility>
 
+#include "lowlap/adjustment/internal/planes/free_landmark.h"
+#include "lowlap/adjustment/internal/planes/scene_planes.h"
 #include "lowlap/adjustment/internal/rounds/calibration_score.h"
 #include "lowlap/adjustment/internal/rounds/outlier_round.h"
 #include "lowlap/adjustment/internal/rounds/pairs.h"
@@ -23,6 +25,7 @@ constexpr char kFinalStage[] = "final";
 constexpr double kRoughTolerance = 1e-5;
 // Pairs could be exchanged for one another for ever.
 constexpr int kRoundsWithNewPairs = 3;
+constexpr int kRoundsWithPlanes = 3;
 constexpr double kFirstTolerance = 1e-3;
 
 // Root mean square error of points, lines and coplanar pairs, in pixels.
@@ -163,6 +166,10 @@ class Adjuster {
       LOWLAP_RETURN_IF_ERROR(
           Solve("round " + std::to_string(round), false, rough));
     }
+    if (options_.use_lines && options_.use_coplanar &&
+        options_.coplanar_ties != CoplanarTies::kPairs) {
+      LOWLAP_RETURN_IF_ERROR(SolveWithPlanes(rough));
+    }
     LOWLAP_RETURN_IF_ERROR(
         Solve(kFinalStage, false, options_.function_tolerance));
     LOWLAP_RETURN_IF_ERROR(
@@ -253,6 +260,27 @@ class Adjuster {
         EstimateShapeExponent(cameras_, state_.points);
     WhitenPoints(summary_.point_shape_exponent, &state_.points);
     noise_ = EstimateAllNoise(cameras_, state_, options_);
+  }
+
+  // The planes are those of structure that is adjusted already; what is on them
+  // is seen better every time.
+  Status SolveWithPlanes(double function_tolerance) {
+    if (options_.coplanar_ties == CoplanarTies::kPlanes) {
+      for (PairState& pair : state_.pairs) pair.used = false;
+    }
+    for (int round = 1; round <= kRoundsWithPlanes; ++round) {
+      LOWLAP_ASSIGN_OR_RETURN(
+          state_.planes, FindPlanes(FreeLandmarks(cameras_, state_, noise_),
+                                    state_, context_));
+      LOWLAP_RETURN_IF_ERROR(
+          Solve("planes " + std::to_string(round), false, function_tolerance));
+      LOWLAP_RETURN_IF_ERROR(Update(false));
+    }
+    summary_.planes = state_.planes.size();
+    for (const PlaneState& plane : state_.planes) {
+      summary_.landmarks_on_planes += plane.points.size() + plane.lines.size();
+    }
+    return {};
   }
 
   // The share of the observations whose use changed.

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
+#include "lowlap/adjustment/internal/costs/plane_costs.h"
 #include "lowlap/adjustment/internal/costs/point_reprojection_cost.h"
 #include "lowlap/adjustment/internal/costs/subspace_manifold.h"
 #include "lowlap/adjustment/internal/rounds/pairs.h"
@@ -15,6 +16,7 @@ namespace {
 constexpr int kPoseSize = 4 + 3;
 constexpr int kPointSize = 3;
 constexpr int kLineSize = 6;
+constexpr int kPlaneSize = 4;
 
 // Ceres counts the owners of what it owns in a tree, for every residual.
 ceres::Problem::Options OwnNothing() {
@@ -44,6 +46,7 @@ ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
   AddPoints();
   AddLines();
   AddPairs();
+  AddPlanes();
   AddRelativePoses();
   AddPrincipalPoints();
   SetManifolds();
@@ -71,6 +74,10 @@ double* ProblemBuilder::PointBlock(std::size_t point) {
   return LineBlock(state_->lines.size()) + kPointSize * point;
 }
 
+double* ProblemBuilder::PlaneBlock(std::size_t plane) {
+  return PointBlock(state_->points.size()) + kPlaneSize * plane;
+}
+
 bool ProblemBuilder::AllFinite() const {
   return std::all_of(blocks_.begin(), blocks_.end(),
                      [](double value) { return std::isfinite(value); });
@@ -80,7 +87,8 @@ void ProblemBuilder::CopyIntoBlocks() {
   blocks_.assign(kPoseSize * cameras_->poses.size() +
                      kMaxIntrinsicParameters * cameras_->intrinsics.size() +
                      kLineSize * state_->lines.size() +
-                     kPointSize * state_->points.size(),
+                     kPointSize * state_->points.size() +
+                     kPlaneSize * state_->planes.size(),
                  0);
   for (std::size_t n = 0; n < cameras_->poses.size(); ++n) {
     const PoseState& pose = cameras_->poses[n];
@@ -99,6 +107,10 @@ void ProblemBuilder::CopyIntoBlocks() {
   }
   for (const int n : selection_.points) {
     Eigen::Map<Vec3>(PointBlock(n)) = state_->points[n].position;
+  }
+  for (const int n : selection_.planes) {
+    Eigen::Map<Vec4>(PlaneBlock(n)) << state_->planes[n].normal,
+        state_->planes[n].offset;
   }
 }
 
@@ -191,6 +203,30 @@ void ProblemBuilder::AddPairs() {
   }
 }
 
+void ProblemBuilder::AddPlanes() {
+  // Of what is close to a plane and not on it no threshold tells: the loss
+  // bends early, at half the thickness.
+  constexpr double kLossScale = 0.5;
+  losses_.push_back(std::make_unique<ceres::CauchyLoss>(kLossScale));
+  ceres::LossFunction* loss = losses_.back().get();
+  for (const int p : selection_.planes) {
+    const PlaneState& plane = state_->planes[p];
+    const double weight = 1 / plane.thickness;
+    for (const int n : plane.points) {
+      if (!options_.use_points || !state_->points[n].IsLandmark()) continue;
+      AddResiduals(std::make_unique<PointOnPlaneCost>(plane.anchor, weight),
+                   loss, {PointBlock(n), PlaneBlock(p)});
+    }
+    for (const int n : plane.lines) {
+      const LineTrackState& line = state_->lines[n];
+      if (!line.IsLandmark()) continue;
+      AddResiduals(std::make_unique<LineOnPlaneCost>(plane.anchor, weight,
+                                                     line.low, line.high),
+                   loss, {LineBlock(n), PlaneBlock(p)});
+    }
+  }
+}
+
 void ProblemBuilder::AddPrincipalPoints() {
   for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
     const IntrinsicState& intrinsic = cameras_->intrinsics[n];
@@ -226,6 +262,11 @@ void ProblemBuilder::AddRelativePoses() {
 void ProblemBuilder::SetManifolds() {
   for (const int n : selection_.lines) {
     problem_.SetManifold(LineBlock(n), &line_manifold_);
+  }
+  for (const int n : selection_.planes) {
+    if (problem_.HasParameterBlock(PlaneBlock(n))) {
+      problem_.SetManifold(PlaneBlock(n), &plane_manifold_);
+    }
   }
   for (const Component& component : components_) {
     for (const int n : component.poses) {
@@ -272,6 +313,7 @@ void ProblemBuilder::SplitBlocks() {
   for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
     keep(IntrinsicBlock(n));
   }
+  for (const int n : selection_.planes) keep(PlaneBlock(n));
   // Two lines of a pair share residuals: only one of them may be eliminated.
   std::vector<std::vector<int>> partners(state_->lines.size());
   for (const int n : selection_.pairs) {
@@ -313,6 +355,11 @@ void ProblemBuilder::TakeResults() {
   }
   for (const int n : selection_.points) {
     state_->points[n].position = Eigen::Map<Vec3>(PointBlock(n));
+  }
+  for (const int n : selection_.planes) {
+    PlaneState& plane = state_->planes[n];
+    plane.normal = Eigen::Map<Vec3>(PlaneBlock(n)).normalized();
+    plane.offset = PlaneBlock(n)[3];
   }
 }
 

@@ -5,6 +5,7 @@
 #include <ceres/manifold.h>
 #include <ceres/ordered_groups.h>
 #include <ceres/problem.h>
+#include <ceres/product_manifold.h>
 #include <ceres/sphere_manifold.h>
 
 #include <initializer_list>
@@ -46,6 +47,7 @@ class ProblemBuilder {
   void AddPoints();
   void AddLines();
   void AddPairs();
+  void AddPlanes();
   void AddRelativePoses();
   void AddPrincipalPoints();
   void SetManifolds();
@@ -54,6 +56,7 @@ class ProblemBuilder {
   double* RotationBlock(std::size_t pose);
   double* PointBlock(std::size_t point);
   double* LineBlock(std::size_t line);
+  double* PlaneBlock(std::size_t plane);
   void CopyIntoBlocks();
   void AddResiduals(std::unique_ptr<ceres::CostFunction> cost,
                     ceres::LossFunction* loss,
@@ -79,6 +82,8 @@ class ProblemBuilder {
   ceres::EigenQuaternionManifold rotation_manifold_;
   ceres::SphereManifold<3> sphere_manifold_;
   ceres::LineManifold<3> line_manifold_;
+  ceres::ProductManifold<ceres::SphereManifold<3>, ceres::EuclideanManifold<1>>
+      plane_manifold_;
   ceres::Problem problem_;
 };
 

@@ -17,10 +17,11 @@ int FirstPose(const CameraSet& cameras, const Track& track) {
   return -1;
 }
 
-// By the similarity  x -> place(x),  whose rotation is `turn`.
+// By the similarity  x -> place(x),  whose rotation is `turn` and whose scale
+// is `scale`.
 template <class Place>
 void MoveComponent(const Component& component, const Eigen::Quaterniond& turn,
-                   const Place& place, CameraSet* cameras,
+                   double scale, const Place& place, CameraSet* cameras,
                    StructureState* state) {
   for (const int n : component.poses) {
     PoseState& pose = cameras->poses[n];
@@ -34,6 +35,29 @@ void MoveComponent(const Component& component, const Eigen::Quaterniond& turn,
     LineTrackState& line = state->lines[n];
     line.point = place(line.point);
     line.direction = (turn * line.direction).normalized();
+    line.low *= scale;
+    line.high *= scale;
+  }
+  for (const int n : component.planes) {
+    PlaneState& plane = state->planes[n];
+    plane.normal = (turn * plane.normal).normalized();
+    plane.anchor = place(plane.anchor);
+    plane.offset *= scale;
+    plane.thickness *= scale;
+  }
+}
+
+// Calls visit(pose) with the first pose of every landmark on the plane.
+template <class Visit>
+void VisitPosesOf(const CameraSet& cameras, const StructureState& state,
+                  const PlaneState& plane, const Visit& visit) {
+  for (const int n : plane.points) {
+    if (state.points[n].IsLandmark()) {
+      visit(FirstPose(cameras, state.points[n]));
+    }
+  }
+  for (const int n : plane.lines) {
+    if (state.lines[n].IsLandmark()) visit(FirstPose(cameras, state.lines[n]));
   }
 }
 
@@ -69,10 +93,16 @@ ProblemSelection SelectForSolve(const CameraSet& cameras,
       ++selection.pair_degree[pair.second];
     }
   }
+  std::vector<char> on_plane(state.lines.size(), 0);
+  for (std::size_t n = 0; n < state.planes.size(); ++n) {
+    selection.planes.push_back(static_cast<int>(n));
+    for (const int line : state.planes[n].lines) on_plane[line] = 1;
+  }
   for (std::size_t n = 0; n < state.lines.size(); ++n) {
     const LineTrackState& line = state.lines[n];
     if (line.IsLandmark() &&
-        (selection.pair_degree[n] > 0 || line.PoseCount(cameras) > 2)) {
+        (selection.pair_degree[n] > 0 || on_plane[n] != 0 ||
+         line.PoseCount(cameras) > 2)) {
       selection.lines.push_back(static_cast<int>(n));
     }
   }
@@ -108,6 +138,13 @@ std::vector<Component> FindComponents(const CameraSet& cameras,
           FirstPose(cameras, state.lines[state.pairs[n].second]));
   }
 
+  std::map<int, int> pose_of_plane;
+  for (const int n : selection.planes) {
+    VisitPosesOf(cameras, state, state.planes[n], [&](int pose) {
+      unite(pose_of_plane.emplace(n, pose).first->second, pose);
+    });
+  }
+
   std::map<std::size_t, Component> by_root;  // then ordered by their first pose
   std::vector<std::size_t> roots;
   for (std::size_t n = 0; n < cameras.poses.size(); ++n) {
@@ -127,6 +164,9 @@ std::vector<Component> FindComponents(const CameraSet& cameras,
   }
   for (const int n : selection.lines) {
     by_root.at(find(FirstPose(cameras, state.lines[n]))).lines.push_back(n);
+  }
+  for (const auto& [plane, pose] : pose_of_plane) {
+    by_root.at(find(pose)).planes.push_back(plane);
   }
   std::vector<Component> components;
   for (const std::size_t root : roots) {
@@ -149,7 +189,7 @@ void EnterComponentFrame(const Component& component, CameraSet* cameras,
   *saved_reference = cameras->poses[component.reference];
   const Eigen::Quaterniond& turn = saved_reference->cam_from_world;
   MoveComponent(
-      component, turn,
+      component, turn, 1 / component.Unit(),
       [&](const Vec3& x) -> Vec3 {
         return turn * (x - saved_reference->center) / component.Unit();
       },
@@ -161,7 +201,7 @@ void LeaveComponentFrame(const Component& component,
                          StructureState* state) {
   const Eigen::Quaterniond turn = saved_reference.cam_from_world.conjugate();
   MoveComponent(
-      component, turn,
+      component, turn, component.Unit(),
       [&](const Vec3& y) -> Vec3 {
         return component.Unit() * (turn * y) + saved_reference.center;
       },

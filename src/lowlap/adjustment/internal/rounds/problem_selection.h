@@ -8,11 +8,13 @@
 namespace lowlap {
 
 /// What takes part in a solve: indices into the tracks and pairs of the state.
-/// Lines of two poses without a pair in use constrain nothing and are left out.
+/// Lines of two poses that are neither in a pair in use nor on a plane
+/// constrain nothing and are left out.
 struct ProblemSelection {
   std::vector<int> points;
   std::vector<int> lines;
   std::vector<int> pairs;
+  std::vector<int> planes;
   /// Of every line of the state: the number of selected pairs it is in.
   std::vector<int> pair_degree;
 
@@ -31,6 +33,7 @@ struct Component {
   std::vector<int> poses;
   std::vector<int> points;
   std::vector<int> lines;
+  std::vector<int> planes;
   int reference = -1;   // the pose that is held: that with most observations
   int partner = -1;     // the pose farthest from it
   double baseline = 0;  // their distance; 0 if all centres coincide

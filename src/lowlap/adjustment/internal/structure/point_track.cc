@@ -98,6 +98,16 @@ class PointModel {
     return position;
   }
 
+  std::optional<Mat3> UnitCovariance(const std::vector<char>& used,
+                                     const Vec3& position) const {
+    Mat3 hessian;
+    Vec3 gradient;
+    if (!Linearise(used, position, &hessian, &gradient)) return std::nullopt;
+    const Mat3 covariance = hessian.inverse();
+    if (!covariance.allFinite()) return std::nullopt;
+    return covariance;
+  }
+
   // Largest standard deviation of the position over its least distance from a
   // camera that sees it.
   double RelativeStddev(const std::vector<char>& used, const Vec3& position,
@@ -187,6 +197,17 @@ void Triangulate(const CameraSet& cameras, const TriangulationLimits& limits,
   }
   track->status = LandmarkStatus::kLandmark;
   track->position = *position;
+}
+
+std::optional<PointEstimate> EstimateFromPixels(const CameraSet& cameras,
+                                                const PointTrackState& track) {
+  const PointModel model(cameras, track);
+  const std::vector<char> used = track.Used();
+  const std::optional<Vec3> position = model.Refine(used, track.position);
+  if (!position) return std::nullopt;
+  const std::optional<Mat3> covariance = model.UnitCovariance(used, *position);
+  if (!covariance) return std::nullopt;
+  return PointEstimate{*position, *covariance};
 }
 
 }  // namespace lowlap

@@ -40,4 +40,16 @@ double ErrorPx(const CameraSet& cameras, const PointTrackState& track,
 void Triangulate(const CameraSet& cameras, const TriangulationLimits& limits,
                  PointTrackState* track);
 
+/// A point from the candidates in use alone, and its covariance at whitened
+/// errors of 1 px.
+struct PointEstimate {
+  Vec3 position;
+  Mat3 unit_covariance;
+};
+
+/// Refines the track's point, whatever else it was adjusted to. nullopt: the
+/// candidates do not determine it.
+std::optional<PointEstimate> EstimateFromPixels(const CameraSet& cameras,
+                                                const PointTrackState& track);
+
 }  // namespace lowlap

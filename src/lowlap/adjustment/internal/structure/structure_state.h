@@ -21,12 +21,25 @@ struct PairState {
   int times_dropped = 0;
 };
 
+/// A plane of the scene, normal . (x - anchor) = offset, and the landmarks that
+/// are tied to it.
+struct PlaneState {
+  Vec3 normal = Vec3::UnitZ();  // unit
+  Vec3 anchor = Vec3::Zero();
+  double offset = 0;
+  double thickness = 0;  // standard deviation of what is on it, world units
+  double log10_nfa = 0;
+  std::vector<int> points;  // indices into StructureState
+  std::vector<int> lines;
+};
+
 /// All tracks and landmarks of a scene, in the form in which they are worked
 /// on. Tracks keep every candidate, whether in use or not.
 struct StructureState {
   std::vector<PointTrackState> points;  // by id
   std::vector<LineTrackState> lines;    // by id
   std::vector<PairState> pairs;
+  std::vector<PlaneState> planes;
   std::vector<RelativePosePrior> priors;
 
   /// Whether both lines of the pair are landmarks.

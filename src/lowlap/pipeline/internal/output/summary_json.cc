@@ -179,6 +179,8 @@ Json SolveJson(const SolveResult& solve) {
         {"points", AdjustedKindJson(a.points)},
         {"lines", AdjustedKindJson(a.lines)},
         {"coplanar", AdjustedKindJson(a.coplanar)},
+        {"planes", a.planes},
+        {"landmarks_on_planes", a.landmarks_on_planes},
         {"calibration_preferences", PreferencesJson(a)}};
   }
   return json;

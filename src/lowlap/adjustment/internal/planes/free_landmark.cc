@@ -1,0 +1,64 @@
+#include "lowlap/adjustment/internal/planes/free_landmark.h"
+
+#include <cmath>
+#include <optional>
+
+#include "lowlap/geometry/internal/rotation.h"
+
+namespace lowlap {
+namespace {
+
+FreePlace PlaceOnLine(const LineEstimate& line, double along, double noise_px) {
+  // dP = B (a + s b), see LineEstimate.
+  Eigen::Matrix<double, 2, 4> by_unknowns;
+  by_unknowns << Mat2::Identity(), along * Mat2::Identity();
+  const Eigen::Matrix<double, 3, 4> jacobian =
+      TangentBasis(line.direction) * by_unknowns;
+  return {line.point + along * line.direction, noise_px * noise_px * jacobian *
+                                                   line.unit_covariance *
+                                                   jacobian.transpose()};
+}
+
+}  // namespace
+
+Vec3 FreeLandmark::Center() const {
+  Vec3 sum = Vec3::Zero();
+  for (const FreePlace& place : places) sum += place.point;
+  return sum / static_cast<double>(places.size());
+}
+
+std::vector<FreeLandmark> FreeLandmarks(const CameraSet& cameras,
+                                        const StructureState& state,
+                                        const NoiseLevels& noise) {
+  std::vector<FreeLandmark> landmarks;
+  for (std::size_t n = 0; n < state.points.size(); ++n) {
+    if (!state.points[n].IsLandmark()) continue;
+    const std::optional<PointEstimate> point =
+        EstimateFromPixels(cameras, state.points[n]);
+    if (!point) continue;
+    const double variance = noise.points.stddev_px * noise.points.stddev_px;
+    landmarks.push_back(
+        {false,
+         static_cast<int>(n),
+         {{point->position, variance * point->unit_covariance}}});
+  }
+  for (std::size_t n = 0; n < state.lines.size(); ++n) {
+    const LineTrackState& track = state.lines[n];
+    if (!track.IsLandmark()) continue;
+    const std::optional<LineEstimate> line =
+        EstimateFromSegments(cameras, track);
+    if (!line) continue;
+    // The extent, carried over to the estimate.
+    const auto place_at = [&](double along) {
+      const Vec3 end = track.point + along * track.direction;
+      return PlaceOnLine(*line, line->direction.dot(end - line->point),
+                         noise.lines.stddev_px);
+    };
+    landmarks.push_back({true,
+                         static_cast<int>(n),
+                         {place_at(track.low), place_at(track.high)}});
+  }
+  return landmarks;
+}
+
+}  // namespace lowlap
