@@ -37,6 +37,10 @@ Result<StructureSummary> BuildStructure(Scene* scene,
 ///   pair     see AdjustedCoplanarResidual; a pair counts as one residual, and
 ///            less the more pairs its lines are in: n lines of one plane do not
 ///            count n^2 times
+///   plane    distances of a point, or of the two ends of a line's extent, from
+///            a plane of the scene, over its thickness (CoplanarTies; Cauchy
+///            loss at half a thickness): after the rounds below, the planes are
+///            found three times (FindPlanes), with a solve each time
 /// where s is the kind's noise level and rho the Cauchy loss, whose scale is
 /// the kind's a-contrario threshold (of pairs, which may all but meet by
 /// chance: s); all from the residuals before each solve. A line in two views

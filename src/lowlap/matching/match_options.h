@@ -63,7 +63,7 @@ struct RetrievalOptions {
   /// Up to so many views, every one is compared with every other one, exactly;
   /// of more, the points are looked up in one index of all, which takes less
   /// time from there on (benchmark PairRetrieval).
-  int max_exhaustive = 350;
+  int max_exhaustive = 700;
   /// Partners that every view proposes; the pairs are those that either of
   /// their views proposes.
   int max_partners = 12;
