@@ -41,15 +41,17 @@ run_colmap feature_extractor --database_path "$out/database.db" \
   --image_path "$room/images" --image_list_path "$out/images.txt" \
   --ImageReader.single_camera 1 --ImageReader.camera_model PINHOLE \
   --ImageReader.camera_params "$camera" --SiftExtraction.use_gpu 0
+# One thread each, so that its random choices hardly vary.
 run_colmap exhaustive_matcher --database_path "$out/database.db" \
-  --SiftMatching.use_gpu 0
+  --SiftMatching.use_gpu 0 --SiftMatching.num_threads 1
 run_colmap mapper --database_path "$out/database.db" \
   --image_path "$room/images" --output_path "$out/sparse" \
   --Mapper.ba_refine_focal_length 0 --Mapper.ba_refine_extra_params 0 \
   --Mapper.init_min_num_inliers 15 --Mapper.init_min_tri_angle 2 \
   --Mapper.init_max_forward_motion 1 --Mapper.min_num_matches 8 \
   --Mapper.abs_pose_min_num_inliers 6 \
-  --Mapper.abs_pose_min_inlier_ratio 0.05 --Mapper.min_model_size 3
+  --Mapper.abs_pose_min_inlier_ratio 0.05 --Mapper.min_model_size 3 \
+  --Mapper.num_threads 1
 for model in "$out"/sparse/*; do
   echo "$model: $(colmap model_analyzer --path "$model" 2>&1 |
     grep 'Registered images') of $(wc -l <"$out/images.txt")"
@@ -57,9 +59,14 @@ done
 
 echo
 echo "== lowlap merge"
-"$lowlap" merge "$out"/sparse/* --images "$room/images" \
-  --intrinsics "$room/images/K.txt" --pairs cycle \
-  --gt "$room/gt_dense_cameras" --output "$out/merged"
+photographs=("$room/images" --intrinsics "$room/images/K.txt" --pairs cycle
+             --gt "$room/gt_dense_cameras" --output "$out/merged")
+if ! "$lowlap" merge "$out"/sparse/* --images "${photographs[@]}"; then
+  # Another version of COLMAP may place cameras so that nothing bears them out:
+  # such a model is refused, and there is nothing to rescue.
+  echo "== lowlap run, from the photographs alone"
+  "$lowlap" run "${photographs[@]}"
+fi
 
 echo
 echo "== COLMAP again"
