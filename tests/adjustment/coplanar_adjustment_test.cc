@@ -171,5 +171,65 @@ TEST(CoplanarChainTest, ALineIsHeldByAFewPairsOnly) {
   EXPECT_GT(test.scene.coplanar_pairs.size(), 0.9 * all);
 }
 
+// What lies on common walls carries the scale from pair to pair.
+TEST(CoplanarTiesTest, PlanesHoldAChainBetterThanPairs) {
+  double by_pairs = 0, by_planes = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4}) {
+    TestSceneOptions options = ChainOptions();
+    options.noise_px = 0.5;
+    options.seed = seed;
+    by_pairs += RunChain(options, 0.05, {}).after;
+    AdjustmentOptions planes;
+    planes.coplanar_ties = CoplanarTies::kPlanes;
+    const Outcome outcome = RunChain(options, 0.05, planes);
+    by_planes += outcome.after;
+    EXPECT_GE(outcome.summary.planes, 3u);
+    EXPECT_GT(outcome.summary.landmarks_on_planes, 400u);
+    EXPECT_EQ(outcome.summary.coplanar.observations_used, 0u);
+  }
+  EXPECT_LT(by_planes, by_pairs);
+}
+
+TEST(CoplanarTiesTest, GoodScenesAreNotHarmed) {
+  double with_planes = 0, without = 0;
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    TestSceneOptions options = ChainOptions();
+    options.max_point_views = 3;
+    options.max_line_views = 3;
+    options.noise_px = 0.5;
+    options.wrong_pairs = 0.33;
+    options.seed = seed;
+    AdjustmentOptions planes;
+    planes.coplanar_ties = CoplanarTies::kPlanes;
+    AdjustmentOptions no_pairs;
+    no_pairs.use_coplanar = false;
+    with_planes += RunChain(options, 0.02, planes).after;
+    without += RunChain(options, 0.02, no_pairs).after;
+  }
+  EXPECT_LT(with_planes, 1.05 * without);
+}
+
+// Points that are not used have no say, on planes either.
+TEST(CoplanarTiesTest, PlanesOfLinesAlone) {
+  TestSceneOptions options = ChainOptions();
+  options.max_line_views = 3;
+  options.noise_px = 0.3;
+  AdjustmentOptions planes;
+  planes.use_points = false;
+  planes.coplanar_ties = CoplanarTies::kBoth;
+  const Outcome outcome = RunChain(options, 0.03, planes);
+  EXPECT_LT(outcome.after, 0.5 * outcome.before);
+  EXPECT_GE(outcome.summary.planes, 3u);
+  EXPECT_LE(outcome.summary.landmarks_on_planes,
+            static_cast<std::size_t>(options.num_lines));
+}
+
+TEST(CoplanarTiesTest, GoByTheirNames) {
+  EXPECT_EQ(*ParseCoplanarTies("pairs"), CoplanarTies::kPairs);
+  EXPECT_EQ(*ParseCoplanarTies("planes"), CoplanarTies::kPlanes);
+  EXPECT_EQ(*ParseCoplanarTies("both"), CoplanarTies::kBoth);
+  EXPECT_FALSE(ParseCoplanarTies("walls"));
+}
+
 }  // namespace
 }  // namespace lowlap

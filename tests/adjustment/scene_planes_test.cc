@@ -4,19 +4,13 @@
 
 #include <cmath>
 
-#include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/internal/planes/plane_fit.h"
 #include "lowlap/core/internal/random.h"
-#include "test_scene.h"
 #include "tests/support/matchers.h"
 
 namespace lowlap {
 namespace {
 
-using test::ComparePoses;
-using test::MakeTestScene;
-using test::TestScene;
-using test::TestSceneOptions;
 using ::testing::IsEmpty;
 using testing::IsOk;
 using ::testing::SizeIs;
@@ -146,49 +140,6 @@ TEST(PlaneFit, IsExactOnAPlane) {
   EXPECT_NEAR(plane.normal.dot(normal), 1, 1e-12);
   EXPECT_NEAR(plane.offset, 3, 1e-12);
   EXPECT_NEAR(PlaneThickness(members, plane), 0.25e-3, 1e-9);
-}
-
-// No feature is seen by three views: what lies on common walls carries the
-// scale from pair to pair.
-TEST(CoplanarTies, PlanesHoldAChainBetterThanPairs) {
-  double by_pairs = 0, by_planes = 0, before = 0;
-  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
-    TestSceneOptions options;
-    options.max_point_views = 2;
-    options.max_line_views = 2;
-    options.num_points = 400;
-    options.num_lines = 400;
-    options.pairs_per_triplet = 60;
-    options.noise_px = 0.5;
-    options.seed = seed;
-    TestScene test = MakeTestScene(options);
-    test::PerturbScales(0.03, seed + 70, &test.scene);
-    ASSERT_THAT(BuildStructure(&test.scene, {}, {}), IsOk());
-    before += ComparePoses(test.true_poses, test.scene).mean_center;
-    for (const CoplanarTies ties :
-         {CoplanarTies::kPairs, CoplanarTies::kPlanes}) {
-      Scene scene = test.scene;
-      AdjustmentOptions adjustment;
-      adjustment.coplanar_ties = ties;
-      const auto summary = AdjustScene(&scene, adjustment, {});
-      ASSERT_THAT(summary, IsOk());
-      const double error = ComparePoses(test.true_poses, scene).mean_center;
-      (ties == CoplanarTies::kPairs ? by_pairs : by_planes) += error;
-      if (ties == CoplanarTies::kPlanes) {
-        EXPECT_GE(summary->planes, 3U);
-        EXPECT_GT(summary->landmarks_on_planes, 400U);
-      }
-    }
-  }
-  EXPECT_LT(by_pairs, before);
-  EXPECT_LT(by_planes, by_pairs);
-}
-
-TEST(CoplanarTies, GoByTheirNames) {
-  EXPECT_EQ(*ParseCoplanarTies("pairs"), CoplanarTies::kPairs);
-  EXPECT_EQ(*ParseCoplanarTies("planes"), CoplanarTies::kPlanes);
-  EXPECT_EQ(*ParseCoplanarTies("both"), CoplanarTies::kBoth);
-  EXPECT_FALSE(ParseCoplanarTies("walls"));
 }
 
 }  // namespace

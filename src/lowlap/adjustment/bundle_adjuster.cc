@@ -270,8 +270,9 @@ class Adjuster {
     }
     for (int round = 1; round <= kRoundsWithPlanes; ++round) {
       LOWLAP_ASSIGN_OR_RETURN(
-          state_.planes, FindPlanes(FreeLandmarks(cameras_, state_, noise_),
-                                    state_, context_));
+          state_.planes,
+          FindPlanes(FreeLandmarks(options_, noise_, cameras_, state_), state_,
+                     context_));
       LOWLAP_RETURN_IF_ERROR(
           Solve("planes " + std::to_string(round), false, function_tolerance));
       LOWLAP_RETURN_IF_ERROR(Update(false));

@@ -27,12 +27,13 @@ Vec3 FreeLandmark::Center() const {
   return sum / static_cast<double>(places.size());
 }
 
-std::vector<FreeLandmark> FreeLandmarks(const CameraSet& cameras,
-                                        const StructureState& state,
-                                        const NoiseLevels& noise) {
+std::vector<FreeLandmark> FreeLandmarks(const AdjustmentOptions& options,
+                                        const NoiseLevels& noise,
+                                        const CameraSet& cameras,
+                                        const StructureState& state) {
   std::vector<FreeLandmark> landmarks;
   for (std::size_t n = 0; n < state.points.size(); ++n) {
-    if (!state.points[n].IsLandmark()) continue;
+    if (!options.use_points || !state.points[n].IsLandmark()) continue;
     const std::optional<PointEstimate> point =
         EstimateFromPixels(cameras, state.points[n]);
     if (!point) continue;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
 
 namespace lowlap {
@@ -29,9 +30,11 @@ struct FreeLandmark {
   Vec3 Center() const;
 };
 
-/// Of all landmarks that their observations determine: points, then lines.
-std::vector<FreeLandmark> FreeLandmarks(const CameraSet& cameras,
-                                        const StructureState& state,
-                                        const NoiseLevels& noise);
+/// Of all landmarks of the used kinds that their observations determine:
+/// points, then lines.
+std::vector<FreeLandmark> FreeLandmarks(const AdjustmentOptions& options,
+                                        const NoiseLevels& noise,
+                                        const CameraSet& cameras,
+                                        const StructureState& state);
 
 }  // namespace lowlap

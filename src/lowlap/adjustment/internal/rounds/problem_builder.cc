@@ -213,7 +213,7 @@ void ProblemBuilder::AddPlanes() {
     const PlaneState& plane = state_->planes[p];
     const double weight = 1 / plane.thickness;
     for (const int n : plane.points) {
-      if (!options_.use_points || !state_->points[n].IsLandmark()) continue;
+      if (!state_->points[n].IsLandmark()) continue;
       AddResiduals(std::make_unique<PointOnPlaneCost>(plane.anchor, weight),
                    loss, {PointBlock(n), PlaneBlock(p)});
     }
