@@ -11,7 +11,6 @@
 #include "cli/flags/truth.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/merge/merge_models.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
 #include "third_party_adapters/colmap/internal/database.h"
@@ -95,15 +94,8 @@ Result<std::vector<PartialModel>> MatchModels(const Flags& flags,
                                               const RunContext& context) {
   std::vector<PartialModel> matched;
   for (std::size_t m = 0; m < models.size(); ++m) {
-    LOWLAP_ASSIGN_OR_RETURN(auto model,
-                            MatchModel(measured, models[m], flags.models[m]));
-    const std::size_t num_placed = GroundTruthFromScene(models[m]).size();
-    if (model.poses.size() < num_placed) {
-      context.Log(LogLevel::kWarning,
-                  flags.models[m] + ": " +
-                      std::to_string(num_placed - model.poses.size()) +
-                      " of its cameras are no images of the measured scene");
-    }
+    LOWLAP_ASSIGN_OR_RETURN(
+        auto model, MatchModel(measured, models[m], flags.models[m], context));
     matched.push_back(std::move(model));
   }
   return matched;
@@ -126,16 +118,13 @@ Result<int> Merge(const Flags& flags) {
   };
   LOWLAP_ASSIGN_OR_RETURN(auto scene,
                           Measure(flags, match, context, &stages, &summary));
-  std::vector<ModelCheck> checks;
-  for (const PartialModel& model : models) {
-    const StageLog::Scope scope(&stages, "model check");
-    LOWLAP_ASSIGN_OR_RETURN(auto check,
-                            CheckModel(scene, model, options, context));
-    for (std::string& line : DescribeCheck(model, check, scene)) {
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto checks, CheckModels(scene, models, options, context, &stages));
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    for (std::string& line : DescribeCheck(models[m], checks[m], scene)) {
       std::printf("%s\n", line.c_str());
       summary.notes.push_back(std::move(line));
     }
-    checks.push_back(std::move(check));
   }
   std::fflush(stdout);  // before what goes to the log
   return SolveAndWrite(std::move(scene), flags.solve, std::move(summary),

@@ -40,15 +40,8 @@ Result<std::vector<PartialModel>> MatchModels(
     const RunContext& context) {
   std::vector<PartialModel> models;
   for (const GivenModel& each : given) {
-    LOWLAP_ASSIGN_OR_RETURN(auto model,
-                            MatchModel(measured, *each.scene, each.name));
-    const std::size_t num_others =
-        GroundTruthFromScene(*each.scene).size() - model.poses.size();
-    if (num_others > 0) {
-      context.Log(LogLevel::kWarning,
-                  each.name + ": " + std::to_string(num_others) +
-                      " of its cameras are no images of the measured scene");
-    }
+    LOWLAP_ASSIGN_OR_RETURN(
+        auto model, MatchModel(measured, *each.scene, each.name, context));
     models.push_back(std::move(model));
   }
   return models;
@@ -99,20 +92,16 @@ Solution Merge(const py::object& given, const py::kwargs& kwargs) {
   }
   RunSummary& summary = solution.summary;
   summary.command = "merge";
-  std::vector<ModelCheck> checks;
-  call->Run([&]() -> Status {
-    for (const PartialModel& model : models) {
-      const StageLog::Scope scope(&stages, "model check");
-      LOWLAP_ASSIGN_OR_RETURN(
-          auto check,
-          CheckModel(*solution.scene, model, arguments.options, context));
-      for (std::string& line : DescribeCheck(model, check, *solution.scene)) {
-        summary.notes.push_back(std::move(line));
-      }
-      checks.push_back(std::move(check));
-    }
-    return {};
+  const std::vector<ModelCheck> checks = call->Run([&] {
+    return CheckModels(*solution.scene, models, arguments.options, context,
+                       &stages);
   });
+  for (std::size_t m = 0; m < models.size(); ++m) {
+    for (std::string& line :
+         DescribeCheck(models[m], checks[m], *solution.scene)) {
+      summary.notes.push_back(std::move(line));
+    }
+  }
   SolveInPlace(arguments, call.get(), &stages, &solution,
                [&](Scene* merged, const SolveOptions& options,
                    const RunContext& run, StageLog* log) {
@@ -136,9 +125,9 @@ void BindMerge(py::module_& module) {
       "  scene: a scene or a path, as of solve(), with matchdir, match_file,\n"
       "  images, exclude.\n"
       "Other options: exclude, and those of solve(): features,\n"
-      "coplanar_points, criterion, nfa, threshold, strategy, adjust_features, "
-      "coplanar_ties,\n"
-      "no_adjust, refine_intrinsics, principal_point_stddev, gt, output,\n"
+      "coplanar_points, criterion, nfa, threshold, strategy, adjust_features,\n"
+      "coplanar_ties, no_adjust, refine_intrinsics, principal_point_stddev, "
+      "gt, output,\n"
       "threads, seed, progress, log.");
 }
 

@@ -141,7 +141,7 @@ TEST_F(CastleMerge, WhatOpenMvgGluedIsTakenApart) {
       DataFolder() + "/openmvg/castle-P19_without_3_9_14/global_poses.json");
   ASSERT_THAT(glued, testing::IsOk());
   Scene scene = WithoutViews(measured_, {3, 9, 14});
-  const auto model = MatchModel(scene, *glued, "OpenMVG");
+  const auto model = MatchModel(scene, *glued, "OpenMVG", {});
   ASSERT_THAT(model, testing::IsOk());
   const auto check = CheckModel(scene, *model, SolveOptions(), RunContext());
   ASSERT_THAT(check, testing::IsOk());

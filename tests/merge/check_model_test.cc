@@ -3,6 +3,7 @@
 
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include "lowlap/geometry/internal/rotation.h"
 #include "merge/parts.h"
@@ -13,6 +14,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -126,8 +128,19 @@ TEST(MatchModel, FindsViewsByImageName) {
     model.views[id].pose_id = id;
     model.poses[id].center = Vec3(view, 0, 0);
   }
-  const auto matched = MatchModel(made.scene, model, "model.json");
+  model.views[90] = model.views.begin()->second;
+  model.views[90].filename = "of another room.png";
+  model.views[90].pose_id = 90;
+  model.poses[90] = {};
+  std::vector<std::string> warnings;
+  RunContext context;
+  context.log = [&](LogLevel, const std::string& text) {
+    warnings.push_back(text);
+  };
+  const auto matched = MatchModel(made.scene, model, "model.json", context);
   ASSERT_THAT(matched, testing::IsOk());
+  EXPECT_THAT(warnings, ElementsAre("model.json: 1 of its cameras are no "
+                                    "images of the measured scene"));
   ASSERT_THAT(matched->poses, SizeIs(2));
   EXPECT_EQ(matched->poses.at(2).center.x(), 2);
   EXPECT_EQ(matched->poses.at(5).center.x(), 5);
@@ -136,12 +149,12 @@ TEST(MatchModel, FindsViewsByImageName) {
 TEST(MatchModel, SaysWhatIsWrong) {
   const SyntheticScene made = NoisyChain(0);
   Scene model = made.scene;
-  EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
+  EXPECT_THAT(MatchModel(made.scene, model, "model.json", {}),
               testing::IsError(ErrorCode::kInsufficientData,
                                "model.json: holds no camera that is placed"));
   model.poses = TrueSolution(made).poses;
   for (auto& entry : model.views) entry.second.filename += ".other.png";
-  EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
+  EXPECT_THAT(MatchModel(made.scene, model, "model.json", {}),
               testing::IsError(ErrorCode::kInsufficientData,
                                "is an image of the measured scene"));
   // No folder is one of the measured scene, and the names alone do not tell.
@@ -149,11 +162,11 @@ TEST(MatchModel, SaysWhatIsWrong) {
     view.local_path = "camera" + std::to_string(id.value());
     view.filename = "one.png";
   }
-  EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
+  EXPECT_THAT(MatchModel(made.scene, model, "model.json", {}),
               testing::IsError(ErrorCode::kInvalidScene,
                                "model.json: two cameras are called 'one.png'"));
   for (auto& entry : model.views) entry.second.local_path.clear();
-  EXPECT_THAT(MatchModel(made.scene, model, "model.json"),
+  EXPECT_THAT(MatchModel(made.scene, model, "model.json", {}),
               testing::IsError(ErrorCode::kInvalidScene, "one.png"));
 }
 

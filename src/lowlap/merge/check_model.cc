@@ -53,7 +53,7 @@ Result<GroundTruth> MatchByName(const Scene& measured, const Scene& model,
 }  // namespace
 
 Result<PartialModel> MatchModel(const Scene& measured, const Scene& model,
-                                std::string name) {
+                                std::string name, const RunContext& context) {
   // Programs name images from folders of their own; where these match they
   // tell images of one name apart.
   auto matched = MatchByName(measured, model, true);
@@ -67,6 +67,12 @@ Result<PartialModel> MatchModel(const Scene& measured, const Scene& model,
   if (!matched) {
     matched.error().file = std::move(name);
     return tl::unexpected<Error>(matched.error());
+  }
+  const std::size_t num_placed = GroundTruthFromScene(model).size();
+  if (matched->size() < num_placed) {
+    context.Log(LogLevel::kWarning,
+                name + ": " + std::to_string(num_placed - matched->size()) +
+                    " of its cameras are no images of the measured scene");
   }
   return PartialModel{std::move(name), std::move(*matched)};
 }
@@ -106,6 +112,19 @@ Result<ModelCheck> CheckModel(const Scene& measured, const PartialModel& model,
     }
   }
   return check;
+}
+
+Result<std::vector<ModelCheck>> CheckModels(
+    const Scene& measured, const std::vector<PartialModel>& models,
+    const SolveOptions& options, const RunContext& context, StageLog* stages) {
+  std::vector<ModelCheck> checks;
+  for (const PartialModel& model : models) {
+    const StageLog::Scope scope(stages, "model check");
+    LOWLAP_ASSIGN_OR_RETURN(auto check,
+                            CheckModel(measured, model, options, context));
+    checks.push_back(std::move(check));
+  }
+  return checks;
 }
 
 }  // namespace lowlap

@@ -21,11 +21,12 @@ struct PartialModel {
 };
 
 /// The cameras of a solved scene as views of a measured one, matched by image
-/// name as GroundTruthByName does. Errors, with `name` as their file:
-/// kInsufficientData (no camera, or none that the measured scene has),
-/// kInvalidScene (a name that fits two views, or that two cameras have).
+/// name as GroundTruthByName does; a warning counts those that are none.
+/// Errors, with `name` as their file: kInsufficientData (no camera, or none
+/// that the measured scene has), kInvalidScene (a name that fits two views, or
+/// that two cameras have).
 Result<PartialModel> MatchModel(const Scene& measured, const Scene& model,
-                                std::string name);
+                                std::string name, const RunContext& context);
 
 /// A measured relative pose against a model's cameras.
 struct PairAgreement {
@@ -99,6 +100,11 @@ Result<ModelCheck> CheckModel(const Scene& measured, const PartialModel& model,
                               const SolveOptions& options,
                               const RunContext& context);
 
+/// CheckModel of each, with a stage of its own.
+Result<std::vector<ModelCheck>> CheckModels(
+    const Scene& measured, const std::vector<PartialModel>& models,
+    const SolveOptions& options, const RunContext& context, StageLog* stages);
+
 /// What a check found, a line for each thing that a person should know: how
 /// much is borne out, the pieces, what contradicts between them, and the
 /// cameras that nothing bears out.
@@ -106,7 +112,7 @@ std::vector<std::string> DescribeCheck(const PartialModel& model,
                                        const ModelCheck& check,
                                        const Scene& measured);
 
-/// One model of everything: `checks` holds the CheckModel of each of `models`.
+/// One model of everything: `checks` are the CheckModels of `models`.
 ///
 /// Inside a piece the model's relative poses, with the deviation that the
 /// residuals leave it, and ratios replace the measured ones. All else is as in
