@@ -1,6 +1,5 @@
 #include "lowlap/averaging/internal/pose_warnings.h"
 
-#include <set>
 #include <utility>
 
 #include "lowlap/core/internal/format.h"
@@ -51,6 +50,16 @@ class Writer {
         return "the scale ratios that join them to the others disagree; "
                "rejected were: " +
                Triplets(doubt.ratios);
+      case WarningReason::kUntoldPoses:
+        return "they hang on relative poses of too few matches to tell whether "
+               "they are right, which no other confirms: " +
+               Pairs(doubt.untold);
+      case WarningReason::kUnheld:
+        return "nothing that agrees with their places holds them" +
+               (doubt.against.empty()
+                    ? std::string()
+                    : "; relative poses that contradict these were kept: " +
+                          Pairs(doubt.against));
       case WarningReason::kLostFeatures:
         return "only " + Format("%.0f", 100 * doubt.share) +
                " % of what was matched in it fits its place";
@@ -67,14 +76,6 @@ class Writer {
 
   const Scene& scene_;
 };
-
-std::vector<ViewId> ViewsOf(const std::vector<ViewTriplet>& triplets) {
-  std::set<ViewId> views;
-  for (const ViewTriplet& triplet : triplets) {
-    views.insert({triplet.first, triplet.middle, triplet.last});
-  }
-  return {views.begin(), views.end()};
-}
 
 }  // namespace
 
@@ -116,7 +117,7 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
         {"Doubtful: scale ratios in use that chance explains as well, since "
          "nothing else places one of their views: " +
              writer.Triplets(summary.weak_ratios) + ".",
-         ViewsOf(summary.weak_ratios)});
+         {}});
   }
   for (const ReliabilityWarning& doubt : summary.reliability_warnings) {
     warnings.push_back({"Doubtful: " + writer.Names(doubt.views) + ": " +
@@ -129,6 +130,25 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
          "other one can confirm them: " +
              std::to_string(summary.unchecked.size()) + " of " +
              std::to_string(summary.num_edges) + ".",
+         {}});
+  }
+  if (!summary.kept_outliers.empty()) {
+    warnings.push_back(
+        {"Relative poses in use though their directions contradict the solved "
+         "centres, since views would be lost without them (" +
+             std::to_string(summary.kept_outliers.size()) +
+             "): " + writer.Pairs(PairsOf(summary.kept_outliers)) + ".",
+         {}});
+  }
+  if (!summary.matches.replaced.empty()) {
+    std::vector<ViewPair> pairs;
+    for (const ReplacedDirection& replaced : summary.matches.replaced) {
+      pairs.push_back(replaced.views);
+    }
+    warnings.push_back(
+        {"Relative poses whose own matches contradict their directions and "
+         "bear out others, which took their place (" +
+             std::to_string(pairs.size()) + "): " + writer.Pairs(pairs) + ".",
          {}});
   }
   const auto left_out = [&](OutlierReason reason, const std::string& why) {
@@ -148,6 +168,7 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
   left_out(OutlierReason::kContradicted,
            "no cycle confirms them and what contradicts them has more "
            "evidence");
+  left_out(OutlierReason::kMatches, "their own matches contradict them");
   return warnings;
 }
 

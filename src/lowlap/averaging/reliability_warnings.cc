@@ -22,19 +22,34 @@ double Evidence(double log10_nfa) { return 1 + std::max(0.0, -log10_nfa); }
 /// What of the measurements agrees with component 0 of a solution.
 class Agreement {
  public:
+  using RatioTriplets = std::vector<ViewTriplet>;
+
   Agreement(const Scene& scene, const TranslationProblem& problem,
-            const TranslationSolution& solution,
+            const TranslationSolution& solution, const MatchVerdicts& matches,
             const ReliabilityOptions& options)
       : scene_(scene),
         problem_(problem),
         solution_(solution),
-        options_(options) {
+        options_(options),
+        refuted_(matches.refuted.begin(), matches.refuted.end()) {
     for (std::size_t n = 0; n < problem.views.size(); ++n) {
       if (solution.component[n] == 0) placed_.insert(problem.views[n]);
     }
-    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
-      const DirectionEdge& edge = problem.edges[e];
-      if (Agrees(edge)) agreeing_.insert(ViewsOf(edge));
+    for (const DirectionEdge& edge : problem.edges) {
+      if (!IsPlaced(edge)) continue;
+      const double limit_rad =
+          options.reach *
+          std::max(options.direction_stddev_rad, edge.stddev_rad);
+      const double error_rad = ErrorRad(edge);
+      if (error_rad <= limit_rad) agreeing_.insert(ViewsOf(edge));
+      const bool is_held =
+          error_rad <= std::max(limit_rad, 3 * options.least_false_rad);
+      (is_held ? in_use_ : contradicting_).push_back(ViewsOf(edge));
+    }
+    for (const ViewPair& views : matches.untold) {
+      if (std::find(in_use_.begin(), in_use_.end(), views) != in_use_.end()) {
+        untold_.push_back(views);
+      }
     }
     SplitRatios();
   }
@@ -47,6 +62,7 @@ class Agreement {
       if (placed_.count(views.first) == 0 || placed_.count(views.second) == 0) {
         continue;
       }
+      if (refuted_.count(views) > 0) continue;
       const bool agrees = agreeing_.count(views) > 0;
       for (const ViewId view : {views.first, views.second}) {
         balance[view] += (agrees ? 1 : -1) * Evidence(pose.log10_nfa);
@@ -65,42 +81,40 @@ class Agreement {
     return warnings;
   }
 
-  std::vector<ReliabilityWarning> DoubtfulScales() const {
-    std::vector<ViewPair> pairs;
-    for (const DirectionEdge& edge : problem_.edges) {
-      if (IsPlaced(edge)) pairs.push_back(ViewsOf(edge));
-    }
-    const ViewGraph graph(std::move(pairs), {placed_.begin(), placed_.end()});
-    const auto diagnosis = DiagnoseScales(graph, agreeing_ratios_);
+  /// The views that hang on what is weak, untold or contradicted.
+  std::vector<ReliabilityWarning> DoubtfulPlaces() const {
     std::vector<ReliabilityWarning> warnings;
-    if (!diagnosis || diagnosis->by_strong_ratios.groups.empty())
-      return warnings;
-    ReliabilityWarning weak;
-    weak.reason = WarningReason::kWeakScale;
-    const RigidGroup& held = diagnosis->by_strong_ratios.groups.front();
-    std::set_difference(placed_.begin(), placed_.end(), held.views.begin(),
-                        held.views.end(), std::back_inserter(weak.views));
-    for (const std::size_t r : diagnosis->weak_ratios) {
-      weak.ratios.push_back(agreeing_ratios_[r].views);
+    RatioTriplets strong, all;
+    for (const ScaleRatio& ratio : agreeing_ratios_) {
+      all.push_back(ratio.views);
+      if (!IsWeak(ratio, {})) strong.push_back(ratio.views);
     }
-    if (weak.ratios.empty()) {
-      // No ratio that agrees joins them; are there any that do not?
-      weak.reason = WarningReason::kContradictedRatios;
-      for (const ScaleRatio& ratio : rejected_ratios_) {
-        const ViewTriplet& v = ratio.views;
-        for (const ViewId outer : {v.first, v.last}) {
-          if (!std::binary_search(weak.views.begin(), weak.views.end(),
-                                  outer)) {
-            continue;
-          }
-          weak.ratios.push_back(v);
-          break;
-        }
-      }
+    const RigidityReport told = AnalyzeRigidity(Graph(Unconfirmed()), strong);
+    if (told.groups.empty()) return warnings;
+    const RigidGroup& firm = told.groups.front();
+    std::vector<ViewId> held = firm.views;
+    // By what sets fewer things aside, one after the other.
+    const auto warn = [&](const std::vector<ViewId>& wider,
+                          ReliabilityWarning warning) {
+      std::set_difference(wider.begin(), wider.end(), held.begin(), held.end(),
+                          std::back_inserter(warning.views));
+      held = wider;
+      if (!warning.views.empty()) warnings.push_back(std::move(warning));
+    };
+    if (firm.views.size() < placed_.size()) {
+      ReliabilityWarning untold, weak;
+      untold.reason = WarningReason::kUntoldPoses;
+      untold.untold = Unconfirmed();
+      warn(GroupOf(firm.edges.front(), AnalyzeRigidity(Graph({}), strong)),
+           std::move(untold));
+      weak.reason = WarningReason::kWeakScale;
+      weak.ratios = WeakRatios(AnalyzeRigidity(Graph({}), strong));
+      warn(GroupOf(firm.edges.front(), AnalyzeRigidity(Graph({}), all)),
+           std::move(weak));
+      warn({placed_.begin(), placed_.end()}, Unheld(held));
     }
-    if (!weak.views.empty() && !weak.ratios.empty()) {
-      warnings.push_back(std::move(weak));
-    }
+    const auto diagnosis = DiagnoseScales(Graph({}), agreeing_ratios_);
+    if (!diagnosis) return warnings;
     for (const ScaleArticulation& articulation :
          diagnosis->articulation_views) {
       ReliabilityWarning warning = ContradictedArticulation(articulation);
@@ -124,29 +138,100 @@ class Agreement {
            solution_.component[edge.second] == 0;
   }
 
-  bool Agrees(const DirectionEdge& edge) const {
-    if (!IsPlaced(edge)) return false;
+  double ErrorRad(const DirectionEdge& edge) const {
     const Vec3 baseline = Baseline(edge);
-    return baseline.norm() > 0 &&
-           AngleBetween(baseline, edge.direction_in_world) <=
-               options_.reach *
-                   std::max(options_.direction_stddev_rad, edge.stddev_rad);
+    return baseline.norm() > 0 ? AngleBetween(baseline, edge.direction_in_world)
+                               : kPi;
+  }
+
+  // What is in use and agrees, without some of it.
+  ViewGraph Graph(const std::vector<ViewPair>& without) const {
+    return ViewGraph(in_use_, {placed_.begin(), placed_.end()})
+        .WithoutPairs(without);
+  }
+
+  static std::vector<ViewId> GroupOf(const ViewPair& edge,
+                                     const RigidityReport& report) {
+    for (const RigidGroup& group : report.groups) {
+      if (std::binary_search(group.edges.begin(), group.edges.end(), edge)) {
+        return group.views;
+      }
+    }
+    return {};
+  }
+
+  // The untold relative poses without which their views would not hold each
+  // other.
+  std::vector<ViewPair> Unconfirmed() const {
+    RatioTriplets ratios;
+    for (const ScaleRatio& ratio : agreeing_ratios_) {
+      ratios.push_back(ratio.views);
+    }
+    std::vector<ViewPair> unconfirmed;
+    for (const ViewPair& views : untold_) {
+      const RigidityReport others = AnalyzeRigidity(Graph({views}), ratios);
+      const bool is_confirmed = std::any_of(
+          others.groups.begin(), others.groups.end(),
+          [&](const RigidGroup& group) {
+            return std::binary_search(group.views.begin(), group.views.end(),
+                                      views.first) &&
+                   std::binary_search(group.views.begin(), group.views.end(),
+                                      views.second);
+          });
+      if (!is_confirmed) unconfirmed.push_back(views);
+    }
+    return unconfirmed;
+  }
+
+  // Those between groups of the strong ones.
+  std::vector<ViewTriplet> WeakRatios(const RigidityReport& strong) const {
+    std::vector<ViewTriplet> weak;
+    for (const ScaleRatio& ratio : agreeing_ratios_) {
+      const ViewTriplet& v = ratio.views;
+      if (IsWeak(ratio, {}) &&
+          GroupOf(OrderedPair(v.first, v.middle), strong) !=
+              GroupOf(OrderedPair(v.middle, v.last), strong)) {
+        weak.push_back(v);
+      }
+    }
+    return weak;
+  }
+
+  // What contradicts, about the views that are not held.
+  ReliabilityWarning Unheld(const std::vector<ViewId>& held) const {
+    const auto is_held = [&](ViewId view) {
+      return std::binary_search(held.begin(), held.end(), view);
+    };
+    ReliabilityWarning warning;
+    for (const ViewPair& views : contradicting_) {
+      if (!is_held(views.first) || !is_held(views.second)) {
+        warning.against.push_back(views);
+      }
+    }
+    for (const ScaleRatio& ratio : rejected_ratios_) {
+      const ViewTriplet& v = ratio.views;
+      if (!is_held(v.first) || !is_held(v.last)) warning.ratios.push_back(v);
+    }
+    warning.reason = warning.against.empty() && !warning.ratios.empty()
+                         ? WarningReason::kContradictedRatios
+                         : WarningReason::kUnheld;
+    return warning;
   }
 
   void SplitRatios() {
-    std::map<ViewTriplet, const ScaleRatio*> meaningful;
+    std::map<ViewTriplet, const ScaleRatio*> ratios;
     for (const ScaleRatio& ratio : scene_.scale_ratios) {
-      if (ratio.verdict == RatioVerdict::kMeaningful) {
-        meaningful.emplace(ratio.views, &ratio);
-      }
+      ratios.emplace(ratio.views, &ratio);
     }
+    const std::set<ViewPair> in_use(in_use_.begin(), in_use_.end());
     std::vector<std::pair<const ScaleRatio*, double>> errors;
     std::vector<double> normalised;
     for (const RatioMeasurement& used : problem_.ratios) {
-      const auto ratio = meaningful.find(used.views);
+      const auto ratio = ratios.find(used.views);
       const DirectionEdge& from = problem_.edges[used.reference];
       const DirectionEdge& to = problem_.edges[used.target];
-      if (ratio == meaningful.end() || !IsPlaced(from) || !IsPlaced(to)) {
+      if (ratio == ratios.end() || in_use.count(ViewsOf(from)) == 0 ||
+          in_use.count(ViewsOf(to)) == 0) {
         continue;
       }
       const double error =
@@ -205,7 +290,8 @@ class Agreement {
   const TranslationSolution& solution_;
   const ReliabilityOptions options_;
   std::set<ViewId> placed_;
-  std::set<ViewPair> agreeing_;
+  std::set<ViewPair> refuted_, agreeing_;
+  std::vector<ViewPair> in_use_, contradicting_, untold_;
   std::vector<ScaleRatio> agreeing_ratios_, rejected_ratios_;
 };
 
@@ -254,6 +340,10 @@ const char* WarningReasonName(WarningReason reason) {
       return "weak_scale";
     case WarningReason::kContradictedRatios:
       return "contradicted_ratios";
+    case WarningReason::kUntoldPoses:
+      return "untold_poses";
+    case WarningReason::kUnheld:
+      return "unheld";
     case WarningReason::kLostFeatures:
       return "lost_features";
   }
@@ -262,10 +352,11 @@ const char* WarningReasonName(WarningReason reason) {
 
 std::vector<ReliabilityWarning> FindReliabilityWarnings(
     const Scene& scene, const TranslationProblem& problem,
-    const TranslationSolution& solution, const ReliabilityOptions& options) {
-  const Agreement agreement(scene, problem, solution, options);
+    const TranslationSolution& solution, const MatchVerdicts& matches,
+    const ReliabilityOptions& options) {
+  const Agreement agreement(scene, problem, solution, matches, options);
   std::vector<ReliabilityWarning> warnings = agreement.ContradictedPoses();
-  for (ReliabilityWarning& warning : agreement.DoubtfulScales()) {
+  for (ReliabilityWarning& warning : agreement.DoubtfulPlaces()) {
     warnings.push_back(std::move(warning));
   }
   return warnings;

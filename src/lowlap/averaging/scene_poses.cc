@@ -140,6 +140,7 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   }
 
   double sigma_rad = 0;
+  std::vector<OutlierEdge> kept;
   while (true) {
     const std::vector<OutlierEdge> wrong =
         DirectionOutliers(problem, *solution, options, &sigma_rad);
@@ -150,7 +151,10 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
         *scene, rotations.cam_from_world, PairsOf(more), weak, with_tracks);
     auto again = averager.Solve(smaller, context);
     if (!again) return tl::unexpected<Error>(again.error());
-    if (CountPlaced(*again) < CountPlaced(*solution)) break;
+    if (CountPlaced(*again) < CountPlaced(*solution)) {
+      kept = wrong;
+      break;
+    }
     outliers = std::move(more);
     problem = std::move(smaller);
     solution = std::move(again);
@@ -175,6 +179,8 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   }
   summary.num_placed = static_cast<int>(placed.size());
   summary.outlier_edges = std::move(outliers);
+  summary.kept_outliers = std::move(kept);
+  summary.matches = rotations.matches;
   summary.loops = rotations.loops;
   const auto is_placed = [&](ViewId view) { return placed.count(view) > 0; };
   for (ContestedLink link : rotations.contested) {
@@ -197,7 +203,8 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
     }
   }
   summary.reliability_warnings = FindReliabilityWarnings(
-      *scene, problem, *solution, {options.outlier_reach, sigma_rad});
+      *scene, problem, *solution, rotations.matches,
+      {options.outlier_reach, sigma_rad, RadFromDeg(options.least_false_deg)});
   summary.num_edges = static_cast<int>(problem.edges.size());
   summary.num_ratios = static_cast<int>(problem.ratios.size());
   summary.median_rotation_residual_deg =

@@ -38,19 +38,28 @@ enum class WarningReason {
   /// The ratios that give the views the scale of the others, across one camera
   /// or all of them, disagree with one another.
   kContradictedRatios,
+  /// Relative poses that neither their own matches nor the others bear out are
+  /// all that holds the views.
+  kUntoldPoses,
+  /// What agrees with the solution does not hold the views: relative poses and
+  /// ratios that contradict it were kept, since else they would be lost.
+  kUnheld,
   /// Most of what was matched in a view does not fit its pose.
   kLostFeatures,
 };
 
-/// "contradicted_poses", "weak_scale", "contradicted_ratios", "lost_features".
+/// "contradicted_poses", "weak_scale", "contradicted_ratios", "untold_poses",
+/// "unheld", "lost_features".
 const char* WarningReasonName(WarningReason reason);
 
 /// Placed views whose place is doubtful, and why.
 struct ReliabilityWarning {
   WarningReason reason = WarningReason::kContradictedPoses;
   std::vector<ViewId> views;  // sorted
-  /// kContradictedPoses: the relative poses that contradict.
+  /// kContradictedPoses and kUnheld: the relative poses that contradict.
   std::vector<ViewPair> against;
+  /// kUntoldPoses: the relative poses in use that nothing bears out.
+  std::vector<ViewPair> untold;
   /// kWeakScale: the ratios in use. kContradictedRatios: those rejected.
   std::vector<ViewTriplet> ratios;
   /// kLostFeatures: the share of the features that fit.
@@ -65,6 +74,10 @@ struct PoseSummary {
   std::vector<std::vector<ViewId>> components;
   std::vector<ViewId> unplaced;
   std::vector<OutlierEdge> outlier_edges;  // by views
+  /// In use though their directions contradict the solved centres: without them
+  /// views would be lost. By views.
+  std::vector<OutlierEdge> kept_outliers;
+  MatchVerdicts matches;
   // As in SceneRotations; the last two among the placed views only.
   std::vector<LoopClosing> loops;
   std::vector<ContestedLink> contested;
@@ -98,13 +111,13 @@ void SetPoses(const TranslationProblem& problem,
 /// scene.poses from scene.relative_poses and scene.scale_ratios, with the
 /// rotations and the choice of relative poses of AverageSceneRotations, and the
 /// chosen translation strategy. Relative poses whose direction contradicts the
-/// solved centres are left out in turn, unless that loses a view, and the
-/// solution is repeated. Views that no meaningful ratio joins are placed by
-/// ratios that are not, if at least two points or lines, or three coplanar
-/// pairs, agree on them; these are listed (`weak_ratios`). The poses of the
-/// largest component replace scene.poses; the others have no common scale with
-/// it and are listed. Gauge: that of SetPoses. Errors, with the scene
-/// unchanged: invalid options, those of the strategy.
+/// solved centres are left out in turn, unless that loses a view (then they are
+/// listed: `kept_outliers`), and the solution is repeated. Views that no
+/// meaningful ratio joins are placed by ratios that are not, if at least two
+/// points or lines, or three coplanar pairs, agree on them; these are listed
+/// (`weak_ratios`). The poses of the largest component replace scene.poses; the
+/// others have no common scale with it and are listed. Gauge: that of SetPoses.
+/// Errors, with the scene unchanged: invalid options, those of the strategy.
 Result<PoseSummary> SolveScenePoses(Scene* scene,
                                     const SceneRotations& rotations,
                                     const PoseOptions& options,

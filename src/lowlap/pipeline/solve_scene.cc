@@ -9,6 +9,7 @@
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/check_directions.h"
 #include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
@@ -123,11 +124,14 @@ Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
                                  const RunContext& context, StageLog* stages) {
   const StageLog::Scope scope(stages, "rotations");
   SolveStart start;
+  LOWLAP_ASSIGN_OR_RETURN(auto matches,
+                          CheckDirections(scene, options.poses, context));
   LOWLAP_ASSIGN_OR_RETURN(start.motions,
                           DecideHypotheses(scene, *options.scale_estimator,
                                            options.poses, context));
   LOWLAP_ASSIGN_OR_RETURN(
       start.rotations, AverageSceneRotations(*scene, options.poses, context));
+  AddMatchVerdicts(std::move(matches), &start.rotations);
   return start;
 }
 
@@ -158,8 +162,9 @@ Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
   if (!all || options.least_false_deg == 0) return all;
   PoseOptions strict = options;
   strict.least_false_deg = 0;
-  const auto fewer = AverageSceneRotations(*scene, strict, context);
+  auto fewer = AverageSceneRotations(*scene, strict, context);
   if (!fewer) return all;
+  AddMatchVerdicts(rotations.matches, &*fewer);
   const std::map<PoseId, Pose> poses = scene->poses;
   auto solved = SolveScenePoses(scene, *fewer, strict, context);
   if (solved && solved->num_placed >= all->num_placed &&

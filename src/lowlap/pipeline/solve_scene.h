@@ -71,9 +71,9 @@ struct SolveStart {
   SceneRotations rotations;
 };
 
-/// The first stage of SolveScene: settles the alternatives of relative poses
-/// (DecideHypotheses), averages the rotations and chooses the relative poses to
-/// believe.
+/// The first stage of SolveScene: holds the relative poses against their
+/// matches (CheckDirections), settles their alternatives (DecideHypotheses),
+/// averages the rotations and chooses the relative poses to believe.
 Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
                                  const RunContext& context, StageLog* stages);
 

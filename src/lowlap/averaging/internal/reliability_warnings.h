@@ -15,25 +15,36 @@ struct ReliabilityOptions {
   double reach = 5.0;
   /// Deviation of a direction, in radians; no stated deviation counts as less.
   double direction_stddev_rad = kPoseErrorFloorRad;
+  /// As in PoseOptions: nor does a direction contradict that is closer than
+  /// three times this.
+  double least_false_rad = 0;
 };
 
 /// Which views of component 0 are doubtful by what is measured, without any
-/// structure: the first three reasons. The evidence of a relative pose is
-/// 1 - min(0, log10 NFA). A relative pose contradicts if it was left out, or if
-/// its direction is further than `reach` deviations from the centres. A ratio
-/// contradicts if it is further than that, and by a tenth at least; those that
-/// agree carry the scale (Diagnose, on the relative poses and ratios that
-/// agree), and ratios across one camera are contradicted if those rejected
-/// there, between the same parts, have more than half their evidence.
+/// structure: all reasons but the last.
+///
+/// - The evidence of a relative pose is 1 - min(0, log10 NFA). It contradicts a
+///   view if it was left out, though not for its own matches, or is further
+///   than `reach` deviations from the centres.
+/// - Views hold each other where the relative poses and ratios that are in use
+///   and agree with the solution fix their places (AnalyzeRigidity). The firm
+///   ones are the largest set that is held without weak ratios (IsWeak), and
+///   without relative poses of which their matches tell nothing (`matches`) and
+///   whose views would not hold each other without them. Every other view hangs
+///   on what was set aside, or on other such views, and is doubtful for it. A
+///   ratio agrees within `reach` deviations, or a tenth.
+/// - Ratios across one camera are contradicted if those rejected there, between
+///   the same parts, have more than half their evidence.
 std::vector<ReliabilityWarning> FindReliabilityWarnings(
     const Scene& scene, const TranslationProblem& problem,
-    const TranslationSolution& solution, const ReliabilityOptions& options);
+    const TranslationSolution& solution, const MatchVerdicts& matches,
+    const ReliabilityOptions& options);
 
-/// The fourth: views with a pose and an intrinsic of whose features fewer than
-/// half are observations of a landmark. Features are those on point tracks over
-/// two such views or more, and on line tracks over three or more (two views of
-/// a line fit any poses, however many pieces of it they have); the pieces of a
-/// line in one view count once. Views without any have no entry.
+/// The last reason: views with a pose and an intrinsic of whose features fewer
+/// than half are observations of a landmark. Features are those on point tracks
+/// over two such views or more, and on line tracks over three or more (two
+/// views of a line fit any poses, however many pieces of it they have); the
+/// pieces of a line in one view count once. Views without any have no entry.
 std::vector<ReliabilityWarning> FindLostFeatures(const Scene& scene);
 
 }  // namespace lowlap

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/rotations/internal/bridges.h"
@@ -249,6 +250,8 @@ const char* OutlierReasonName(OutlierReason reason) {
       return "contradicted";
     case OutlierReason::kOpenLoop:
       return "open_loop";
+    case OutlierReason::kMatches:
+      return "matches";
   }
   return "";
 }
@@ -270,6 +273,20 @@ Result<SceneRotations> AverageSceneRotations(
   return SceneRotationSolver(scene, options, {outlier_reach, least_false_rad},
                              context)
       .Solve();
+}
+
+void AddMatchVerdicts(MatchVerdicts verdicts, SceneRotations* rotations) {
+  std::set<ViewPair> known;
+  for (const OutlierEdge& edge : rotations->outliers) known.insert(edge.views);
+  for (const ViewPair& views : verdicts.refuted) {
+    if (known.count(views) > 0) continue;
+    rotations->outliers.push_back({views, OutlierReason::kMatches, 0});
+  }
+  std::sort(rotations->outliers.begin(), rotations->outliers.end(),
+            [](const OutlierEdge& a, const OutlierEdge& b) {
+              return a.views < b.views;
+            });
+  rotations->matches = std::move(verdicts);
 }
 
 }  // namespace lowlap

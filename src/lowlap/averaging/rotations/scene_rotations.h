@@ -28,17 +28,18 @@ enum class OutlierReason {
   kDirection,     // its direction is not that of the solved centres
   kContradicted,  // on no cycle, and what contradicts it has more evidence
   kOpenLoop,      // the least evidence in a loop that does not close at all
+  kMatches,       // its own matches contradict its direction
 };
 
-/// "rotation", "direction", "contradicted", "open_loop".
+/// "rotation", "direction", "contradicted", "open_loop", "matches".
 const char* OutlierReasonName(OutlierReason reason);
 
 /// A relative pose that was left out, and why.
 struct OutlierEdge {
   ViewPair views;
   OutlierReason reason = OutlierReason::kRotation;
-  /// Its distance from the solution when it was left out; 0 for kContradicted
-  /// and kOpenLoop.
+  /// Its distance from the solution when it was left out; 0 for kContradicted,
+  /// kOpenLoop and kMatches.
   double error_deg = 0;
 };
 
@@ -86,6 +87,20 @@ struct HypothesisDecision {
   double margin = 0;
 };
 
+/// A relative pose whose matches bear out another direction, which it got.
+struct ReplacedDirection {
+  ViewPair views;
+  double error_deg = 0;  // of the one that it came with
+};
+
+/// What the relative poses' own matches say about their directions, by views.
+/// Those that are not named are borne out.
+struct MatchVerdicts {
+  std::vector<ReplacedDirection> replaced;
+  std::vector<ViewPair> refuted;  // their matches bear no direction out
+  std::vector<ViewPair> untold;   // too few matches to say
+};
+
 struct SceneRotations {
   /// The largest component of what is kept.
   std::map<ViewId, Mat3> cam_from_world;
@@ -94,6 +109,8 @@ struct SceneRotations {
   std::vector<ContestedLink> contested;
   /// Kept relative poses that are on no cycle, so that nothing checks them.
   std::vector<ViewPair> unchecked;
+  /// Of all relative poses, if they were asked; see AddMatchVerdicts.
+  MatchVerdicts matches;
   double median_residual_rad = 0;
 };
 
@@ -122,5 +139,9 @@ Result<SceneRotations> AverageSceneRotations(
     const Scene& scene, const RotationAveragingOptions& options,
     double outlier_reach, double least_false_rad = 0,
     const RunContext& context = {});
+
+/// Takes the verdicts over. Relative poses that are refuted become outliers:
+/// their rotations may be right, and have had their part in the average.
+void AddMatchVerdicts(MatchVerdicts verdicts, SceneRotations* rotations);
 
 }  // namespace lowlap

@@ -10,11 +10,10 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/robust/internal/a_contrario.h"
-#include "lowlap/two_view/internal/line_crossings.h"
 #include "lowlap/two_view/internal/planar_motion.h"
 #include "lowlap/two_view/internal/pose_search.h"
 #include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/shuffled_matches.h"
 #include "lowlap/two_view/internal/translation_evidence.h"
 
 namespace lowlap {
@@ -26,20 +25,6 @@ constexpr double kPlaneShare = 0.5;
 /// Two motions are told apart by an advantage worth ten points that fit one
 /// perfectly and the other not at all, 10 log(10): noise alone reaches half.
 constexpr double kDecisiveScore = 23;
-
-/// The Sampson distance is the point's distance to its epipolar line divided by
-/// the square root of two (equal focal lengths), so that its law is that much
-/// steeper. The smaller image, where chance is larger, decides.
-BackgroundLaw SampsonLaw(const TwoViewInput& input) {
-  BackgroundLaw law;
-  for (const Vec2& size : {input.image_size1_px, input.image_size2_px}) {
-    law.coefficient = std::max(
-        law.coefficient,
-        BackgroundLaw::PointToLine(size.prod(), size.norm()).coefficient);
-  }
-  law.coefficient *= std::sqrt(2.0);
-  return law;
-}
 
 Status ValidateInput(const TwoViewInput& input) {
   if (input.features1 == nullptr || input.features2 == nullptr) {
@@ -80,58 +65,6 @@ Status ValidateInput(const TwoViewInput& input) {
   return {};
 }
 
-/// The usable matches and the crossings of matched lines in random order.
-struct ShuffledMatches {
-  PointPairs pairs;
-  std::vector<int> match_of_pair;  // index into point_matches, or kCrossing
-};
-constexpr int kCrossing = -1;
-/// The variance of a segment's end point over that of a keypoint.
-constexpr double kLineVariance = 0.25;
-
-ShuffledMatches Shuffle(const TwoViewInput& input, Random& random) {
-  ShuffledMatches shuffled;
-  PointPairs& pairs = shuffled.pairs;
-  pairs.focal1_px = input.features1->focal_px;
-  pairs.focal2_px = input.features2->focal_px;
-  const auto add = [&](int match, const Vec3& x1, const Vec3& x2,
-                       const Mat2& covariance1, const Mat2& covariance2) {
-    shuffled.match_of_pair.push_back(match);
-    pairs.x1.push_back(x1);
-    pairs.x2.push_back(x2);
-    pairs.covariance1.push_back(covariance1);
-    pairs.covariance2.push_back(covariance2);
-  };
-  const auto shape = [](const std::vector<Mat2>* covariances, std::size_t n) {
-    return covariances == nullptr ? Mat2(Mat2::Identity()) : (*covariances)[n];
-  };
-  for (std::size_t m = 0; m < input.point_matches.size(); ++m) {
-    const FeatureMatch& match = input.point_matches[m];
-    const Vec3& x1 = input.features1->points[match.first];
-    const Vec3& x2 = input.features2->points[match.second];
-    if (x1.z() != 0 && x2.z() != 0) {
-      add(static_cast<int>(m), x1, x2,
-          shape(input.point_covariances1, match.first),
-          shape(input.point_covariances2, match.second));
-    }
-  }
-  for (const LineCrossing& crossing : FindLineCrossings(
-           *input.features1, *input.features2, input.line_matches)) {
-    add(kCrossing, crossing.x1, crossing.x2,
-        kLineVariance * crossing.covariance1,
-        kLineVariance * crossing.covariance2);
-  }
-  for (int n = pairs.size(); n > 1; --n) {
-    const auto k = random.Index(static_cast<std::uint32_t>(n));
-    std::swap(shuffled.match_of_pair[n - 1], shuffled.match_of_pair[k]);
-    std::swap(pairs.x1[n - 1], pairs.x1[k]);
-    std::swap(pairs.x2[n - 1], pairs.x2[k]);
-    std::swap(pairs.covariance1[n - 1], pairs.covariance1[k]);
-    std::swap(pairs.covariance2[n - 1], pairs.covariance2[k]);
-  }
-  return shuffled;
-}
-
 RelativePose ToRelativePose(const TwoViewInput& input,
                             const ShuffledMatches& matches,
                             const PoseSearch& search,
@@ -142,7 +75,7 @@ RelativePose ToRelativePose(const TwoViewInput& input,
   pose.direction = candidate.pose.translation;
   std::vector<int> inliers;
   for (const int i : candidate.inliers) {
-    if (matches.match_of_pair[i] != kCrossing) {
+    if (matches.match_of_pair[i] != ShuffledMatches::kCrossing) {
       inliers.push_back(matches.match_of_pair[i]);
     }
   }
@@ -226,7 +159,7 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   LOWLAP_RETURN_IF_ERROR(ValidateInput(input));
   Random random(seed);
-  const ShuffledMatches matches = Shuffle(input, random);
+  const ShuffledMatches matches = ShuffleMatches(input, random);
   const PointPairs& pairs = matches.pairs;
   if (pairs.size() < kMinMatches) {
     return MakeError(ErrorCode::kInsufficientData,
@@ -296,7 +229,7 @@ RelativePose ImproveRelativePose(const TwoViewInput& input,
                                  const TwoViewOptions& options) {
   // No sample is drawn; the order only matters to the background of chance.
   Random random(0);
-  const ShuffledMatches matches = Shuffle(input, random);
+  const ShuffledMatches matches = ShuffleMatches(input, random);
   if (matches.pairs.size() < kMinMatches) return pose;
   // The new matches were chosen by the pose: they do not widen its threshold.
   TwoViewOptions bounded = options;

@@ -58,6 +58,8 @@ std::string OutlierNote(OutlierReason reason) {
       return "contradicted by more evidence, confirmed by no cycle";
     case OutlierReason::kOpenLoop:
       return "least evidence in a loop that does not close";
+    case OutlierReason::kMatches:
+      return "its own matches contradict it";
   }
   return "";
 }

@@ -84,6 +84,16 @@ Json PreferencesJson(const AdjustmentSummary& adjustment) {
   return preferences;
 }
 
+Json OutliersJson(const std::vector<OutlierEdge>& edges) {
+  Json json = Json::array();
+  for (const OutlierEdge& edge : edges) {
+    json.push_back({{"views", edge.views},
+                    {"reason", OutlierReasonName(edge.reason)},
+                    {"error_deg", edge.error_deg}});
+  }
+  return json;
+}
+
 // What nothing confirms, or something contradicts.
 void AddDoubts(const PoseSummary& summary, Json* poses) {
   Json loops = Json::array(), contested = Json::array();
@@ -112,6 +122,7 @@ void AddDoubts(const PoseSummary& summary, Json* poses) {
       entry["fitting_share"] = doubt.share;
     }
     if (!doubt.against.empty()) entry["contradicted_by"] = doubt.against;
+    if (!doubt.untold.empty()) entry["untold"] = doubt.untold;
     if (!doubt.ratios.empty()) entry["ratios"] = doubt.ratios;
     doubts.push_back(std::move(entry));
   }
@@ -152,13 +163,14 @@ Json SolveJson(const SolveResult& solve) {
   poses["placed"] = solve.poses.num_placed;
   poses["unplaced"] = solve.poses.unplaced;
   poses["components"] = solve.poses.components;
-  poses["outlier_edges"] = Json::array();
-  for (const OutlierEdge& edge : solve.poses.outlier_edges) {
-    poses["outlier_edges"].push_back(
-        {{"views", edge.views},
-         {"reason", OutlierReasonName(edge.reason)},
-         {"error_deg", edge.error_deg}});
+  poses["outlier_edges"] = OutliersJson(solve.poses.outlier_edges);
+  poses["kept_outliers"] = OutliersJson(solve.poses.kept_outliers);
+  poses["replaced_directions"] = Json::array();
+  for (const ReplacedDirection& edge : solve.poses.matches.replaced) {
+    poses["replaced_directions"].push_back(
+        {{"views", edge.views}, {"error_deg", edge.error_deg}});
   }
+  poses["untold_edges"] = solve.poses.matches.untold;
   AddDoubts(solve.poses, &poses);
   poses["median_rotation_residual_deg"] =
       solve.poses.median_rotation_residual_deg;

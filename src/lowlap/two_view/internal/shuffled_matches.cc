@@ -1,0 +1,71 @@
+#include "lowlap/two_view/internal/shuffled_matches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "lowlap/two_view/internal/line_crossings.h"
+
+namespace lowlap {
+namespace {
+
+/// The variance of a segment's end point over that of a keypoint.
+constexpr double kLineVariance = 0.25;
+
+}  // namespace
+
+ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random) {
+  ShuffledMatches shuffled;
+  PointPairs& pairs = shuffled.pairs;
+  pairs.focal1_px = input.features1->focal_px;
+  pairs.focal2_px = input.features2->focal_px;
+  const auto add = [&](int match, const Vec3& x1, const Vec3& x2,
+                       const Mat2& covariance1, const Mat2& covariance2) {
+    shuffled.match_of_pair.push_back(match);
+    pairs.x1.push_back(x1);
+    pairs.x2.push_back(x2);
+    pairs.covariance1.push_back(covariance1);
+    pairs.covariance2.push_back(covariance2);
+  };
+  const auto shape = [](const std::vector<Mat2>* covariances, std::size_t n) {
+    return covariances == nullptr ? Mat2(Mat2::Identity()) : (*covariances)[n];
+  };
+  for (std::size_t m = 0; m < input.point_matches.size(); ++m) {
+    const FeatureMatch& match = input.point_matches[m];
+    const Vec3& x1 = input.features1->points[match.first];
+    const Vec3& x2 = input.features2->points[match.second];
+    if (x1.z() != 0 && x2.z() != 0) {
+      add(static_cast<int>(m), x1, x2,
+          shape(input.point_covariances1, match.first),
+          shape(input.point_covariances2, match.second));
+    }
+  }
+  for (const LineCrossing& crossing : FindLineCrossings(
+           *input.features1, *input.features2, input.line_matches)) {
+    add(ShuffledMatches::kCrossing, crossing.x1, crossing.x2,
+        kLineVariance * crossing.covariance1,
+        kLineVariance * crossing.covariance2);
+  }
+  for (int n = pairs.size(); n > 1; --n) {
+    const auto k = random.Index(static_cast<std::uint32_t>(n));
+    std::swap(shuffled.match_of_pair[n - 1], shuffled.match_of_pair[k]);
+    std::swap(pairs.x1[n - 1], pairs.x1[k]);
+    std::swap(pairs.x2[n - 1], pairs.x2[k]);
+    std::swap(pairs.covariance1[n - 1], pairs.covariance1[k]);
+    std::swap(pairs.covariance2[n - 1], pairs.covariance2[k]);
+  }
+  return shuffled;
+}
+
+BackgroundLaw SampsonLaw(const TwoViewInput& input) {
+  BackgroundLaw law;
+  for (const Vec2& size : {input.image_size1_px, input.image_size2_px}) {
+    law.coefficient = std::max(
+        law.coefficient,
+        BackgroundLaw::PointToLine(size.prod(), size.norm()).coefficient);
+  }
+  law.coefficient *= std::sqrt(2.0);
+  return law;
+}
+
+}  // namespace lowlap
