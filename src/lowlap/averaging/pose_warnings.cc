@@ -60,6 +60,8 @@ class Writer {
                     ? std::string()
                     : "; relative poses that contradict these were kept: " +
                           Pairs(doubt.against));
+      case WarningReason::kDoubtfulNeighbors:
+        return "they hang on views that are doubtful";
       case WarningReason::kLostFeatures:
         return "only " + Format("%.0f", 100 * doubt.share) +
                " % of what was matched in it fits its place";
@@ -97,6 +99,14 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
              ", and it is contradicted by " +
              writer.Pairs(link.contradictions) + ", which have less evidence.",
          link.views});
+  }
+  for (const Contest& contest : summary.contests) {
+    warnings.push_back({"Doubtful: " + writer.Names(contest.views) + ": only " +
+                            writer.Pairs(contest.links) +
+                            " join them to the others, and are contradicted, "
+                            "with hardly less evidence, by " +
+                            writer.Pairs(contest.contradictions) + ".",
+                        contest.views});
   }
   for (const LoopClosing& loop : summary.loops) {
     warnings.push_back(

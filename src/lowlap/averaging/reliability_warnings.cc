@@ -82,33 +82,39 @@ class Agreement {
   }
 
   /// The views that hang on what is weak, untold or contradicted.
-  std::vector<ReliabilityWarning> DoubtfulPlaces() const {
+  /// `evidence` becomes what the firm ones stand on.
+  std::vector<ReliabilityWarning> DoubtfulPlaces(FirmEvidence* evidence) const {
     std::vector<ReliabilityWarning> warnings;
     RatioTriplets strong, all;
     for (const ScaleRatio& ratio : agreeing_ratios_) {
       all.push_back(ratio.views);
       if (!IsWeak(ratio, {})) strong.push_back(ratio.views);
     }
-    const RigidityReport told = AnalyzeRigidity(Graph(Unconfirmed()), strong);
-    if (told.groups.empty()) return warnings;
-    const RigidGroup& firm = told.groups.front();
-    std::vector<ViewId> held = firm.views;
+    const ViewGraph told = Graph(Unconfirmed());
+    *evidence = {told.pairs(), strong};
+    const RigidityReport groups = AnalyzeRigidity(told, strong);
+    if (groups.groups.empty()) return warnings;
+    const RigidGroup& firm = groups.groups.front();
+    std::vector<ViewId> held;
     // By what sets fewer things aside, one after the other.
     const auto warn = [&](const std::vector<ViewId>& wider,
                           ReliabilityWarning warning) {
+      // Two views hold each other whatever is wrong.
+      if (wider.size() <= 2 && placed_.size() > 2) return;
       std::set_difference(wider.begin(), wider.end(), held.begin(), held.end(),
                           std::back_inserter(warning.views));
       held = wider;
       if (!warning.views.empty()) warnings.push_back(std::move(warning));
     };
+    if (firm.views.size() > 2) held = firm.views;
     if (firm.views.size() < placed_.size()) {
+      const RigidityReport by_strong = AnalyzeRigidity(Graph({}), strong);
       ReliabilityWarning untold, weak;
       untold.reason = WarningReason::kUntoldPoses;
       untold.untold = Unconfirmed();
-      warn(GroupOf(firm.edges.front(), AnalyzeRigidity(Graph({}), strong)),
-           std::move(untold));
+      warn(GroupOf(firm.edges.front(), by_strong), std::move(untold));
       weak.reason = WarningReason::kWeakScale;
-      weak.ratios = WeakRatios(AnalyzeRigidity(Graph({}), strong));
+      weak.ratios = WeakRatios(by_strong);
       warn(GroupOf(firm.edges.front(), AnalyzeRigidity(Graph({}), all)),
            std::move(weak));
       warn({placed_.begin(), placed_.end()}, Unheld(held));
@@ -344,6 +350,8 @@ const char* WarningReasonName(WarningReason reason) {
       return "untold_poses";
     case WarningReason::kUnheld:
       return "unheld";
+    case WarningReason::kDoubtfulNeighbors:
+      return "doubtful_neighbors";
     case WarningReason::kLostFeatures:
       return "lost_features";
   }
@@ -353,10 +361,10 @@ const char* WarningReasonName(WarningReason reason) {
 std::vector<ReliabilityWarning> FindReliabilityWarnings(
     const Scene& scene, const TranslationProblem& problem,
     const TranslationSolution& solution, const MatchVerdicts& matches,
-    const ReliabilityOptions& options) {
+    const ReliabilityOptions& options, FirmEvidence* firm) {
   const Agreement agreement(scene, problem, solution, matches, options);
   std::vector<ReliabilityWarning> warnings = agreement.ContradictedPoses();
-  for (ReliabilityWarning& warning : agreement.DoubtfulPlaces()) {
+  for (ReliabilityWarning& warning : agreement.DoubtfulPlaces(firm)) {
     warnings.push_back(std::move(warning));
   }
   return warnings;

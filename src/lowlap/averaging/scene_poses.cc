@@ -4,7 +4,9 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/internal/contests.h"
 #include "lowlap/averaging/internal/error_limits.h"
+#include "lowlap/averaging/internal/hanging_views.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
 #include "lowlap/core/internal/propagate.h"
@@ -77,6 +79,73 @@ std::set<ViewTriplet> WeakRatios(const Scene& scene,
     }
   }
   return weak;
+}
+
+// Whether a relative pose that disagrees says that something is wrong: not if
+// it is only a little off, nor if its matches do not bear it out.
+bool Contradicts(const OutlierEdge& edge, const MatchVerdicts& matches) {
+  const double little_deg = PoseOptions().least_false_deg;
+  switch (edge.reason) {
+    case OutlierReason::kMatches:
+      return false;
+    case OutlierReason::kRotation:
+      if (edge.error_deg <= little_deg) return false;
+      break;
+    case OutlierReason::kDirection:
+      if (edge.error_deg <= 3 * little_deg) return false;
+      break;
+    case OutlierReason::kContradicted:
+    case OutlierReason::kOpenLoop:
+      break;
+  }
+  return std::find(matches.untold.begin(), matches.untold.end(), edge.views) ==
+         matches.untold.end();
+}
+
+// Those of the relative poses of placed views; what is contested already is
+// named.
+std::vector<Contest> ContestsAmong(const Scene& scene,
+                                   const TranslationProblem& problem,
+                                   const TranslationSolution& solution,
+                                   const PoseSummary& summary) {
+  const auto evidence = [&](const ViewPair& views) {
+    return 1 + std::max(0.0, -scene.relative_poses.at(views).log10_nfa);
+  };
+  EvidenceOfPairs in_use, rejected;
+  std::set<ViewId> placed;
+  for (std::size_t n = 0; n < problem.views.size(); ++n) {
+    if (solution.component[n] == 0) placed.insert(problem.views[n]);
+  }
+  const auto is_placed = [&](const ViewPair& views) {
+    return placed.count(views.first) > 0 && placed.count(views.second) > 0;
+  };
+  for (const DirectionEdge& edge : problem.edges) {
+    const ViewPair views{problem.views[edge.first], problem.views[edge.second]};
+    if (is_placed(views)) in_use[views] = evidence(views);
+  }
+  for (const OutlierEdge& edge : summary.kept_outliers) {
+    in_use.erase(edge.views);
+  }
+  for (const auto* edges : {&summary.kept_outliers, &summary.outlier_edges}) {
+    for (const OutlierEdge& edge : *edges) {
+      if (is_placed(edge.views) && Contradicts(edge, summary.matches)) {
+        rejected[edge.views] = evidence(edge.views);
+      }
+    }
+  }
+  std::vector<Contest> contests = FindContests(in_use, rejected);
+  contests.erase(std::remove_if(contests.begin(), contests.end(),
+                                [&](const Contest& contest) {
+                                  return std::any_of(
+                                      summary.contested.begin(),
+                                      summary.contested.end(),
+                                      [&](const ContestedLink& link) {
+                                        return contest.links ==
+                                               std::vector<ViewPair>{link.edge};
+                                      });
+                                }),
+                 contests.end());
+  return contests;
 }
 
 }  // namespace
@@ -204,7 +273,10 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   }
   summary.reliability_warnings = FindReliabilityWarnings(
       *scene, problem, *solution, rotations.matches,
-      {options.outlier_reach, sigma_rad, RadFromDeg(options.least_false_deg)});
+      {options.outlier_reach, sigma_rad, RadFromDeg(options.least_false_deg)},
+      &summary.firm_evidence);
+  summary.contests = ContestsAmong(*scene, problem, *solution, summary);
+  WarnOfHangingViews(&summary);
   summary.num_edges = static_cast<int>(problem.edges.size());
   summary.num_ratios = static_cast<int>(problem.ratios.size());
   summary.median_rotation_residual_deg =

@@ -44,12 +44,14 @@ enum class WarningReason {
   /// What agrees with the solution does not hold the views: relative poses and
   /// ratios that contradict it were kept, since else they would be lost.
   kUnheld,
+  /// Doubtful views are all that holds the views.
+  kDoubtfulNeighbors,
   /// Most of what was matched in a view does not fit its pose.
   kLostFeatures,
 };
 
 /// "contradicted_poses", "weak_scale", "contradicted_ratios", "untold_poses",
-/// "unheld", "lost_features".
+/// "unheld", "doubtful_neighbors", "lost_features".
 const char* WarningReasonName(WarningReason reason);
 
 /// Placed views whose place is doubtful, and why.
@@ -64,6 +66,21 @@ struct ReliabilityWarning {
   std::vector<ViewTriplet> ratios;
   /// kLostFeatures: the share of the features that fit.
   double share = 0;
+};
+
+/// The only relative poses in use that join `views` to the others, and those
+/// that contradict them: together these have more than half their evidence.
+struct Contest {
+  std::vector<ViewPair> links;
+  std::vector<ViewPair> contradictions;
+  std::vector<ViewId> views;
+};
+
+/// The relative poses and ratios in use that agree with the solution and can be
+/// relied on alone.
+struct FirmEvidence {
+  std::vector<ViewPair> edges;
+  std::vector<ViewTriplet> ratios;
 };
 
 /// What became of the views and edges on the way to absolute poses.
@@ -82,6 +99,8 @@ struct PoseSummary {
   std::vector<LoopClosing> loops;
   std::vector<ContestedLink> contested;
   std::vector<ViewPair> unchecked;
+  std::vector<Contest> contests;  // of placed views
+  FirmEvidence firm_evidence;
   /// Triplets whose ratio chance explains as well, used since nothing else
   /// joins one of their views.
   std::vector<ViewTriplet> weak_ratios;
@@ -92,11 +111,11 @@ struct PoseSummary {
   double median_rotation_residual_deg = 0;
 
   /// Something contradicts what is placed, and nothing decides between them (a
-  /// loop that does not close, a contested link), a weak ratio places it, or
+  /// loop that does not close, a contest), a weak ratio places it, or
   /// views are doubtful for a reason of their own.
   bool IsDoubtful() const {
-    return !loops.empty() || !contested.empty() || !weak_ratios.empty() ||
-           !reliability_warnings.empty();
+    return !loops.empty() || !contested.empty() || !contests.empty() ||
+           !weak_ratios.empty() || !reliability_warnings.empty();
   }
   /// All views are placed, and nothing is doubtful.
   bool IsFirm() const { return num_placed == num_views && !IsDoubtful(); }

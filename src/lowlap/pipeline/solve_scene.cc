@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/averaging/internal/hanging_views.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/propagate.h"
@@ -217,6 +218,7 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
   for (ReliabilityWarning& doubt : FindLostFeatures(*scene)) {
     result->poses.reliability_warnings.push_back(std::move(doubt));
   }
+  WarnOfHangingViews(&result->poses);
   return {};
 }
 

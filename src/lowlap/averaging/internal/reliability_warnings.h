@@ -21,7 +21,8 @@ struct ReliabilityOptions {
 };
 
 /// Which views of component 0 are doubtful by what is measured, without any
-/// structure: all reasons but the last.
+/// structure: all reasons but the last two. `firm` becomes what the firm views
+/// stand on.
 ///
 /// - The evidence of a relative pose is 1 - min(0, log10 NFA). It contradicts a
 ///   view if it was left out, though not for its own matches, or is further
@@ -30,15 +31,15 @@ struct ReliabilityOptions {
 ///   and agree with the solution fix their places (AnalyzeRigidity). The firm
 ///   ones are the largest set that is held without weak ratios (IsWeak), and
 ///   without relative poses of which their matches tell nothing (`matches`) and
-///   whose views would not hold each other without them. Every other view hangs
-///   on what was set aside, or on other such views, and is doubtful for it. A
-///   ratio agrees within `reach` deviations, or a tenth.
+///   whose views would not hold each other without them; two views are none.
+///   Every other view hangs on what was set aside, or on other such views, and
+///   is doubtful for it. A ratio agrees within `reach` deviations, or a tenth.
 /// - Ratios across one camera are contradicted if those rejected there, between
 ///   the same parts, have more than half their evidence.
 std::vector<ReliabilityWarning> FindReliabilityWarnings(
     const Scene& scene, const TranslationProblem& problem,
     const TranslationSolution& solution, const MatchVerdicts& matches,
-    const ReliabilityOptions& options);
+    const ReliabilityOptions& options, FirmEvidence* firm);
 
 /// The last reason: views with a pose and an intrinsic of whose features fewer
 /// than half are observations of a landmark. Features are those on point tracks

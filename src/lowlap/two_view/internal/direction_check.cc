@@ -1,6 +1,7 @@
 #include "lowlap/two_view/internal/direction_check.h"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
 #include "lowlap/two_view/internal/pose_search.h"
 #include "lowlap/two_view/internal/shuffled_matches.h"
+#include "lowlap/two_view/internal/translation_evidence.h"
 
 namespace lowlap {
 namespace {
@@ -60,8 +62,16 @@ DirectionCheck CheckDirection(const TwoViewInput& input,
   const AContrarioLadder for_sample = ladder_for(TwoPointKernel::kSampleSize);
   AContrarioRansacOptions ransac;
   ransac.max_samples = 1000;
-  const auto found =
-      AContrarioRansac(directions, for_sample, ransac, random).model;
+  const auto search = AContrarioRansac(directions, for_sample, ransac, random);
+  const std::optional<RigidTransform>& found = search.model;
+  if (found &&
+      !TestTranslation(
+           pairs, *found,
+           kernel.VisibleWithinThreshold(*found, search.score.threshold),
+           search.score.threshold, PoseSearch::kMinThresholdPx)
+           .IsSeen()) {
+    return check;
+  }
   check.verdict = DirectionVerdict::kBorneOut;
   if (found && AngleBetween(found->translation, pose.direction) <= same_rad) {
     return check;

@@ -10,7 +10,7 @@ namespace lowlap {
 
 /// What the matches of a relative pose say about its direction.
 enum class DirectionVerdict {
-  kUntold,    // too few matches to say
+  kUntold,    // too few matches to say, or a rotation alone explains them
   kBorneOut,  // they fit it, and no other direction better
   kReplaced,  // they bear out another direction
   kRefuted,   // they would bear a direction out, but neither this one nor any
@@ -37,8 +37,8 @@ struct DirectionCheck {
 /// (ScoreAgainstChance). An NFA below 1 bears a direction out.
 ///
 /// Directions closer than `same_rad` are one. Of thousands of matches a
-/// shuffled part decides. Degenerate: matches that any direction explains (no
-/// parallax) bear out the given one.
+/// shuffled part decides. Degenerate: without parallax (TestTranslation) any
+/// direction explains the matches, and none is borne out.
 DirectionCheck CheckDirection(const TwoViewInput& input,
                               const RelativePose& pose, double same_rad,
                               std::uint64_t seed);

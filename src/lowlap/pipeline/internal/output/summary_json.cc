@@ -109,6 +109,13 @@ void AddDoubts(const PoseSummary& summary, Json* poses) {
                          {"contradictions", link.contradictions},
                          {"views", link.views}});
   }
+  Json contests = Json::array();
+  for (const Contest& contest : summary.contests) {
+    contests.push_back({{"links", contest.links},
+                        {"contradictions", contest.contradictions},
+                        {"views", contest.views}});
+  }
+  (*poses)["contests"] = std::move(contests);
   (*poses)["doubtful"] = summary.IsDoubtful();
   (*poses)["open_loops"] = std::move(loops);
   (*poses)["contested_links"] = std::move(contested);

@@ -1,0 +1,51 @@
+#include "lowlap/averaging/internal/hanging_views.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "lowlap/averaging/rigidity/internal/rigidity.h"
+#include "lowlap/scene/view_graph.h"
+
+namespace lowlap {
+
+void WarnOfHangingViews(PoseSummary* summary) {
+  std::vector<ReliabilityWarning>& warnings = summary->reliability_warnings;
+  warnings.erase(std::remove_if(warnings.begin(), warnings.end(),
+                                [](const ReliabilityWarning& warning) {
+                                  return warning.reason ==
+                                         WarningReason::kDoubtfulNeighbors;
+                                }),
+                 warnings.end());
+  std::set<ViewId> doubtful;
+  for (const ReliabilityWarning& warning : warnings) {
+    doubtful.insert(warning.views.begin(), warning.views.end());
+  }
+  for (const ContestedLink& link : summary->contested) {
+    doubtful.insert(link.views.begin(), link.views.end());
+  }
+  for (const Contest& contest : summary->contests) {
+    doubtful.insert(contest.views.begin(), contest.views.end());
+  }
+  if (doubtful.empty() || summary->components.empty()) return;
+  const ViewGraph graph = ViewGraph(summary->firm_evidence.edges)
+                              .WithoutViews({doubtful.begin(), doubtful.end()});
+  const RigidityReport report =
+      AnalyzeRigidity(graph, summary->firm_evidence.ratios);
+  std::set<ViewId> firm;
+  if (!report.groups.empty()) {
+    const std::vector<ViewId>& largest = report.groups.front().views;
+    firm.insert(largest.begin(), largest.end());
+  }
+  ReliabilityWarning hanging;
+  hanging.reason = WarningReason::kDoubtfulNeighbors;
+  for (const ViewId view : summary->components.front()) {
+    if (doubtful.count(view) + firm.count(view) == 0) {
+      hanging.views.push_back(view);
+    }
+  }
+  if (!hanging.views.empty()) warnings.push_back(std::move(hanging));
+}
+
+}  // namespace lowlap
