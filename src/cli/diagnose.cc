@@ -9,7 +9,7 @@
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/diagnosis_output.h"
-#include "lowlap/scale/scale_ratios.h"
+#include "lowlap/pipeline/internal/scene_in_use.h"
 
 namespace lowlap::cli {
 namespace {
@@ -30,11 +30,10 @@ Result<int> RunDiagnose(const Flags& flags) {
   StageLog stages;
   LOWLAP_ASSIGN_OR_RETURN(auto loaded,
                           LoadMeasuredScene(flags.input, context, &stages));
-  Scene scene = std::move(loaded.scene);
-  if (scene.scale_ratios.empty()) {
-    LOWLAP_ASSIGN_OR_RETURN(scene.scale_ratios,
-                            EstimateScaleRatios(scene, options, context));
-  }
+  SolveOptions solve;
+  solve.scale_estimator = MakeScaleEstimator(options);
+  LOWLAP_ASSIGN_OR_RETURN(const Scene scene,
+                          SceneInUse(std::move(loaded.scene), solve, context));
   LOWLAP_ASSIGN_OR_RETURN(const auto diagnosis,
                           Diagnose(scene, flags.diagnosis));
   if (!flags.json.empty()) {
@@ -51,7 +50,7 @@ void AddDiagnose(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
   CLI::App* command = AddCommand(
       program, "diagnose",
-      "Say before anything is solved which views share one scale and through "
+      "Say which views share one scale and through "
       "what, which float or hang on one camera or on weak ratios, and what "
       "kind of photograph would mend it");
   AddSceneInputFlags(command, &flags->input);

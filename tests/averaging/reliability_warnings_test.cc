@@ -75,15 +75,18 @@ TEST(ReliabilityWarnings, AViewThatItsRelativePosesContradict) {
   solution.num_components = 1;
   const TranslationProblem problem =
       MakeTranslationProblem(synthetic.scene, rotations, {});
-  EXPECT_THAT(FindReliabilityWarnings(synthetic.scene, problem, solution, {}),
+  FirmEvidence firm;
+  EXPECT_THAT(FindReliabilityWarnings(synthetic.scene, problem, solution, {},
+                                      {}, &firm),
               IsEmpty());
+  EXPECT_EQ(firm.edges.size(), problem.edges.size());
 
   const Vec3 baseline =
       solution.center_in_world[5] - solution.center_in_world[4];
   solution.center_in_world[4] +=
       0.3 * baseline.unitOrthogonal() * baseline.norm();
-  const auto warnings =
-      FindReliabilityWarnings(synthetic.scene, problem, solution, {});
+  const auto warnings = FindReliabilityWarnings(synthetic.scene, problem,
+                                                solution, {}, {}, &firm);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].reason, WarningReason::kContradictedPoses);
   EXPECT_THAT(warnings[0].views, ElementsAre(4));
@@ -161,6 +164,69 @@ TEST(ReliabilityWarnings, AViewThatLostItsFeatures) {
   // Where the camera is not known, landmarks cannot have observations.
   scene.views.at(3).intrinsic_id = kInvalidId;
   EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
+}
+
+// In a chain nothing confirms a relative pose but its own matches.
+TEST(ReliabilityWarnings, ViewsThatHangOnAnUntoldRelativePose) {
+  for (const char* pairs : {"chain", "window:2"}) {
+    SyntheticScene synthetic = SceneWithTrueRatios(pairs);
+    auto rotations =
+        AverageSceneRotations(synthetic.scene, PoseOptions(), RunContext());
+    ASSERT_TRUE(rotations);
+    MatchVerdicts verdicts;
+    verdicts.untold = {{4, 5}};
+    AddMatchVerdicts(verdicts, &*rotations);
+    const auto summary = SolveScenePoses(&synthetic.scene, *rotations,
+                                         PoseOptions(), RunContext());
+    ASSERT_TRUE(summary);
+    if (std::string(pairs) == "window:2") {
+      EXPECT_THAT(summary->reliability_warnings, IsEmpty());
+      continue;
+    }
+    ASSERT_EQ(summary->reliability_warnings.size(), 1u);
+    EXPECT_EQ(summary->reliability_warnings[0].reason,
+              WarningReason::kUntoldPoses);
+    EXPECT_THAT(summary->reliability_warnings[0].views, ElementsAre(5, 6, 7));
+    EXPECT_THAT(PoseWarnings(*summary, synthetic.scene),
+                Contains(HasSubstr("too few matches to tell")));
+  }
+}
+
+// Two groups that share camera 4 alone, and no ratio across it: what joined
+// them otherwise has been left out.
+TEST(ReliabilityWarnings, GroupsAtOneCameraWithoutARatioThatAgrees) {
+  SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+  Scene& scene = synthetic.scene;
+  scene.relative_poses.erase({3, 5});
+  std::map<ViewId, Mat3> rotations;
+  TranslationSolution solution;
+  for (const auto& [view, pose] : synthetic.true_poses) {
+    rotations[view] = pose.rotation;
+    // Twice the size beyond camera 4.
+    const Vec3& hinge = synthetic.true_poses.at(4).center;
+    solution.center_in_world.push_back(
+        view > ViewId(4) ? Vec3(hinge + 2 * (pose.center - hinge))
+                         : pose.center);
+    solution.component.push_back(0);
+  }
+  solution.num_components = 1;
+  FirmEvidence firm;
+  const auto warnings = FindReliabilityWarnings(
+      scene, MakeTranslationProblem(scene, rotations, {}), solution, {}, {},
+      &firm);
+  ASSERT_FALSE(warnings.empty());
+  EXPECT_EQ(warnings[0].reason, WarningReason::kContradictedRatios);
+  EXPECT_THAT(warnings[0].views, ElementsAre(5, 6, 7));
+  EXPECT_FALSE(firm.rejected_ratios.empty());
+
+  // Without any ratio nothing holds them either.
+  scene.scale_ratios.clear();
+  const auto without = FindReliabilityWarnings(
+      scene, MakeTranslationProblem(scene, rotations, {}), solution, {}, {},
+      &firm);
+  ASSERT_EQ(without.size(), 1u);
+  EXPECT_EQ(without[0].reason, WarningReason::kUnheld);
+  EXPECT_THAT(without[0].views, ElementsAre(5, 6, 7));
 }
 
 // Two views of a line fit any poses, in however many pieces they see it.

@@ -91,7 +91,10 @@ class Agreement {
       if (!IsWeak(ratio, {})) strong.push_back(ratio.views);
     }
     const ViewGraph told = Graph(Unconfirmed());
-    *evidence = {told.pairs(), strong};
+    *evidence = {told.pairs(), strong, {}};
+    for (const ScaleRatio& ratio : rejected_ratios_) {
+      evidence->rejected_ratios.push_back(ratio.views);
+    }
     const RigidityReport groups = AnalyzeRigidity(told, strong);
     if (groups.groups.empty()) return warnings;
     const RigidGroup& firm = groups.groups.front();

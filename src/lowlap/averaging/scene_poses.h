@@ -81,6 +81,8 @@ struct Contest {
 struct FirmEvidence {
   std::vector<ViewPair> edges;
   std::vector<ViewTriplet> ratios;
+  /// Of placed views, in use, but contradicted by the solution.
+  std::vector<ViewTriplet> rejected_ratios;
 };
 
 /// What became of the views and edges on the way to absolute poses.

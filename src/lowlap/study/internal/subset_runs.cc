@@ -114,10 +114,13 @@ std::vector<std::string> DoubtCodes(const PoseSummary& summary) {
   std::vector<std::string> codes;
   if (!summary.loops.empty()) codes.push_back("open_loop");
   if (!summary.contested.empty()) codes.push_back("contested_link");
+  if (!summary.contests.empty()) codes.push_back("contest");
   if (!summary.weak_ratios.empty()) codes.push_back("weak_ratio");
   for (const WarningReason reason :
        {WarningReason::kContradictedPoses, WarningReason::kWeakScale,
-        WarningReason::kContradictedRatios, WarningReason::kLostFeatures}) {
+        WarningReason::kContradictedRatios, WarningReason::kUntoldPoses,
+        WarningReason::kUnheld, WarningReason::kDoubtfulNeighbors,
+        WarningReason::kLostFeatures}) {
     const bool present = std::any_of(summary.reliability_warnings.begin(),
                                      summary.reliability_warnings.end(),
                                      [&](const ReliabilityWarning& doubt) {

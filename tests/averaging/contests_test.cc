@@ -1,0 +1,62 @@
+#include "lowlap/averaging/internal/contests.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lowlap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+// Two triangles, 0-1-2 and 3-4-5, and what joins them.
+EvidenceOfPairs TwoGroups(const EvidenceOfPairs& links) {
+  EvidenceOfPairs pairs = links;
+  for (const ViewId first : {0u, 3u}) {
+    const ViewId second = first.value() + 1, third = first.value() + 2;
+    pairs[{first, second}] = 100;
+    pairs[{first, third}] = 100;
+    pairs[{second, third}] = 100;
+  }
+  return pairs;
+}
+
+TEST(Contests, LinksWithHardlyMoreEvidenceThanWhatContradictsThem) {
+  const auto contests = FindContests(TwoGroups({{{2, 3}, 30}, {{1, 3}, 20}}),
+                                     {{{1, 4}, 20}, {{2, 5}, 15}});
+  ASSERT_EQ(contests.size(), 1u);
+  EXPECT_THAT(contests[0].links, ElementsAre(ViewPair{1, 3}, ViewPair{2, 3}));
+  EXPECT_THAT(contests[0].contradictions,
+              ElementsAre(ViewPair{1, 4}, ViewPair{2, 5}));
+  EXPECT_EQ(contests[0].views.size(), 3u);
+}
+
+TEST(Contests, NoneWhereTheEvidenceDecides) {
+  EXPECT_THAT(FindContests(TwoGroups({{{2, 3}, 30}, {{1, 3}, 20}}),
+                           {{{1, 4}, 10}, {{2, 5}, 10}}),
+              IsEmpty());
+}
+
+TEST(Contests, NoneWithinAGroupThatHolds) {
+  EvidenceOfPairs all;
+  for (std::uint32_t a = 0; a < 6; ++a) {
+    for (std::uint32_t b = a + 1; b < 6; ++b) all[{a, b}] = 100;
+  }
+  all.erase({0, 1});
+  EXPECT_THAT(FindContests(all, {{{0, 1}, 150}}), IsEmpty());
+}
+
+TEST(Contests, NoneBetweenViewsThatNothingJoins) {
+  EXPECT_THAT(FindContests(TwoGroups({}), {{{2, 3}, 50}}), IsEmpty());
+}
+
+TEST(Contests, TheSmallerSideIsNamed) {
+  EvidenceOfPairs in_use = TwoGroups({{{2, 3}, 30}, {{1, 3}, 30}});
+  in_use[{5, 6}] = 20;
+  const auto contests = FindContests(in_use, {{{4, 6}, 15}});
+  ASSERT_EQ(contests.size(), 1u);
+  EXPECT_THAT(contests[0].views, ElementsAre(6));
+}
+
+}  // namespace
+}  // namespace lowlap

@@ -1,0 +1,58 @@
+#include "lowlap/averaging/internal/hanging_views.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace lowlap {
+namespace {
+
+using ::testing::ElementsAre;
+
+// A chain of seven views, every ratio known.
+PoseSummary Chain() {
+  PoseSummary summary;
+  summary.components.resize(1);
+  for (std::uint32_t n = 0; n < 7; ++n) {
+    summary.components[0].push_back(n);
+    if (n > 0) summary.firm_evidence.edges.push_back({n - 1, n});
+    if (n > 1) summary.firm_evidence.ratios.push_back({n - 2, n - 1, n});
+  }
+  return summary;
+}
+
+void Doubt(ViewId view, PoseSummary* summary) {
+  ReliabilityWarning warning;
+  warning.reason = WarningReason::kLostFeatures;
+  warning.views = {view};
+  summary->reliability_warnings.push_back(warning);
+}
+
+TEST(HangingViews, NoneWithoutDoubt) {
+  PoseSummary summary = Chain();
+  WarnOfHangingViews(&summary);
+  EXPECT_TRUE(summary.reliability_warnings.empty());
+}
+
+TEST(HangingViews, ThoseBeyondADoubtfulView) {
+  PoseSummary summary = Chain();
+  Doubt(1, &summary);
+  for (int again = 0; again < 2; ++again) {
+    WarnOfHangingViews(&summary);
+    ASSERT_EQ(summary.reliability_warnings.size(), 2u);
+    EXPECT_EQ(summary.reliability_warnings[1].reason,
+              WarningReason::kDoubtfulNeighbors);
+    EXPECT_THAT(summary.reliability_warnings[1].views, ElementsAre(0));
+  }
+}
+
+TEST(HangingViews, NoneWhereOthersHold) {
+  PoseSummary summary = Chain();
+  summary.firm_evidence.edges.push_back({0, 2});
+  summary.firm_evidence.ratios.push_back({0, 2, 3});
+  Doubt(1, &summary);
+  WarnOfHangingViews(&summary);
+  EXPECT_EQ(summary.reliability_warnings.size(), 1u);
+}
+
+}  // namespace
+}  // namespace lowlap

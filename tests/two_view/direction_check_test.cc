@@ -1,0 +1,104 @@
+#include "lowlap/two_view/internal/direction_check.h"
+
+#include <gtest/gtest.h>
+
+#include "lowlap/geometry/internal/rotation.h"
+#include "tests/two_view/two_view_scene.h"
+
+namespace lowlap {
+namespace {
+
+using testing::MakeTwoViewScene;
+using testing::TwoViewScene;
+using testing::TwoViewSceneOptions;
+
+constexpr double kSameRad = 0.05;
+
+TwoViewSceneOptions Points(int num_right) {
+  TwoViewSceneOptions options;
+  options.num_right = num_right;
+  options.noise_px = 0.5;
+  return options;
+}
+
+DirectionCheck Check(const TwoViewScene& scene, const Vec3& direction,
+                     std::uint64_t seed = 0) {
+  RelativePose pose;
+  pose.views = {3, 8};
+  pose.rotation = scene.cam2_from_cam1.rotation;
+  pose.direction = direction.normalized();
+  pose.point_inliers = scene.matches;
+  return CheckDirection(scene.Input(), pose, kSameRad, seed);
+}
+
+TEST(DirectionCheck, BearsOutTheRightDirection) {
+  for (const int count : {5, 12, 40, 1000}) {
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+      const TwoViewScene scene = MakeTwoViewScene(Points(count), seed);
+      EXPECT_EQ(Check(scene, scene.cam2_from_cam1.translation, seed).verdict,
+                DirectionVerdict::kBorneOut)
+          << count << " points, seed " << seed;
+    }
+  }
+}
+
+TEST(DirectionCheck, ReplacesAWrongDirectionUnderTheRightRotation) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const TwoViewScene scene = MakeTwoViewScene(Points(30), seed);
+    Random random(seed);
+    Vec3 wrong;
+    do {
+      wrong = Vec3(random.Gaussian(), random.Gaussian(), random.Gaussian())
+                  .normalized();
+    } while (AngleBetween(wrong, scene.cam2_from_cam1.translation) < 0.3);
+    const DirectionCheck check = Check(scene, wrong, seed);
+    ASSERT_EQ(check.verdict, DirectionVerdict::kReplaced) << seed;
+    EXPECT_LT(AngleBetween(check.replacement->direction,
+                           scene.cam2_from_cam1.translation),
+              RadFromDeg(2));
+    EXPECT_GT(check.error_rad, kSameRad);
+  }
+}
+
+TEST(DirectionCheck, TellsTheSignByWhatIsInFrontOfTheCameras) {
+  const TwoViewScene scene = MakeTwoViewScene(Points(30), 1);
+  EXPECT_EQ(Check(scene, -scene.cam2_from_cam1.translation).verdict,
+            DirectionVerdict::kReplaced);
+}
+
+TEST(DirectionCheck, AFewWrongMatchesDoNotRefute) {
+  TwoViewSceneOptions options = Points(30);
+  options.num_wrong = 10;
+  const TwoViewScene scene = MakeTwoViewScene(options, 2);
+  EXPECT_EQ(Check(scene, scene.cam2_from_cam1.translation).verdict,
+            DirectionVerdict::kBorneOut);
+}
+
+TEST(DirectionCheck, WrongMatchesAloneBearNothingOut) {
+  TwoViewSceneOptions options = Points(0);
+  options.num_wrong = 40;
+  int num_refuted = 0;
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const TwoViewScene scene = MakeTwoViewScene(options, seed);
+    num_refuted += Check(scene, Vec3(-1, 0.2, 0.1), seed).verdict ==
+                   DirectionVerdict::kRefuted;
+  }
+  EXPECT_GE(num_refuted, 48);
+}
+
+TEST(DirectionCheck, TwoMatchesTellNothing) {
+  const TwoViewScene scene = MakeTwoViewScene(Points(2), 3);
+  EXPECT_EQ(Check(scene, Vec3::UnitY()).verdict, DirectionVerdict::kUntold);
+  EXPECT_EQ(Check(MakeTwoViewScene(Points(0), 3), Vec3::UnitY()).verdict,
+            DirectionVerdict::kUntold);
+}
+
+TEST(DirectionCheck, NorDoesARotation) {
+  TwoViewSceneOptions options = Points(40);
+  options.baseline = 1e-6;
+  const TwoViewScene scene = MakeTwoViewScene(options, 4);
+  EXPECT_EQ(Check(scene, Vec3::UnitX()).verdict, DirectionVerdict::kUntold);
+}
+
+}  // namespace
+}  // namespace lowlap
