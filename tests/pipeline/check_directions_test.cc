@@ -86,12 +86,7 @@ TEST(CheckDirections, SolvesTheSceneThatWasWrongInSilence) {
   EXPECT_EQ(solved->poses.num_placed, 9);
   EXPECT_FALSE(solved->poses.matches.replaced.empty());
   EXPECT_THAT(solved->poses.kept_outliers, IsEmpty());
-  std::map<ViewId, Pose> poses;
-  for (const auto& entry : scene.views) {
-    poses[entry.first] = *scene.FindPose(entry.first);
-  }
-  const auto errors = EvaluatePoses(poses, synthetic.true_poses);
-  EXPECT_LT(errors.position.max, 0.1);
+  EXPECT_LT(EvaluatePoses(scene, synthetic.true_poses).position.max, 0.1);
 }
 
 TEST(SceneInUse, HasOnlyWhatTheSolutionUses) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "lowlap/geometry/internal/rotation.h"
 #include "tests/two_view/two_view_scene.h"
 
@@ -32,7 +34,7 @@ DirectionCheck Check(const TwoViewScene& scene, const Vec3& direction,
 }
 
 TEST(DirectionCheck, BearsOutTheRightDirection) {
-  for (const int count : {5, 12, 40, 1000}) {
+  for (const int count : {8, 12, 40, 1000}) {
     for (std::uint64_t seed = 0; seed < 20; ++seed) {
       const TwoViewScene scene = MakeTwoViewScene(Points(count), seed);
       EXPECT_EQ(Check(scene, scene.cam2_from_cam1.translation, seed).verdict,
@@ -77,13 +79,13 @@ TEST(DirectionCheck, AFewWrongMatchesDoNotRefute) {
 TEST(DirectionCheck, WrongMatchesAloneBearNothingOut) {
   TwoViewSceneOptions options = Points(0);
   options.num_wrong = 40;
-  int num_refuted = 0;
-  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+  std::map<DirectionVerdict, int> count;
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
     const TwoViewScene scene = MakeTwoViewScene(options, seed);
-    num_refuted += Check(scene, Vec3(-1, 0.2, 0.1), seed).verdict ==
-                   DirectionVerdict::kRefuted;
+    ++count[Check(scene, Vec3(-1, 0.2, 0.1), seed).verdict];
   }
-  EXPECT_GE(num_refuted, 48);
+  EXPECT_LE(count[DirectionVerdict::kBorneOut], 2);
+  EXPECT_LE(count[DirectionVerdict::kReplaced], 2);
 }
 
 TEST(DirectionCheck, TwoMatchesTellNothing) {

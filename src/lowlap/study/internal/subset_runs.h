@@ -33,7 +33,7 @@ struct SubsetOutcome {
 };
 
 /// What makes a solution doubtful, as words: "open_loop", "contested_link",
-/// "weak_ratio" and those of WarningReasonName; empty if it is not
+/// "contest", "weak_ratio" and those of WarningReasonName; empty if it is not
 /// (PoseSummary::IsDoubtful).
 std::vector<std::string> DoubtCodes(const PoseSummary& summary);
 

@@ -62,6 +62,7 @@ DirectionCheck CheckDirection(const TwoViewInput& input,
   const AContrarioLadder for_sample = ladder_for(TwoPointKernel::kSampleSize);
   AContrarioRansacOptions ransac;
   ransac.max_samples = 1000;
+  ransac.max_refinements = 0;  // what is fitted beyond the sample is not paid
   const auto search = AContrarioRansac(directions, for_sample, ransac, random);
   const std::optional<RigidTransform>& found = search.model;
   if (found &&
