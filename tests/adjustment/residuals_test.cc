@@ -255,11 +255,14 @@ TEST(ResidualsTest, PlaneGradients) {
   Vec4 plane;
   plane << Vec3(0.2, -0.3, 0.9).normalized(), 0.07;
   const Vec3 anchor(0.1, 0.4, 3.5);
-  ExpectGradients(PointOnPlaneCost(anchor, 40), {nullptr, &plane_manifold},
-                  {point.data(), plane.data()});
-  ExpectGradients(LineOnPlaneCost(anchor, 40, -0.7, 1.1),
-                  {&line_manifold, &plane_manifold},
-                  {line.data(), plane.data()});
+  Vec3 center(0.4, -0.2, 0.3);
+  const PlaceOnPlane place(anchor, 40, 3);
+  ExpectGradients(PointOnPlaneCost(place), {nullptr, &plane_manifold, nullptr},
+                  {point.data(), plane.data(), center.data()});
+  ExpectGradients(
+      LineOnPlaneCost(place, PlaceOnPlane(anchor, 40, 5), -0.7, 1.1),
+      {&line_manifold, &plane_manifold, nullptr},
+      {line.data(), plane.data(), center.data()});
 }
 
 TEST(ResidualsTest, WhatIsOnThePlaneHasNoDistance) {
@@ -268,13 +271,24 @@ TEST(ResidualsTest, WhatIsOnThePlaneHasNoDistance) {
   plane << normal, 0.5;
   const Vec3 on_plane = anchor + 0.5 * normal + 2 * normal.unitOrthogonal();
   const Vec3 off_plane = on_plane + 0.25 * normal;
+  const Vec3 center = off_plane + Vec3(0, 0, 4);
+  const PointOnPlaneCost cost(PlaceOnPlane(anchor, 10, 4));
   double distance;
-  const double* blocks[] = {on_plane.data(), plane.data()};
-  PointOnPlaneCost(anchor, 10).Evaluate(blocks, &distance, nullptr);
+  const double* blocks[] = {on_plane.data(), plane.data(), center.data()};
+  EXPECT_TRUE(cost.Evaluate(blocks, &distance, nullptr));
   EXPECT_NEAR(distance, 0, 1e-12);
   blocks[0] = off_plane.data();
-  PointOnPlaneCost(anchor, 10).Evaluate(blocks, &distance, nullptr);
+  EXPECT_TRUE(cost.Evaluate(blocks, &distance, nullptr));
   EXPECT_NEAR(distance, 2.5, 1e-12);
+  // What shrinks with its camera does not come closer.
+  const Vec3 nearer = on_plane + 0.5 * (off_plane - on_plane);
+  const Vec3 nearer_center = on_plane + 0.5 * (center - on_plane);
+  blocks[0] = nearer.data();
+  blocks[2] = nearer_center.data();
+  EXPECT_TRUE(cost.Evaluate(blocks, &distance, nullptr));
+  EXPECT_NEAR(distance, 2.5, 1e-12);
+  blocks[2] = nearer.data();
+  EXPECT_FALSE(cost.Evaluate(blocks, &distance, nullptr));
 }
 
 TEST(ResidualsTest, RelativePoseGradients) {

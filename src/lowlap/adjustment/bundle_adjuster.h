@@ -38,7 +38,8 @@ Result<StructureSummary> BuildStructure(Scene* scene,
 ///            less the more pairs its lines are in: n lines of one plane do not
 ///            count n^2 times
 ///   plane    distances of a point, or of the two ends of a line's extent, from
-///            a plane of the scene, over its thickness (CoplanarTies; Cauchy
+///            a plane of the scene, over its thickness, both as the first
+///            camera sees them, so that nothing shrinks (CoplanarTies; Cauchy
 ///            loss at half a thickness): after the rounds below, the planes are
 ///            found three times (FindPlanes), with a solve each time
 /// where s is the kind's noise level and rho the Cauchy loss, whose scale is

@@ -1,5 +1,7 @@
 #include "lowlap/adjustment/internal/costs/plane_costs.h"
 
+#include <cmath>
+
 #include "lowlap/adjustment/internal/costs/jacobian_map.h"
 
 namespace lowlap {
@@ -9,17 +11,34 @@ using ConstVec = Eigen::Map<const Vec3>;
 
 }  // namespace
 
+bool PlaceOnPlane::Evaluate(const Vec3& place, const double* plane,
+                            const double* center, Residual* residual) const {
+  const Vec3 arm = place - anchor_;
+  const Vec3 ray = place - ConstVec(center);
+  const double squared = ray.squaredNorm();
+  if (!(squared > 0)) return false;
+  const ConstVec normal(plane);
+  const double scale = weight_ * distance_ / std::sqrt(squared);
+  residual->value = scale * (normal.dot(arm) - plane[3]);
+  residual->by_center = residual->value / squared * ray.transpose();
+  residual->by_place = scale * normal.transpose() - residual->by_center;
+  residual->by_plane << scale * arm.transpose(), -scale;
+  return true;
+}
+
 bool PointOnPlaneCost::Evaluate(const double* const* parameters,
                                 double* residuals, double** jacobians) const {
-  const Vec3 arm = ConstVec(parameters[0]) - anchor_;
-  const ConstVec normal(parameters[1]);
-  residuals[0] = weight_ * (normal.dot(arm) - parameters[1][3]);
-  if (jacobians == nullptr) return true;
-  if (jacobians[0] != nullptr) {
-    JacobianMap<1, 3>(jacobians[0]) = weight_ * normal.transpose();
+  PlaceOnPlane::Residual place;
+  if (!place_.Evaluate(ConstVec(parameters[0]), parameters[1], parameters[2],
+                       &place)) {
+    return false;
   }
-  if (jacobians[1] != nullptr) {
-    JacobianMap<1, 4>(jacobians[1]) << weight_ * arm.transpose(), -weight_;
+  residuals[0] = place.value;
+  if (jacobians == nullptr) return true;
+  if (jacobians[0] != nullptr) JacobianMap<1, 3>(jacobians[0]) = place.by_place;
+  if (jacobians[1] != nullptr) JacobianMap<1, 4>(jacobians[1]) = place.by_plane;
+  if (jacobians[2] != nullptr) {
+    JacobianMap<1, 3>(jacobians[2]) = place.by_center;
   }
   return true;
 }
@@ -27,18 +46,23 @@ bool PointOnPlaneCost::Evaluate(const double* const* parameters,
 bool LineOnPlaneCost::Evaluate(const double* const* parameters,
                                double* residuals, double** jacobians) const {
   const ConstVec point(parameters[0]), direction(parameters[0] + 3);
-  const ConstVec normal(parameters[1]);
   for (int end = 0; end < 2; ++end) {
-    const Vec3 arm = point + along_[end] * direction - anchor_;
-    residuals[end] = weight_ * (normal.dot(arm) - parameters[1][3]);
+    PlaceOnPlane::Residual place;
+    if (!places_[end].Evaluate(point + along_[end] * direction, parameters[1],
+                               parameters[2], &place)) {
+      return false;
+    }
+    residuals[end] = place.value;
     if (jacobians == nullptr) continue;
     if (jacobians[0] != nullptr) {
-      JacobianMap<2, 6>(jacobians[0]).row(end) << weight_ * normal.transpose(),
-          weight_ * along_[end] * normal.transpose();
+      JacobianMap<2, 6>(jacobians[0]).row(end) << place.by_place,
+          along_[end] * place.by_place;
     }
     if (jacobians[1] != nullptr) {
-      JacobianMap<2, 4>(jacobians[1]).row(end) << weight_ * arm.transpose(),
-          -weight_;
+      JacobianMap<2, 4>(jacobians[1]).row(end) = place.by_plane;
+    }
+    if (jacobians[2] != nullptr) {
+      JacobianMap<2, 3>(jacobians[2]).row(end) = place.by_center;
     }
   }
   return true;

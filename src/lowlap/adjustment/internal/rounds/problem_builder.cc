@@ -209,20 +209,36 @@ void ProblemBuilder::AddPlanes() {
   constexpr double kLossScale = 0.5;
   losses_.push_back(std::make_unique<ceres::CauchyLoss>(kLossScale));
   ceres::LossFunction* loss = losses_.back().get();
+  // The first camera that sees the landmark.
+  const auto pose_of = [&](const auto& track) -> int {
+    const auto used =
+        std::find_if(track.candidates.begin(), track.candidates.end(),
+                     [](const auto& candidate) { return candidate.used; });
+    return cameras_->views[used->view].pose;
+  };
   for (const int p : selection_.planes) {
     const PlaneState& plane = state_->planes[p];
-    const double weight = 1 / plane.thickness;
+    const auto place_at = [&](const Vec3& place, int pose) {
+      return PlaceOnPlane(plane.anchor, 1 / plane.thickness,
+                          (place - cameras_->poses[pose].center).norm());
+    };
     for (const int n : plane.points) {
-      if (!state_->points[n].IsLandmark()) continue;
-      AddResiduals(std::make_unique<PointOnPlaneCost>(plane.anchor, weight),
-                   loss, {PointBlock(n), PlaneBlock(p)});
+      const PointTrackState& point = state_->points[n];
+      if (!point.IsLandmark()) continue;
+      const int pose = pose_of(point);
+      AddResiduals(
+          std::make_unique<PointOnPlaneCost>(place_at(point.position, pose)),
+          loss, {PointBlock(n), PlaneBlock(p), CenterBlock(pose)});
     }
     for (const int n : plane.lines) {
       const LineTrackState& line = state_->lines[n];
       if (!line.IsLandmark()) continue;
-      AddResiduals(std::make_unique<LineOnPlaneCost>(plane.anchor, weight,
-                                                     line.low, line.high),
-                   loss, {LineBlock(n), PlaneBlock(p)});
+      const int pose = pose_of(line);
+      AddResiduals(std::make_unique<LineOnPlaneCost>(
+                       place_at(line.point + line.low * line.direction, pose),
+                       place_at(line.point + line.high * line.direction, pose),
+                       line.low, line.high),
+                   loss, {LineBlock(n), PlaneBlock(p), CenterBlock(pose)});
     }
   }
 }
