@@ -58,5 +58,35 @@ TEST(Contests, TheSmallerSideIsNamed) {
   EXPECT_THAT(contests[0].views, ElementsAre(6));
 }
 
+// Two triangles that share view 2.
+EvidenceOfPairs TwoTriangles() {
+  return {{{0, 1}, 100}, {{0, 2}, 100}, {{1, 2}, 100}, {{2, 3}, 100},
+          {{2, 4}, 100}, {{3, 4}, 100}, {{3, 5}, 100}};
+}
+
+TEST(ScaleContests, TheBestRatioAcrossAJointAgainstWhatPassesItBy) {
+  const std::map<ViewTriplet, double> ratios = {
+      {{0, 2, 3}, 9}, {{1, 2, 3}, 6}, {{0, 1, 2}, 500}, {{3, 2, 4}, 500}};
+  const auto contests =
+      FindScaleContests(TwoTriangles(), ratios, {{{1, 4}, 5}, {{0, 2}, 50}});
+  ASSERT_EQ(contests.size(), 1u);
+  EXPECT_THAT(contests[0].views, ElementsAre(0, 1));
+  EXPECT_THAT(contests[0].links, ElementsAre(ViewPair{0, 2}, ViewPair{1, 2}));
+  EXPECT_THAT(contests[0].contradictions, ElementsAre(ViewPair{1, 4}));
+}
+
+TEST(ScaleContests, NoneWhereTheRatioDecides) {
+  EXPECT_THAT(FindScaleContests(TwoTriangles(), {{{0, 2, 3}, 11}},
+                                {{{1, 4}, 5}, {{0, 2}, 50}}),
+              IsEmpty());
+}
+
+TEST(ScaleContests, NoneWithoutAJoint) {
+  EvidenceOfPairs in_use = TwoTriangles();
+  in_use[{1, 4}] = 1;
+  EXPECT_THAT(FindScaleContests(in_use, {{{0, 2, 3}, 2}}, {{{0, 4}, 50}}),
+              IsEmpty());
+}
+
 }  // namespace
 }  // namespace lowlap

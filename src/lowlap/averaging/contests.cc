@@ -109,4 +109,50 @@ std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
   return contests;
 }
 
+std::vector<Contest> FindScaleContests(
+    const EvidenceOfPairs& in_use, const std::map<ViewTriplet, double>& ratios,
+    const EvidenceOfPairs& rejected) {
+  std::vector<Contest> contests;
+  if (rejected.empty()) return contests;
+  std::vector<ViewPair> pairs;
+  for (const auto& entry : in_use) pairs.push_back(entry.first);
+  const ViewGraph graph(std::move(pairs));
+  for (const ViewId joint : ArticulationViews(graph)) {
+    std::vector<std::vector<ViewId>> parts =
+        ConnectedComponents(graph.WithoutViews({joint}));
+    parts.erase(std::remove_if(parts.begin(), parts.end(),
+                               [&](const std::vector<ViewId>& part) {
+                                 return std::none_of(
+                                     part.begin(), part.end(), [&](ViewId v) {
+                                       return graph.FindPair(joint, v);
+                                     });
+                               }),
+                parts.end());
+    for (std::size_t n = 1; n < parts.size(); ++n) {
+      const std::set<ViewId> side(parts[n].begin(), parts[n].end());
+      double for_it = 0;
+      for (const auto& [views, evidence] : ratios) {
+        if (views.middle == joint &&
+            side.count(views.first) != side.count(views.last)) {
+          for_it = std::max(for_it, evidence);
+        }
+      }
+      EvidenceOfPairs past_joint;
+      for (const auto& entry : rejected) {
+        const ViewPair& pair = entry.first;
+        if (pair.first != joint && pair.second != joint) {
+          past_joint.insert(entry);
+        }
+      }
+      Contest contest;
+      const double against = Across(past_joint, side, &contest.contradictions);
+      if (for_it == 0 || 2 * against <= for_it) continue;
+      Across(in_use, side, &contest.links);
+      contest.views = parts[n];
+      contests.push_back(std::move(contest));
+    }
+  }
+  return contests;
+}
+
 }  // namespace lowlap

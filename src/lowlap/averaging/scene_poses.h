@@ -69,7 +69,8 @@ struct ReliabilityWarning {
 };
 
 /// The only relative poses in use that join `views` to the others, and those
-/// that contradict them: together these have more than half their evidence.
+/// that contradict them: together these have more than half the evidence of
+/// `links`, or of the best ratio across the one camera that all of these share.
 struct Contest {
   std::vector<ViewPair> links;
   std::vector<ViewPair> contradictions;

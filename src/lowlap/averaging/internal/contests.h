@@ -21,4 +21,12 @@ using EvidenceOfPairs = std::map<ViewPair, double>;
 std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
                                   const EvidenceOfPairs& rejected);
 
+/// The same where one camera joins a set of views to the others, so that the
+/// ratios across it say how large they are: these are contested if the rejected
+/// pairs that pass the camera by have more than half the evidence of the best
+/// of them. (What misleads one ratio across a camera misleads the next.)
+std::vector<Contest> FindScaleContests(
+    const EvidenceOfPairs& in_use, const std::map<ViewTriplet, double>& ratios,
+    const EvidenceOfPairs& rejected);
+
 }  // namespace lowlap
