@@ -106,8 +106,23 @@ void BindSummaries(py::module_& module) {
                              })
       .def_readonly("views", &ReliabilityWarning::views)
       .def_readonly("against", &ReliabilityWarning::against)
+      .def_readonly("untold", &ReliabilityWarning::untold)
       .def_readonly("ratios", &ReliabilityWarning::ratios)
       .def_readonly("share", &ReliabilityWarning::share);
+
+  py::class_<Contest>(
+      module, "Contest",
+      "Views that relative poses join to the others with hardly "
+      "more evidence than what contradicts these.")
+      .def_readonly("links", &Contest::links)
+      .def_readonly("contradictions", &Contest::contradictions)
+      .def_readonly("views", &Contest::views);
+
+  py::class_<ReplacedDirection>(module, "ReplacedDirection",
+                                "A relative pose whose own matches bear out "
+                                "another direction, which took its place.")
+      .def_readonly("views", &ReplacedDirection::views)
+      .def_readonly("error_deg", &ReplacedDirection::error_deg);
 
   py::class_<KindAdjustment>(module, "KindAdjustment",
                              "One kind of residual in the bundle adjustment.")
@@ -232,6 +247,18 @@ void BindSolve(py::module_& module) {
                              "Views by common scale; the first have poses.")
       .def_property_readonly("outlier_edges",
                              poses(&PoseSummary::outlier_edges))
+      .def_property_readonly("kept_outliers",
+                             poses(&PoseSummary::kept_outliers),
+                             "In use though they contradict the poses: without "
+                             "them views would be lost.")
+      .def_property_readonly(
+          "replaced_directions",
+          [](const Solution& s) { return s.poses().matches.replaced; })
+      .def_property_readonly(
+          "untold_edges",
+          [](const Solution& s) { return s.poses().matches.untold; },
+          "Relative poses with too few matches to say whether they are right.")
+      .def_property_readonly("contests", poses(&PoseSummary::contests))
       .def_property_readonly("weak_ratios", poses(&PoseSummary::weak_ratios))
       .def_property_readonly("reliability_warnings",
                              poses(&PoseSummary::reliability_warnings))

@@ -37,6 +37,18 @@ class SolveTest(unittest.TestCase):
                           "adjustment"])
         self.assertIn("8 of 8", repr(solution))
 
+    def test_says_which_directions_their_matches_contradict(self):
+        scene, truth = lowlap.simulate(views=9, points=30, lines=50, noise=0.5,
+                                       pairs="window:2", wrong_directions=0.2,
+                                       seed=17)
+        solution = lowlap.solve(scene, gt=truth)
+        self.assertGreater(len(solution.replaced_directions), 0)
+        for replaced in solution.replaced_directions:
+            self.assertGreater(replaced.error_deg, 10)
+        self.assertEqual(solution.kept_outliers, [])
+        self.assertEqual(solution.contests, [])
+        self.assertLess(solution.evaluation.position.max, 0.02)
+
     def test_truth_may_be_a_dictionary(self):
         truth = {id: lowlap.Pose(pose.rotation, pose.center)
                  for id, pose in self.truth.poses.items()}

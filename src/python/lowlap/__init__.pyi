@@ -248,8 +248,18 @@ class ReliabilityWarning:
     reason: str
     views: List[int]
     against: List[Pair]
+    untold: List[Pair]
     ratios: List[Triplet]
     share: float
+
+class Contest:
+    links: List[Pair]
+    contradictions: List[Pair]
+    views: List[int]
+
+class ReplacedDirection:
+    views: Pair
+    error_deg: float
 
 class KindAdjustment:
     landmarks: int
@@ -277,6 +287,10 @@ class Solution:
     unplaced: List[int]
     components: List[List[int]]
     outlier_edges: List[OutlierEdge]
+    kept_outliers: List[OutlierEdge]
+    replaced_directions: List[ReplacedDirection]
+    untold_edges: List[Pair]
+    contests: List[Contest]
     weak_ratios: List[Triplet]
     reliability_warnings: List[ReliabilityWarning]
     is_firm: bool
