@@ -169,25 +169,31 @@ class Agreement {
     return {};
   }
 
+  static bool HoldsBoth(const RigidityReport& report, const ViewPair& pair) {
+    const auto holds_both = [&](const RigidGroup& group) {
+      const std::vector<ViewId>& views = group.views;
+      return std::binary_search(views.begin(), views.end(), pair.first) &&
+             std::binary_search(views.begin(), views.end(), pair.second);
+    };
+    return std::any_of(report.groups.begin(), report.groups.end(), holds_both);
+  }
+
   // The untold relative poses without which their views would not hold each
-  // other.
+  // other. What holds without any of them holds without one: most need no
+  // analysis of their own.
   std::vector<ViewPair> Unconfirmed() const {
     RatioTriplets ratios;
     for (const ScaleRatio& ratio : agreeing_ratios_) {
       ratios.push_back(ratio.views);
     }
     std::vector<ViewPair> unconfirmed;
+    if (untold_.empty()) return unconfirmed;
+    const RigidityReport told = AnalyzeRigidity(Graph(untold_), ratios);
     for (const ViewPair& views : untold_) {
-      const RigidityReport others = AnalyzeRigidity(Graph({views}), ratios);
-      const bool is_confirmed = std::any_of(
-          others.groups.begin(), others.groups.end(),
-          [&](const RigidGroup& group) {
-            return std::binary_search(group.views.begin(), group.views.end(),
-                                      views.first) &&
-                   std::binary_search(group.views.begin(), group.views.end(),
-                                      views.second);
-          });
-      if (!is_confirmed) unconfirmed.push_back(views);
+      if (!HoldsBoth(told, views) &&
+          !HoldsBoth(AnalyzeRigidity(Graph({views}), ratios), views)) {
+        unconfirmed.push_back(views);
+      }
     }
     return unconfirmed;
   }
