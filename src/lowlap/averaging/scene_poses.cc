@@ -141,7 +141,10 @@ std::vector<Contest> ContestsAmong(const Scene& scene,
     }
   }
   for (Contest& contest : FindScaleContests(in_use, ratios, rejected)) {
-    contests.push_back(std::move(contest));
+    const bool is_known = std::any_of(
+        contests.begin(), contests.end(),
+        [&](const Contest& other) { return other.links == contest.links; });
+    if (!is_known) contests.push_back(std::move(contest));
   }
   contests.erase(std::remove_if(contests.begin(), contests.end(),
                                 [&](const Contest& contest) {
