@@ -72,7 +72,8 @@ TEST_P(AveragerContract, StopsWhenItIsAskedTo) {
   EXPECT_GE(num_questions,
             by_simplex ? whole->num_iterations / 32 : whole->num_iterations);
   const int all = num_questions;
-  for (const int stop : {1, (all + 1) / 2, all}) {
+  // The simplex asks by the clock too: the last question may not come again.
+  for (const int stop : {1, (all + 1) / 2, by_simplex ? 1 : all}) {
     num_questions = 0;
     stop_at = stop;
     const auto stopped = averager_->Solve(problem, context);
