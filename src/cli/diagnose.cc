@@ -50,9 +50,9 @@ void AddDiagnose(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
   CLI::App* command = AddCommand(
       program, "diagnose",
-      "Say which views share one scale and through "
-      "what, which float or hang on one camera or on weak ratios, and what "
-      "kind of photograph would mend it");
+      "Say which views share one scale and through what, which float or hang "
+      "on one camera or on weak ratios, and what kind of photograph would mend "
+      "it");
   AddSceneInputFlags(command, &flags->input);
   AddScaleFlags(command, &flags->scale);
   AddOption(command, "--min-inliers", flags->diagnosis.min_inliers,

@@ -26,6 +26,18 @@ TestSceneOptions ChainOptions() {
   return options;
 }
 
+// Points and lines of three views determine everything; a third of the pairs
+// is wrong.
+TestSceneOptions GoodSceneOptions(std::uint64_t seed) {
+  TestSceneOptions options = ChainOptions();
+  options.max_point_views = 3;
+  options.max_line_views = 3;
+  options.noise_px = 0.5;
+  options.wrong_pairs = 0.33;
+  options.seed = seed;
+  return options;
+}
+
 struct Outcome {
   double before = 0;
   double after = 0;
@@ -82,16 +94,9 @@ TEST_P(CoplanarAdjustmentTest, PairsImproveAChainWithNoiseAndWrongPairs) {
 }
 
 TEST_P(CoplanarAdjustmentTest, GoodScenesAreNotHarmed) {
-  // Points and lines of three views determine everything; a third of the pairs
-  // is wrong.
   double with_pairs = 0, without = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
-    TestSceneOptions options = ChainOptions();
-    options.max_point_views = 3;
-    options.max_line_views = 3;
-    options.noise_px = 0.5;
-    options.wrong_pairs = 0.33;
-    options.seed = seed;
+    const TestSceneOptions options = GoodSceneOptions(seed);
     AdjustmentOptions no_pairs;
     no_pairs.use_coplanar = false;
     with_pairs += RunChain(options, 0.02, Options()).after;
@@ -193,12 +198,7 @@ TEST(CoplanarTiesTest, PlanesHoldAChainBetterThanPairs) {
 TEST(CoplanarTiesTest, GoodScenesAreNotHarmed) {
   double with_planes = 0, without = 0;
   for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
-    TestSceneOptions options = ChainOptions();
-    options.max_point_views = 3;
-    options.max_line_views = 3;
-    options.noise_px = 0.5;
-    options.wrong_pairs = 0.33;
-    options.seed = seed;
+    const TestSceneOptions options = GoodSceneOptions(seed);
     AdjustmentOptions planes;
     planes.coplanar_ties = CoplanarTies::kPlanes;
     AdjustmentOptions no_pairs;

@@ -23,7 +23,7 @@ EvidenceOfPairs TwoGroups(const EvidenceOfPairs& links) {
 
 TEST(Contests, LinksWithHardlyMoreEvidenceThanWhatContradictsThem) {
   const auto contests = FindContests(TwoGroups({{{2, 3}, 30}, {{1, 3}, 20}}),
-                                     {{{1, 4}, 20}, {{2, 5}, 15}});
+                                     {}, {{{1, 4}, 20}, {{2, 5}, 15}});
   ASSERT_EQ(contests.size(), 1u);
   EXPECT_THAT(contests[0].links, ElementsAre(ViewPair{1, 3}, ViewPair{2, 3}));
   EXPECT_THAT(contests[0].contradictions,
@@ -32,7 +32,7 @@ TEST(Contests, LinksWithHardlyMoreEvidenceThanWhatContradictsThem) {
 }
 
 TEST(Contests, NoneWhereTheEvidenceDecides) {
-  EXPECT_THAT(FindContests(TwoGroups({{{2, 3}, 30}, {{1, 3}, 20}}),
+  EXPECT_THAT(FindContests(TwoGroups({{{2, 3}, 30}, {{1, 3}, 20}}), {},
                            {{{1, 4}, 10}, {{2, 5}, 10}}),
               IsEmpty());
 }
@@ -43,19 +43,30 @@ TEST(Contests, NoneWithinAGroupThatHolds) {
     for (std::uint32_t b = a + 1; b < 6; ++b) all[{a, b}] = 100;
   }
   all.erase({0, 1});
-  EXPECT_THAT(FindContests(all, {{{0, 1}, 150}}), IsEmpty());
+  EXPECT_THAT(FindContests(all, {}, {{{0, 1}, 150}}), IsEmpty());
 }
 
 TEST(Contests, NoneBetweenViewsThatNothingJoins) {
-  EXPECT_THAT(FindContests(TwoGroups({}), {{{2, 3}, 50}}), IsEmpty());
+  EXPECT_THAT(FindContests(TwoGroups({}), {}, {{{2, 3}, 50}}), IsEmpty());
 }
 
 TEST(Contests, TheSmallerSideIsNamed) {
   EvidenceOfPairs in_use = TwoGroups({{{2, 3}, 30}, {{1, 3}, 30}});
   in_use[{5, 6}] = 20;
-  const auto contests = FindContests(in_use, {{{4, 6}, 15}});
+  const auto contests = FindContests(in_use, {}, {{{4, 6}, 15}});
   ASSERT_EQ(contests.size(), 1u);
   EXPECT_THAT(contests[0].views, ElementsAre(6));
+}
+
+// 0 - 1 - 2 - 3, and a pose of its ends that contradicts every link.
+TEST(Contests, OneCauseIsOneContest) {
+  const auto contests =
+      FindContests({{{0, 1}, 20}, {{1, 2}, 500}, {{2, 3}, 10}},
+                   {{{0, 1, 2}, 8}, {{1, 2, 3}, 9}}, {{{0, 3}, 15}});
+  ASSERT_EQ(contests.size(), 1u);
+  EXPECT_THAT(contests[0].contradictions, ElementsAre(ViewPair{0, 3}));
+  EXPECT_THAT(contests[0].views, ElementsAre(0, 3));
+  EXPECT_THAT(contests[0].links, ElementsAre(ViewPair{0, 1}, ViewPair{2, 3}));
 }
 
 // Two triangles that share view 2.
@@ -68,7 +79,7 @@ TEST(ScaleContests, TheBestRatioAcrossAJointAgainstWhatPassesItBy) {
   const std::map<ViewTriplet, double> ratios = {
       {{0, 2, 3}, 9}, {{1, 2, 3}, 6}, {{0, 1, 2}, 500}, {{3, 2, 4}, 500}};
   const auto contests =
-      FindScaleContests(TwoTriangles(), ratios, {{{1, 4}, 5}, {{0, 2}, 50}});
+      FindContests(TwoTriangles(), ratios, {{{1, 4}, 5}, {{0, 2}, 50}});
   ASSERT_EQ(contests.size(), 1u);
   EXPECT_THAT(contests[0].views, ElementsAre(0, 1));
   EXPECT_THAT(contests[0].links, ElementsAre(ViewPair{0, 2}, ViewPair{1, 2}));
@@ -76,15 +87,15 @@ TEST(ScaleContests, TheBestRatioAcrossAJointAgainstWhatPassesItBy) {
 }
 
 TEST(ScaleContests, NoneWhereTheRatioDecides) {
-  EXPECT_THAT(FindScaleContests(TwoTriangles(), {{{0, 2, 3}, 11}},
-                                {{{1, 4}, 5}, {{0, 2}, 50}}),
+  EXPECT_THAT(FindContests(TwoTriangles(), {{{0, 2, 3}, 11}},
+                           {{{1, 4}, 5}, {{0, 2}, 50}}),
               IsEmpty());
 }
 
 TEST(ScaleContests, NoneWithoutAJoint) {
   EvidenceOfPairs in_use = TwoTriangles();
   in_use[{1, 4}] = 1;
-  EXPECT_THAT(FindScaleContests(in_use, {{{0, 2, 3}, 2}}, {{{0, 4}, 50}}),
+  EXPECT_THAT(FindContests(in_use, {{{0, 2, 3}, 2}}, {{{0, 4}, 50}}),
               IsEmpty());
 }
 

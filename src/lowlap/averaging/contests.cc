@@ -85,16 +85,12 @@ std::vector<ViewId> SmallerSide(const ViewGraph& graph,
   return {side.begin(), side.end()};
 }
 
-}  // namespace
-
-std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
-                                  const EvidenceOfPairs& rejected) {
+// Views that poses in use join to the others with hardly more evidence than
+// rejected ones have across the same cut.
+void AddPoseContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
+                     const EvidenceOfPairs& rejected,
+                     std::vector<Contest>* contests) {
   const LeastCut cuts(in_use);
-  std::vector<ViewPair> pairs;
-  for (const auto& entry : in_use) pairs.push_back(entry.first);
-  const ViewGraph graph(std::move(pairs));
-  std::vector<Contest> contests;
-  std::set<std::vector<ViewPair>> seen;
   for (const auto& entry : rejected) {
     const std::set<ViewId> side =
         cuts.SideOf(entry.first.first, entry.first.second);
@@ -102,34 +98,40 @@ std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
     Contest contest;
     const double for_it = Across(in_use, side, &contest.links);
     const double against = Across(rejected, side, &contest.contradictions);
-    if (2 * against <= for_it || !seen.insert(contest.links).second) continue;
+    if (2 * against <= for_it) continue;
     contest.views = SmallerSide(graph, side);
-    contests.push_back(std::move(contest));
+    contests->push_back(std::move(contest));
   }
-  return contests;
 }
 
-std::vector<Contest> FindScaleContests(
-    const EvidenceOfPairs& in_use, const std::map<ViewTriplet, double>& ratios,
-    const EvidenceOfPairs& rejected) {
-  std::vector<Contest> contests;
-  if (rejected.empty()) return contests;
-  std::vector<ViewPair> pairs;
-  for (const auto& entry : in_use) pairs.push_back(entry.first);
-  const ViewGraph graph(std::move(pairs));
+// What falls off the largest part of the component of `joint` without it.
+std::vector<std::vector<ViewId>> PartsAt(const ViewGraph& graph, ViewId joint) {
+  std::vector<std::vector<ViewId>> parts;
+  for (std::vector<ViewId>& part :
+       ConnectedComponents(graph.WithoutViews({joint}))) {
+    const bool meets_joint = std::any_of(
+        part.begin(), part.end(),
+        [&](ViewId view) { return graph.FindPair(joint, view).has_value(); });
+    if (meets_joint) parts.push_back(std::move(part));
+  }
+  if (!parts.empty()) parts.erase(parts.begin());
+  return parts;
+}
+
+// The same for the scale across one camera.
+void AddScaleContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
+                      const EvidenceOfRatios& ratios,
+                      const EvidenceOfPairs& rejected,
+                      std::vector<Contest>* contests) {
   for (const ViewId joint : ArticulationViews(graph)) {
-    std::vector<std::vector<ViewId>> parts =
-        ConnectedComponents(graph.WithoutViews({joint}));
-    parts.erase(std::remove_if(parts.begin(), parts.end(),
-                               [&](const std::vector<ViewId>& part) {
-                                 return std::none_of(
-                                     part.begin(), part.end(), [&](ViewId v) {
-                                       return graph.FindPair(joint, v);
-                                     });
-                               }),
-                parts.end());
-    for (std::size_t n = 1; n < parts.size(); ++n) {
-      const std::set<ViewId> side(parts[n].begin(), parts[n].end());
+    EvidenceOfPairs past_joint;
+    for (const auto& entry : rejected) {
+      const ViewPair& pair = entry.first;
+      if (pair.first != joint && pair.second != joint) past_joint.insert(entry);
+    }
+    if (past_joint.empty()) continue;
+    for (std::vector<ViewId>& part : PartsAt(graph, joint)) {
+      const std::set<ViewId> side(part.begin(), part.end());
       double for_it = 0;
       for (const auto& [views, evidence] : ratios) {
         if (views.middle == joint &&
@@ -137,21 +139,44 @@ std::vector<Contest> FindScaleContests(
           for_it = std::max(for_it, evidence);
         }
       }
-      EvidenceOfPairs past_joint;
-      for (const auto& entry : rejected) {
-        const ViewPair& pair = entry.first;
-        if (pair.first != joint && pair.second != joint) {
-          past_joint.insert(entry);
-        }
-      }
       Contest contest;
       const double against = Across(past_joint, side, &contest.contradictions);
       if (for_it == 0 || 2 * against <= for_it) continue;
       Across(in_use, side, &contest.links);
-      contest.views = parts[n];
-      contests.push_back(std::move(contest));
+      contest.views = std::move(part);
+      contests->push_back(std::move(contest));
     }
   }
+}
+
+template <class T>
+void Unite(const std::vector<T>& more, std::vector<T>* sorted) {
+  std::vector<T> all;
+  std::set_union(sorted->begin(), sorted->end(), more.begin(), more.end(),
+                 std::back_inserter(all));
+  *sorted = std::move(all);
+}
+
+}  // namespace
+
+std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
+                                  const EvidenceOfRatios& ratios,
+                                  const EvidenceOfPairs& rejected) {
+  std::vector<ViewPair> pairs;
+  for (const auto& entry : in_use) pairs.push_back(entry.first);
+  const ViewGraph graph(std::move(pairs));
+  std::vector<Contest> cuts;
+  AddPoseContests(graph, in_use, rejected, &cuts);
+  AddScaleContests(graph, in_use, ratios, rejected, &cuts);
+  std::map<std::vector<ViewPair>, Contest> by_cause;
+  for (const Contest& cut : cuts) {
+    Contest& contest = by_cause[cut.contradictions];
+    contest.contradictions = cut.contradictions;
+    Unite(cut.links, &contest.links);
+    Unite(cut.views, &contest.views);
+  }
+  std::vector<Contest> contests;
+  for (auto& entry : by_cause) contests.push_back(std::move(entry.second));
   return contests;
 }
 

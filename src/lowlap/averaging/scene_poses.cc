@@ -133,19 +133,13 @@ std::vector<Contest> ContestsAmong(const Scene& scene,
       }
     }
   }
-  std::vector<Contest> contests = FindContests(in_use, rejected);
-  std::map<ViewTriplet, double> ratios;
+  EvidenceOfRatios ratios;
   for (const ScaleRatio& ratio : scene.scale_ratios) {
     if (ratio.verdict == RatioVerdict::kMeaningful) {
       ratios[ratio.views] = 1 - ratio.log10_nfa;
     }
   }
-  for (Contest& contest : FindScaleContests(in_use, ratios, rejected)) {
-    const bool is_known = std::any_of(
-        contests.begin(), contests.end(),
-        [&](const Contest& other) { return other.links == contest.links; });
-    if (!is_known) contests.push_back(std::move(contest));
-  }
+  std::vector<Contest> contests = FindContests(in_use, ratios, rejected);
   contests.erase(std::remove_if(contests.begin(), contests.end(),
                                 [&](const Contest& contest) {
                                   return std::any_of(

@@ -68,9 +68,9 @@ struct ReliabilityWarning {
   double share = 0;
 };
 
-/// The only relative poses in use that join `views` to the others, and those
-/// that contradict them: together these have more than half the evidence of
-/// `links`, or of the best ratio across the one camera that all of these share.
+/// Views that only `links`, in use, join to the others, and what contradicts
+/// these: together more than half as much evidence as they have, or as the best
+/// ratio across the one camera that they share (FindContests).
 struct Contest {
   std::vector<ViewPair> links;
   std::vector<ViewPair> contradictions;

@@ -39,4 +39,10 @@ double Random::Gaussian(double stddev) {
   return stddev * std::sqrt(-2.0 * std::log(u)) * std::cos(kTwoPi * Uniform());
 }
 
+std::uint64_t PairSeed(std::uint64_t seed, const ViewPair& pair) {
+  return seed * kGolden +
+         (static_cast<std::uint64_t>(pair.first.value()) << 32) +
+         pair.second.value();
+}
+
 }  // namespace lowlap

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "lowlap/core/ids.h"
+
 namespace lowlap {
 
 /// A small seeded generator (SplitMix64, Steele et al. 2014) with draws that
@@ -25,5 +27,8 @@ class Random {
  private:
   std::uint64_t state_;
 };
+
+/// Seed of what is drawn for a pair, whatever else is in the run.
+std::uint64_t PairSeed(std::uint64_t seed, const ViewPair& pair);
 
 }  // namespace lowlap

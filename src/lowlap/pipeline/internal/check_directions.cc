@@ -7,6 +7,7 @@
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/translation_problem.h"
 #include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/random.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/two_view/internal/direction_check.h"
 
@@ -62,11 +63,8 @@ Result<MatchVerdicts> CheckDirections(Scene* scene, const PoseOptions& options,
         const auto first = views.find(pose.views.first);
         const auto second = views.find(pose.views.second);
         if (first == views.end() || second == views.end()) return;
-        const std::uint64_t seed =
-            context.seed * 0x9E3779B97F4A7C15ull +
-            (static_cast<std::uint64_t>(pose.views.first.value()) << 32) +
-            pose.views.second.value();
-        checks[n] = Check(pose, first->second, second->second, limits, seed);
+        checks[n] = Check(pose, first->second, second->second, limits,
+                          PairSeed(context.seed, pose.views));
       });
   if (!done) return tl::unexpected<Error>(done.error());
   MatchVerdicts verdicts;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "lowlap/averaging/rotations/scene_rotations.h"
 #include "lowlap/averaging/scene_poses.h"
 #include "lowlap/core/result.h"

@@ -7,7 +7,7 @@
 #include "lowlap/geometry/types.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/relative_pose.h"
-#include "lowlap/two_view/internal/vanishing_directions.h"
+#include "lowlap/two_view/internal/directions/vanishing_directions.h"
 #include "lowlap/two_view/two_view_options.h"
 
 namespace lowlap {

@@ -4,6 +4,7 @@
 
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/core/internal/random.h"
 
 namespace lowlap {
 namespace {
@@ -109,11 +110,6 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
   std::vector<PairEstimate> estimates(pairs.size());
   const Status done =
       ParallelFor(context, "relative poses", pairs.size(), [&](std::size_t n) {
-        // A stream of its own per pair, whatever else is in the run.
-        const std::uint64_t pair_seed =
-            context.seed * 0x9E3779B97F4A7C15ull +
-            (static_cast<std::uint64_t>(pairs[n].first.value()) << 32) +
-            pairs[n].second.value();
         const ViewMeasurements& first = measurements.at(pairs[n].first);
         const ViewMeasurements& second = measurements.at(pairs[n].second);
         const auto known = given.find(pairs[n]);
@@ -122,7 +118,7 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
                 ? TakePair(pairs[n], first, second, matches.at(pairs[n]),
                            known->second, options.pair)
                 : EstimatePair(pairs[n], first, second, matches.at(pairs[n]),
-                               options.pair, pair_seed);
+                               options.pair, PairSeed(context.seed, pairs[n]));
       });
   if (!done) return tl::unexpected<Error>(done.error());
 

@@ -5,7 +5,7 @@
 
 #include "lowlap/core/ids.h"
 #include "lowlap/geometry/types.h"
-#include "lowlap/two_view/internal/vanishing_directions.h"
+#include "lowlap/two_view/internal/directions/vanishing_directions.h"
 
 namespace lowlap {
 
