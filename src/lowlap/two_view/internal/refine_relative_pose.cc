@@ -1,6 +1,5 @@
 #include "lowlap/two_view/internal/refine_relative_pose.h"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "lowlap/geometry/internal/epipolar.h"
@@ -156,6 +155,18 @@ RigidTransform RefineRelativePose(const RigidTransform& cam2_from_cam1,
   return pose;
 }
 
+Mat5 RelativePoseHessian(const RigidTransform& cam2_from_cam1,
+                         const PointPairs& pairs,
+                         const std::vector<int>& indices,
+                         const PoseRefinementOptions& options) {
+  return Linearize(cam2_from_cam1, pairs, indices, options).hessian;
+}
+
+bool IsWellDetermined(const Eigen::LDLT<Mat5>& factor) {
+  return factor.info() == Eigen::Success &&
+         factor.vectorD().minCoeff() > 1e-14 * factor.vectorD().maxCoeff();
+}
+
 std::optional<Mat5> RelativePoseCovariance(
     const RigidTransform& cam2_from_cam1, const PointPairs& pairs,
     const std::vector<int>& indices, const PoseRefinementOptions& options) {
@@ -187,10 +198,7 @@ std::optional<Mat5> RelativePoseCovariance(
         turn.transpose() * turn / (1 + ratio * ratio);
   }
   const Eigen::LDLT<Mat5> factor(information);
-  if (factor.info() != Eigen::Success ||
-      !(factor.vectorD().minCoeff() > 1e-14 * factor.vectorD().maxCoeff())) {
-    return std::nullopt;
-  }
+  if (!IsWellDetermined(factor)) return std::nullopt;
   const Mat5 covariance = factor.solve(Mat5::Identity());
   if (!covariance.allFinite()) return std::nullopt;
   return Mat5(0.5 * (covariance + covariance.transpose()));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <optional>
 #include <vector>
@@ -59,6 +60,16 @@ RigidTransform RefineRelativePose(const RigidTransform& cam2_from_cam1,
                                   const PointPairs& pairs,
                                   const std::vector<int>& indices,
                                   const PoseRefinementOptions& options);
+
+/// sum w J J^T of the matches, w the weights of that loss at the pose, and the
+/// information of the directions in the same units.
+Mat5 RelativePoseHessian(const RigidTransform& cam2_from_cam1,
+                         const PointPairs& pairs,
+                         const std::vector<int>& indices,
+                         const PoseRefinementOptions& options);
+
+/// Whether a decomposed Hessian or information of a pose has full rank.
+bool IsWellDetermined(const Eigen::LDLT<Mat5>& factor);
 
 /// Covariance of (w, d) as above at the minimum of the same loss:
 ///   (sum psi^2 / (n - 5)) / (mean psi')^2 (sum J J^T)^-1

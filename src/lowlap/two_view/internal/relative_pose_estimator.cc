@@ -10,6 +10,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/two_view/internal/lone_matches.h"
 #include "lowlap/two_view/internal/planar_motion.h"
 #include "lowlap/two_view/internal/pose_search.h"
 #include "lowlap/two_view/internal/refine_relative_pose.h"
@@ -69,12 +70,15 @@ RelativePose ToRelativePose(const TwoViewInput& input,
                             const ShuffledMatches& matches,
                             const PoseSearch& search,
                             const PoseCandidate& candidate) {
+  const PoseRefinementOptions refinement = search.RefinementOptions(candidate);
+  const std::vector<int> borne_out = BorneOutMatches(
+      candidate.pose, matches.pairs, candidate.inliers, refinement);
   RelativePose pose;
   pose.views = input.views;
   pose.rotation = candidate.pose.rotation;
   pose.direction = candidate.pose.translation;
   std::vector<int> inliers;
-  for (const int i : candidate.inliers) {
+  for (const int i : borne_out) {
     if (matches.match_of_pair[i] != ShuffledMatches::kCrossing) {
       inliers.push_back(matches.match_of_pair[i]);
     }
@@ -85,9 +89,8 @@ RelativePose ToRelativePose(const TwoViewInput& input,
   }
   pose.log10_nfa = candidate.support.log10_nfa;
   pose.point_threshold_px = candidate.support.threshold;
-  pose.covariance =
-      RelativePoseCovariance(candidate.pose, matches.pairs, candidate.inliers,
-                             search.RefinementOptions(candidate));
+  pose.covariance = RelativePoseCovariance(candidate.pose, matches.pairs,
+                                           borne_out, refinement);
   return pose;
 }
 

@@ -1,0 +1,52 @@
+#include "lowlap/two_view/internal/lone_matches.h"
+
+#include <Eigen/Cholesky>
+#include <utility>
+
+namespace lowlap {
+namespace {
+
+constexpr double kMaxLeverage = 0.5;
+constexpr std::size_t kFewestMatches = 6;
+
+}  // namespace
+
+std::vector<double> Leverages(const RigidTransform& cam2_from_cam1,
+                              const PointPairs& pairs,
+                              const std::vector<int>& indices,
+                              const PoseRefinementOptions& options) {
+  const Eigen::LDLT<Mat5> factor(
+      RelativePoseHessian(cam2_from_cam1, pairs, indices, options));
+  if (!IsWellDetermined(factor)) return {};
+  const SampsonResidual residual(cam2_from_cam1, pairs);
+  std::vector<double> leverages;
+  Vec5 jacobian;
+  for (const int i : indices) {
+    const double ratio = residual(i, &jacobian) / options.loss_scale_px;
+    leverages.push_back(jacobian.dot(factor.solve(jacobian)) /
+                        (1 + ratio * ratio));
+  }
+  return leverages;
+}
+
+std::vector<int> BorneOutMatches(RigidTransform cam2_from_cam1,
+                                 const PointPairs& pairs,
+                                 std::vector<int> indices,
+                                 const PoseRefinementOptions& options) {
+  while (true) {
+    const std::vector<double> leverages =
+        Leverages(cam2_from_cam1, pairs, indices, options);
+    std::vector<int> rest;
+    for (std::size_t n = 0; n < leverages.size(); ++n) {
+      if (leverages[n] <= kMaxLeverage) rest.push_back(indices[n]);
+    }
+    if (rest.size() < kFewestMatches || rest.size() == indices.size()) {
+      return indices;
+    }
+    indices = std::move(rest);
+    cam2_from_cam1 =
+        RefineRelativePose(cam2_from_cam1, pairs, indices, options);
+  }
+}
+
+}  // namespace lowlap
