@@ -10,6 +10,7 @@
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
+#include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
@@ -19,16 +20,22 @@ namespace lowlap::cli {
 namespace {
 
 void PrintPoses(const PoseSummary& poses, const Scene& scene) {
-  std::printf("cameras placed: %d/%d\n", poses.num_placed, poses.num_views);
-  for (const std::string& warning : PoseWarnings(poses, scene)) {
+  int num_firm = 0;
+  for (const auto& entry : GradeViews(poses)) {
+    num_firm += entry.second.grade == ViewGrade::kFirm ? 1 : 0;
+  }
+  std::printf("cameras placed: %d/%d, firm: %d\n", poses.num_placed,
+              poses.num_views, num_firm);
+  const std::vector<std::string> warnings = PoseWarningsByCause(poses, scene);
+  for (const std::string& warning : warnings) {
     // Lists of many names are for the report.
     constexpr std::size_t kLongest = 300;
-    std::printf(
-        "warning: %s\n",
-        warning.size() <= kLongest
-            ? warning.c_str()
-            : (warning.substr(0, kLongest) + "... (see report.html)").c_str());
+    std::printf("warning: %s\n",
+                warning.size() <= kLongest
+                    ? warning.c_str()
+                    : (warning.substr(0, kLongest) + "...").c_str());
   }
+  if (!warnings.empty()) std::printf("(details: report.html)\n");
 }
 
 void PrintCost(const std::vector<StageCost>& stages) {
@@ -184,8 +191,8 @@ void AddPrincipalPointFlag(CLI::App* command, double* stddev) {
 
 void AddStrictFlag(CLI::App* command, bool* strict) {
   AddFlag(command, "--strict", *strict,
-          "Exit code 2 if a camera is not placed, or its place is "
-          "doubtful; the results are written all the same");
+          "Exit code 2 if a camera is not placed or not graded firm, or "
+          "anything else is doubtful; the results are written all the same");
 }
 
 Option AddRefinementFlag(CLI::App* command, std::string* parts) {

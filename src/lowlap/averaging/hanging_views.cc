@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -19,14 +20,8 @@ void WarnOfHangingViews(PoseSummary* summary) {
                                 }),
                  warnings.end());
   std::set<ViewId> doubtful;
-  for (const ReliabilityWarning& warning : warnings) {
-    doubtful.insert(warning.views.begin(), warning.views.end());
-  }
-  for (const ContestedLink& link : summary->contested) {
-    doubtful.insert(link.views.begin(), link.views.end());
-  }
-  for (const Contest& contest : summary->contests) {
-    doubtful.insert(contest.views.begin(), contest.views.end());
+  for (const ViewDoubt& doubt : ViewDoubts(*summary)) {
+    doubtful.insert(doubt.views.begin(), doubt.views.end());
   }
   if (doubtful.empty() || summary->components.empty()) return;
   const ViewGraph graph = ViewGraph(summary->firm_evidence.edges)
