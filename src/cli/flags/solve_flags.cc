@@ -19,13 +19,17 @@
 namespace lowlap::cli {
 namespace {
 
-void PrintPoses(const PoseSummary& poses, const Scene& scene) {
-  int num_firm = 0;
+int CountFirm(const PoseSummary& poses) {
+  int count = 0;
   for (const auto& entry : GradeViews(poses)) {
-    num_firm += entry.second.grade == ViewGrade::kFirm ? 1 : 0;
+    count += entry.second.grade == ViewGrade::kFirm ? 1 : 0;
   }
+  return count;
+}
+
+void PrintPoses(const PoseSummary& poses, const Scene& scene) {
   std::printf("cameras placed: %d/%d, firm: %d\n", poses.num_placed,
-              poses.num_views, num_firm);
+              poses.num_views, CountFirm(poses));
   const std::vector<std::string> warnings = PoseWarningsByCause(poses, scene);
   for (const std::string& warning : warnings) {
     // Lists of many names are for the report.
@@ -191,8 +195,8 @@ void AddPrincipalPointFlag(CLI::App* command, double* stddev) {
 
 void AddStrictFlag(CLI::App* command, bool* strict) {
   AddFlag(command, "--strict", *strict,
-          "Exit code 2 if a camera is not placed or not graded firm, or "
-          "anything else is doubtful; the results are written all the same");
+          "Exit code 2 if a camera is not graded firm; the results are "
+          "written all the same");
 }
 
 Option AddRefinementFlag(CLI::App* command, std::string* parts) {
@@ -319,7 +323,8 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
   if (!output.scene_file.empty()) {
     std::printf("and the scene to %s\n", output.scene_file.c_str());
   }
-  return flags.strict && !summary.solve->poses.IsFirm() ? kNotFirm : 0;
+  const PoseSummary& poses = summary.solve->poses;
+  return flags.strict && CountFirm(poses) < poses.num_views ? kNotFirm : 0;
 }
 
 }  // namespace lowlap::cli

@@ -28,14 +28,18 @@ void WarnOfHangingViews(PoseSummary* summary) {
                               .WithoutViews({doubtful.begin(), doubtful.end()});
   const RigidityReport report =
       AnalyzeRigidity(graph, summary->firm_evidence.ratios);
+  const std::vector<ViewId>& placed = summary->components.front();
   std::set<ViewId> firm;
   if (!report.groups.empty()) {
     const std::vector<ViewId>& largest = report.groups.front().views;
-    firm.insert(largest.begin(), largest.end());
+    // Two views hold each other whatever is wrong.
+    if (largest.size() > 2 || placed.size() <= 2) {
+      firm.insert(largest.begin(), largest.end());
+    }
   }
   ReliabilityWarning hanging;
   hanging.reason = WarningReason::kDoubtfulNeighbors;
-  for (const ViewId view : summary->components.front()) {
+  for (const ViewId view : placed) {
     if (doubtful.count(view) + firm.count(view) == 0) {
       hanging.views.push_back(view);
     }
