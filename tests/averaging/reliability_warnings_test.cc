@@ -222,6 +222,30 @@ TEST(ReliabilityWarnings, WeakRatiosConfirmNoUntoldPose) {
   }
 }
 
+// Two views fit any relative pose; that there were to be more says that
+// something is wrong.
+TEST(ReliabilityWarnings, TwoViewsThatAreLeftOfMore) {
+  for (const int num_views : {2, 8}) {
+    SyntheticScene synthetic = SceneWithTrueRatios("chain");
+    Scene& scene = synthetic.scene;
+    for (auto it = scene.relative_poses.begin();
+         it != scene.relative_poses.end();) {
+      it = it->first == ViewPair{0, 1} ? std::next(it)
+                                       : scene.relative_poses.erase(it);
+    }
+    scene.scale_ratios.clear();
+    if (num_views == 2) scene = WithoutViews(scene, {2, 3, 4, 5, 6, 7});
+    const auto warnings = WarningsOf(scene);
+    if (num_views == 2) {
+      EXPECT_THAT(warnings, IsEmpty());
+      continue;
+    }
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].reason, WarningReason::kUnheld);
+    EXPECT_THAT(warnings[0].views, ElementsAre(0, 1));
+  }
+}
+
 // Nothing is left that holds even two views.
 TEST(ReliabilityWarnings, AllViewsIfNoRelativePoseIsTold) {
   SyntheticScene synthetic = SceneWithTrueRatios("chain");

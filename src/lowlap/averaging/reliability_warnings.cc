@@ -104,6 +104,13 @@ class Agreement {
       if (!untold.untold.empty()) warnings.push_back(std::move(untold));
       return warnings;
     }
+    // Two views hold each other whatever is wrong: of more, no third bears them
+    // out.
+    if (placed_.size() == 2 && scene_.views.size() > 2) {
+      warnings.push_back(Unheld({}));
+      warnings.back().views.assign(placed_.begin(), placed_.end());
+      return warnings;
+    }
     const RigidGroup& firm = groups.groups.front();
     std::vector<ViewId> held;
     // By what sets fewer things aside, one after the other.
