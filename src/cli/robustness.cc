@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <functional>
 #include <memory>
 
 #include "cli/command.h"
@@ -15,6 +16,9 @@
 #include "lowlap/study/internal/robustness/study.h"
 #include "lowlap/study/internal/robustness/summary.h"
 #include "lowlap/study/internal/robustness/table.h"
+#include "lowlap/study/internal/trust/study.h"
+#include "lowlap/study/internal/trust/summary.h"
+#include "lowlap/study/internal/trust/table.h"
 
 namespace lowlap::cli {
 namespace {
@@ -22,8 +26,26 @@ namespace {
 struct Flags {
   CommonFlags common;
   RobustnessOptions options;
+  bool trust = false;
+  int num_scenes = TrustStudy().num_scenes;
   std::string output;
 };
+
+// The trials of an output folder; `take` is given those that are there.
+Result<ResultLog> OpenTrials(
+    const Flags& flags, const std::string& settings,
+    const std::function<bool(const std::string&)>& take) {
+  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(flags.output));
+  return ResultLog::Open(
+      (std::filesystem::path(flags.output) / "trials.jsonl").string(), settings,
+      take);
+}
+
+void TellTrials(std::size_t count, const RunContext& context) {
+  if (count == 0) return;
+  context.Log(LogLevel::kInfo,
+              std::to_string(count) + " trials are in trials.jsonl already");
+}
 
 // What the trials depend on.
 std::string SettingsText(const RobustnessOptions& options, std::uint64_t seed) {
@@ -37,16 +59,11 @@ std::string SettingsText(const RobustnessOptions& options, std::uint64_t seed) {
 
 Status Complete(const Flags& flags, const RunContext& context,
                 RobustnessStudy* study) {
-  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(flags.output));
-  const auto log = ResultLog::Open(
-      (std::filesystem::path(flags.output) / "trials.jsonl").string(),
-      SettingsText(study->options, flags.common.seed),
+  const auto log = OpenTrials(
+      flags, SettingsText(study->options, flags.common.seed),
       [&](const std::string& record) { return AddJsonLine(record, study); });
   if (!log) return tl::unexpected<Error>(log.error());
-  if (!study->outcomes.empty()) {
-    context.Log(LogLevel::kInfo, std::to_string(study->outcomes.size()) +
-                                     " trials are in trials.jsonl already");
-  }
+  TellTrials(study->outcomes.size(), context);
   const auto start = std::chrono::steady_clock::now();
   RobustnessSinks sinks;
   sinks.cell = [&](const RobustnessKey& key, const RobustnessOutcome& outcome) {
@@ -67,7 +84,33 @@ Status Complete(const Flags& flags, const RunContext& context,
   return RunRobustnessStudy(context, sinks, study);
 }
 
+Result<int> StudyTrust(const Flags& flags) {
+  TrustStudy study;
+  study.num_scenes = flags.num_scenes;
+  const RunContext context = MakeContext(flags.common);
+  const auto log = OpenTrials(
+      flags,
+      "version " LOWLAP_VERSION "\ntrust, scenes " +
+          std::to_string(study.num_scenes) + " from " +
+          std::to_string(flags.common.seed) + "\n",
+      [&](const std::string& record) { return AddJsonLine(record, &study); });
+  if (!log) return tl::unexpected<Error>(log.error());
+  TellTrials(study.trials.size(), context);
+  LOWLAP_RETURN_IF_ERROR(RunTrustStudy(
+      context,
+      [&](const TrustKey& key, const TrustTrial& trial) {
+        return log->Append(ToJsonLine(key, trial));
+      },
+      &study));
+  LOWLAP_ASSIGN_OR_RETURN(const auto files, TrustFiles(study));
+  LOWLAP_RETURN_IF_ERROR(WriteTextFiles(files, flags.output));
+  std::printf("%s\nwritten to %s: summary.txt cameras.csv firm_share.svg\n",
+              SummaryText(study).c_str(), flags.output.c_str());
+  return 0;
+}
+
 Result<int> StudyAndWrite(const Flags& flags) {
+  if (flags.trust) return StudyTrust(flags);
   LOWLAP_ASSIGN_OR_RETURN(auto study, PlanRobustnessStudy(flags.options));
   LOWLAP_RETURN_IF_ERROR(Complete(flags, MakeContext(flags.common), &study));
   LOWLAP_RETURN_IF_ERROR(WriteRobustness(study, flags.output));
@@ -93,10 +136,11 @@ void AddRobustness(CLI::App* program, Action* action) {
             "Folder for tables and plots. A study that was stopped goes "
             "on from the trials there")
       .Required();
-  AddOption(command, "--scenario", o.scenarios,
-            "What gets worse, separated by commas; all if left out: " +
-                Joined(RobustnessScenarioNames(), ", "))
-      .SeparatedBy(',');
+  const Option scenario =
+      AddOption(command, "--scenario", o.scenarios,
+                "What gets worse, separated by commas; all if left out: " +
+                    Joined(RobustnessScenarioNames(), ", "))
+          .SeparatedBy(',');
   AddStrategiesFlag(command, &o.strategies);
   AddOption(command, "--seeds", o.num_seeds, "Simulations per value")
       .ShowDefault();
@@ -107,8 +151,22 @@ void AddRobustness(CLI::App* program, Action* action) {
             "Seconds of processor time that a strategy has for one "
             "problem; beyond, it is not asked for larger ones")
       .ShowDefault();
-  AddFlag(command, "--quick", o.quick,
-          "The room alone, few values, small graphs: seconds");
+  const Option quick =
+      AddFlag(command, "--quick", o.quick,
+              "The room alone, few values, small graphs: seconds");
+  const Option trust =
+      AddFlag(command, "--trust", flags->trust,
+              "Another study: scenes of all kinds, with everything wrong that "
+              "can be simulated, are solved as solve does; counted are the "
+              "cameras graded firm or doubtful against their true errors, and "
+              "what is made of features that have nothing to do with each "
+              "other")
+          .Excludes(scenario)
+          .Excludes(quick);
+  AddOption(command, "--scenes", flags->num_scenes,
+            "Simulations of each of its three families")
+      .ShowDefault()
+      .Needs(trust);
   AddCommonFlags(command, &flags->common);
   RunWhenChosen(command, flags, StudyAndWrite, action);
 }

@@ -45,6 +45,16 @@ TEST(HangingViews, ThoseBeyondADoubtfulView) {
   }
 }
 
+TEST(HangingViews, AllIfNoThreeOfThemHoldEachOther) {
+  PoseSummary summary = Chain();
+  Doubt(2, &summary);
+  Doubt(5, &summary);
+  WarnOfHangingViews(&summary);
+  ASSERT_EQ(summary.reliability_warnings.size(), 3u);
+  EXPECT_THAT(summary.reliability_warnings[2].views,
+              ElementsAre(0, 1, 3, 4, 6));
+}
+
 TEST(HangingViews, NoneWhereOthersHold) {
   PoseSummary summary = Chain();
   summary.firm_evidence.edges.push_back({0, 2});

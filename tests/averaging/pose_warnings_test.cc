@@ -107,14 +107,16 @@ TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
           AllOf(HasSubstr("Doubtful: a.jpg, b.jpg: the scale ratios"),
                 HasSubstr("rejected were: a.jpg, b.jpg, c.jpg.")),
           // No less than it is, as cutting 28.999... off would say.
-          HasSubstr("Doubtful: e.jpg: only 29 % of what")));
+          AllOf(HasSubstr("Doubtful: e.jpg: most of what"),
+                HasSubstr(": 29 % fits."))));
 }
 
 TEST(PoseWarnings, CountWhatNothingChecks) {
   PoseSummary summary;
   summary.num_edges = 7;
   summary.unchecked = {{0, 1}, {1, 2}};
-  EXPECT_THAT(Warnings(summary), ElementsAre(HasSubstr(": 2 of 7.")));
+  EXPECT_THAT(Warnings(summary),
+              ElementsAre(AllOf(HasSubstr("Of the 7 "), HasSubstr("(2)."))));
 }
 
 TEST(PoseWarnings, ListWhatWasLeftOutByReason) {
@@ -132,6 +134,29 @@ TEST(PoseWarnings, ListWhatWasLeftOutByReason) {
           AllOf(HasSubstr("directions contradict"),
                 HasSubstr("(2): a.jpg - b.jpg, b.jpg - c.jpg.")),
           AllOf(HasSubstr("no cycle confirms"), HasSubstr("(1): b.jpg - e"))));
+}
+
+TEST(PoseWarnings, InShortThereIsOneForEveryCause) {
+  PoseSummary summary;
+  ReliabilityWarning lost;
+  lost.reason = WarningReason::kLostFeatures;
+  lost.views = {4};
+  ReliabilityWarning weak;
+  weak.reason = WarningReason::kWeakScale;
+  weak.views = {0, 1};
+  weak.ratios = {{0, 1, 2}};
+  summary.reliability_warnings = {lost, weak, lost};
+  summary.reliability_warnings[2].views = {2};
+  summary.outlier_edges = {{{0, 1}, OutlierReason::kDirection, 9},
+                           {{1, 2}, OutlierReason::kDirection, 7}};
+  EXPECT_THAT(
+      PoseWarningsByCause(summary, FiveViews()),
+      ElementsAre("Doubtful, since most of what was matched in them does not "
+                  "fit their places: c.jpg, e.jpg.",
+                  "Doubtful, since only weak scale ratios join them to the "
+                  "others: a.jpg, b.jpg.",
+                  "Relative poses left out because their directions contradict "
+                  "the solved centres (2)."));
 }
 
 }  // namespace

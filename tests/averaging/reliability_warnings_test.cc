@@ -192,6 +192,81 @@ TEST(ReliabilityWarnings, ViewsThatHangOnAnUntoldRelativePose) {
   }
 }
 
+// Either of two untold relative poses would hold the last view by a ratio.
+TEST(ReliabilityWarnings, WeakRatiosConfirmNoUntoldPose) {
+  for (const bool is_weak : {false, true}) {
+    SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+    for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
+      const ViewTriplet& v = ratio.views;
+      if (is_weak && (v.first == ViewId(7) || v.last == ViewId(7))) {
+        ratio.log10_nfa = -1;
+      }
+    }
+    auto rotations =
+        AverageSceneRotations(synthetic.scene, PoseOptions(), RunContext());
+    ASSERT_TRUE(rotations);
+    MatchVerdicts verdicts;
+    verdicts.untold = {{5, 7}, {6, 7}};
+    AddMatchVerdicts(verdicts, &*rotations);
+    const auto summary = SolveScenePoses(&synthetic.scene, *rotations,
+                                         PoseOptions(), RunContext());
+    ASSERT_TRUE(summary);
+    if (!is_weak) {
+      EXPECT_THAT(summary->reliability_warnings, IsEmpty());
+      continue;
+    }
+    ASSERT_EQ(summary->reliability_warnings.size(), 1u);
+    EXPECT_EQ(summary->reliability_warnings[0].reason,
+              WarningReason::kUntoldPoses);
+    EXPECT_THAT(summary->reliability_warnings[0].views, ElementsAre(7));
+  }
+}
+
+// Two views fit any relative pose; that there were to be more says that
+// something is wrong.
+TEST(ReliabilityWarnings, TwoViewsThatAreLeftOfMore) {
+  for (const int num_views : {2, 8}) {
+    SyntheticScene synthetic = SceneWithTrueRatios("chain");
+    Scene& scene = synthetic.scene;
+    for (auto it = scene.relative_poses.begin();
+         it != scene.relative_poses.end();) {
+      it = it->first == ViewPair{0, 1} ? std::next(it)
+                                       : scene.relative_poses.erase(it);
+    }
+    scene.scale_ratios.clear();
+    if (num_views == 2) scene = WithoutViews(scene, {2, 3, 4, 5, 6, 7});
+    const auto warnings = WarningsOf(scene);
+    if (num_views == 2) {
+      EXPECT_THAT(warnings, IsEmpty());
+      continue;
+    }
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].reason, WarningReason::kUnheld);
+    EXPECT_THAT(warnings[0].views, ElementsAre(0, 1));
+  }
+}
+
+// Nothing is left that holds even two views.
+TEST(ReliabilityWarnings, AllViewsIfNoRelativePoseIsTold) {
+  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  auto rotations =
+      AverageSceneRotations(synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(rotations);
+  MatchVerdicts verdicts;
+  for (const auto& entry : synthetic.scene.relative_poses) {
+    verdicts.untold.push_back(entry.first);
+  }
+  AddMatchVerdicts(verdicts, &*rotations);
+  const auto summary = SolveScenePoses(&synthetic.scene, *rotations,
+                                       PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->num_placed, 8);
+  ASSERT_EQ(summary->reliability_warnings.size(), 1u);
+  EXPECT_EQ(summary->reliability_warnings[0].reason,
+            WarningReason::kUntoldPoses);
+  EXPECT_EQ(summary->reliability_warnings[0].views.size(), 8u);
+}
+
 // Two groups that share camera 4 alone, and no ratio across it: what joined
 // them otherwise has been left out.
 TEST(ReliabilityWarnings, GroupsAtOneCameraWithoutARatioThatAgrees) {

@@ -91,7 +91,8 @@ TEST_F(BadInput, OutputFoldersThatCannotBe) {
           "ablate " + Room() + " --gt " + Truth(),
           "subsets " + Room() + " --drop 1 --gt " + Truth(),
           "run " + folder_.string() + " --focal 500",
-          std::string("robustness --quick --scenario noise")}) {
+          std::string("robustness --quick --scenario noise"),
+          std::string("robustness --trust --scenes 1")}) {
       const Outcome outcome = Lowlap(command + " -o " + Path(folder));
       EXPECT_EQ(outcome.exit_code, 1) << command;
       EXPECT_THAT(

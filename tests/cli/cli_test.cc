@@ -352,5 +352,20 @@ TEST_F(Cli, AWrongFocalLengthIsFoundAndTheRelativePosesWithIt) {
   EXPECT_EQ(scene->intrinsics.at(0).model, CameraModel::kPinhole);
 }
 
+TEST_F(Cli, AStudyOfTrustIsWrittenAndNotRepeated) {
+  const std::string study =
+      "robustness --trust --scenes 1 --seed 3 -o " + Path("trust");
+  const Outcome first = Lowlap(study);
+  ASSERT_EQ(first.exit_code, 0) << first.output;
+  EXPECT_THAT(first.output, HasSubstr("wrong_directions"));
+  EXPECT_EQ(FilesIn("trust"), 4u);
+  const std::string cameras = ReadText(Path("trust/cameras.csv"));
+  EXPECT_THAT(cameras, HasSubstr("mixed,3,"));
+  const Outcome again = Lowlap(study);
+  EXPECT_THAT(again.output, HasSubstr("3 trials are in trials.jsonl already"));
+  EXPECT_EQ(ReadText(Path("trust/cameras.csv")), cameras);
+  EXPECT_NE(Lowlap(study + " --quick").exit_code, 0);
+}
+
 }  // namespace
 }  // namespace lowlap

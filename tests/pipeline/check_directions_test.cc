@@ -77,6 +77,19 @@ TEST(CheckDirections, SaysNothingOfAGraphWithoutMatches) {
   EXPECT_THAT(verdicts->untold, IsEmpty());
 }
 
+// One match a pair fits any direction.
+TEST(CheckDirections, SaysWhichPosesHaveTooFewMatchesEvenIfAllHave) {
+  SyntheticOptions options = WrongDirections(17);
+  Scene scene = Simulate(options)->scene;
+  for (auto& entry : scene.relative_poses) {
+    entry.second.point_inliers.resize(1);
+    entry.second.line_inliers.clear();
+  }
+  const auto verdicts = CheckDirections(&scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(verdicts);
+  EXPECT_EQ(verdicts->untold.size(), scene.relative_poses.size());
+}
+
 // Views 7 and 8 were 51 and 60 m off in a room of 3.4 m, and nothing said so.
 TEST(CheckDirections, SolvesTheSceneThatWasWrongInSilence) {
   const SyntheticScene synthetic = *Simulate(WrongDirections(17));

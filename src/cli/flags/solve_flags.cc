@@ -10,6 +10,7 @@
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
+#include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
@@ -18,17 +19,27 @@
 namespace lowlap::cli {
 namespace {
 
+int CountFirm(const PoseSummary& poses) {
+  int count = 0;
+  for (const auto& entry : GradeViews(poses)) {
+    count += entry.second.grade == ViewGrade::kFirm ? 1 : 0;
+  }
+  return count;
+}
+
 void PrintPoses(const PoseSummary& poses, const Scene& scene) {
-  std::printf("cameras placed: %d/%d\n", poses.num_placed, poses.num_views);
-  for (const std::string& warning : PoseWarnings(poses, scene)) {
+  std::printf("cameras placed: %d/%d, firm: %d\n", poses.num_placed,
+              poses.num_views, CountFirm(poses));
+  const std::vector<std::string> warnings = PoseWarningsByCause(poses, scene);
+  for (const std::string& warning : warnings) {
     // Lists of many names are for the report.
     constexpr std::size_t kLongest = 300;
-    std::printf(
-        "warning: %s\n",
-        warning.size() <= kLongest
-            ? warning.c_str()
-            : (warning.substr(0, kLongest) + "... (see report.html)").c_str());
+    std::printf("warning: %s\n",
+                warning.size() <= kLongest
+                    ? warning.c_str()
+                    : (warning.substr(0, kLongest) + "...").c_str());
   }
+  if (!warnings.empty()) std::printf("(details: report.html)\n");
 }
 
 void PrintCost(const std::vector<StageCost>& stages) {
@@ -184,8 +195,8 @@ void AddPrincipalPointFlag(CLI::App* command, double* stddev) {
 
 void AddStrictFlag(CLI::App* command, bool* strict) {
   AddFlag(command, "--strict", *strict,
-          "Exit code 2 if a camera is not placed, or its place is "
-          "doubtful; the results are written all the same");
+          "Exit code 2 if a camera is not graded firm; the results are "
+          "written all the same");
 }
 
 Option AddRefinementFlag(CLI::App* command, std::string* parts) {
@@ -312,7 +323,8 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
   if (!output.scene_file.empty()) {
     std::printf("and the scene to %s\n", output.scene_file.c_str());
   }
-  return flags.strict && !summary.solve->poses.IsFirm() ? kNotFirm : 0;
+  const PoseSummary& poses = summary.solve->poses;
+  return flags.strict && CountFirm(poses) < poses.num_views ? kNotFirm : 0;
 }
 
 }  // namespace lowlap::cli

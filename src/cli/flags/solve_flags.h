@@ -87,7 +87,7 @@ using Solver = std::function<Result<SolveResult>(Scene*, const SolveOptions&,
 
 /// Solves a measured scene, writes the output folder, prints what a person
 /// wants to know, and returns the exit code: with `strict` 2 if a camera is
-/// doubtful or not placed. `input` is what the scene came
+/// not firm. `input` is what the scene came
 /// from, for messages.
 Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
                           RunSummary summary, StageLog* stages,

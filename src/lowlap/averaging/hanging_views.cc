@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -19,28 +20,26 @@ void WarnOfHangingViews(PoseSummary* summary) {
                                 }),
                  warnings.end());
   std::set<ViewId> doubtful;
-  for (const ReliabilityWarning& warning : warnings) {
-    doubtful.insert(warning.views.begin(), warning.views.end());
-  }
-  for (const ContestedLink& link : summary->contested) {
-    doubtful.insert(link.views.begin(), link.views.end());
-  }
-  for (const Contest& contest : summary->contests) {
-    doubtful.insert(contest.views.begin(), contest.views.end());
+  for (const ViewDoubt& doubt : ViewDoubts(*summary)) {
+    doubtful.insert(doubt.views.begin(), doubt.views.end());
   }
   if (doubtful.empty() || summary->components.empty()) return;
   const ViewGraph graph = ViewGraph(summary->firm_evidence.edges)
                               .WithoutViews({doubtful.begin(), doubtful.end()});
   const RigidityReport report =
       AnalyzeRigidity(graph, summary->firm_evidence.ratios);
+  const std::vector<ViewId>& placed = summary->components.front();
   std::set<ViewId> firm;
   if (!report.groups.empty()) {
     const std::vector<ViewId>& largest = report.groups.front().views;
-    firm.insert(largest.begin(), largest.end());
+    // Two views hold each other whatever is wrong.
+    if (largest.size() > 2 || placed.size() <= 2) {
+      firm.insert(largest.begin(), largest.end());
+    }
   }
   ReliabilityWarning hanging;
   hanging.reason = WarningReason::kDoubtfulNeighbors;
-  for (const ViewId view : summary->components.front()) {
+  for (const ViewId view : placed) {
     if (doubtful.count(view) + firm.count(view) == 0) {
       hanging.views.push_back(view);
     }

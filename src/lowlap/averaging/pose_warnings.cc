@@ -1,5 +1,7 @@
 #include "lowlap/averaging/internal/pose_warnings.h"
 
+#include <map>
+#include <set>
 #include <utility>
 
 #include "lowlap/core/internal/format.h"
@@ -37,34 +39,26 @@ class Writer {
     return list;
   }
 
-  std::string Why(const ReliabilityWarning& doubt) const {
+  // What the cause does not say.
+  std::string Details(const ReliabilityWarning& doubt) const {
     switch (doubt.reason) {
       case WarningReason::kContradictedPoses:
-        return "more of the evidence of its relative poses contradicts its "
-               "place than agrees with it; they contradict: " +
-               Pairs(doubt.against);
+        return "; they contradict: " + Pairs(doubt.against);
       case WarningReason::kWeakScale:
-        return "only weak scale ratios join them to the others: " +
-               Triplets(doubt.ratios);
+        return ": " + Triplets(doubt.ratios);
       case WarningReason::kContradictedRatios:
-        return "the scale ratios that join them to the others disagree; "
-               "rejected were: " +
-               Triplets(doubt.ratios);
+        return "; rejected were: " + Triplets(doubt.ratios);
       case WarningReason::kUntoldPoses:
-        return "they hang on relative poses of too few matches to tell whether "
-               "they are right, which no other confirms: " +
-               Pairs(doubt.untold);
+        return ": " + Pairs(doubt.untold);
       case WarningReason::kUnheld:
-        return "nothing that agrees with their places holds them" +
-               (doubt.against.empty()
-                    ? std::string()
-                    : "; relative poses that contradict these were kept: " +
-                          Pairs(doubt.against));
+        return doubt.against.empty()
+                   ? std::string()
+                   : "; relative poses that contradict these were kept: " +
+                         Pairs(doubt.against);
       case WarningReason::kDoubtfulNeighbors:
-        return "they hang on views that are doubtful";
+        return "";
       case WarningReason::kLostFeatures:
-        return "only " + Format("%.0f", 100 * doubt.share) +
-               " % of what was matched in it fits its place";
+        return ": " + Format("%.0f", 100 * doubt.share) + " % fits";
     }
     return "";
   }
@@ -79,6 +73,28 @@ class Writer {
   const Scene& scene_;
 };
 
+std::string CauseOf(WarningReason reason) {
+  switch (reason) {
+    case WarningReason::kContradictedPoses:
+      return "more of the evidence of their relative poses contradicts their "
+             "places than agrees with them";
+    case WarningReason::kWeakScale:
+      return "only weak scale ratios join them to the others";
+    case WarningReason::kContradictedRatios:
+      return "the scale ratios that join them to the others disagree";
+    case WarningReason::kUntoldPoses:
+      return "they hang on relative poses of too few matches to tell whether "
+             "they are right, which no other confirms";
+    case WarningReason::kUnheld:
+      return "nothing that agrees with their places holds them";
+    case WarningReason::kDoubtfulNeighbors:
+      return "they hang on views that are doubtful";
+    case WarningReason::kLostFeatures:
+      return "most of what was matched in them does not fit their places";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
@@ -86,11 +102,11 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
   const Writer writer(scene);
   std::vector<PoseWarning> warnings;
   if (!summary.unplaced.empty()) {
-    warnings.push_back(
-        {"Not placed, since no reliable relative pose and scale joins them to "
-         "the others: " +
-             writer.Names(summary.unplaced) + ".",
-         summary.unplaced});
+    const std::string cause =
+        "Not placed, since no reliable relative pose and scale joins them to "
+        "the others";
+    warnings.push_back({cause + ": " + writer.Names(summary.unplaced) + ".",
+                        summary.unplaced, cause});
   }
   for (const ContestedLink& link : summary.contested) {
     warnings.push_back(
@@ -98,7 +114,9 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
              " places " + writer.Names(link.views) +
              ", and it is contradicted by " +
              writer.Pairs(link.contradictions) + ", which have less evidence.",
-         link.views});
+         link.views,
+         "Doubtful, since one relative pose alone places them, and others "
+         "contradict it"});
   }
   for (const Contest& contest : summary.contests) {
     warnings.push_back({"Doubtful: " + writer.Names(contest.views) + ": only " +
@@ -106,7 +124,9 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
                             " join them to the others, and are contradicted, "
                             "with hardly less evidence, by " +
                             writer.Pairs(contest.contradictions) + ".",
-                        contest.views});
+                        contest.views,
+                        "Doubtful, since what joins them to the others is "
+                        "contradicted with hardly less evidence"});
   }
   for (const LoopClosing& loop : summary.loops) {
     warnings.push_back(
@@ -120,57 +140,49 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
                         writer.Pairs({*loop.left_out}) + ", was left out: "
                   : std::string("all are used: ")) +
              writer.Pairs(loop.edges) + ".",
-         {}});
-  }
-  if (!summary.weak_ratios.empty()) {
-    warnings.push_back(
-        {"Doubtful: scale ratios in use that chance explains as well, since "
-         "nothing else places one of their views: " +
-             writer.Triplets(summary.weak_ratios) + ".",
-         {}});
+         {},
+         "Doubtful: relative poses whose loops do not close, and nothing tells "
+         "which are wrong (" +
+             std::to_string(summary.loops.size()) + ")"});
   }
   for (const ReliabilityWarning& doubt : summary.reliability_warnings) {
+    const std::string cause = CauseOf(doubt.reason);
     warnings.push_back({"Doubtful: " + writer.Names(doubt.views) + ": " +
-                            writer.Why(doubt) + ".",
-                        doubt.views});
+                            cause + writer.Details(doubt) + ".",
+                        doubt.views, "Doubtful, since " + cause});
   }
-  if (!summary.unchecked.empty()) {
+  const auto add = [&](const std::string& what, std::size_t count,
+                       const std::string& names) {
+    if (count == 0) return;
+    const std::string cause = what + " (" + std::to_string(count) + ")";
     warnings.push_back(
-        {"Relative poses in use that lie on no cycle, so that no "
-         "other one can confirm them: " +
-             std::to_string(summary.unchecked.size()) + " of " +
-             std::to_string(summary.num_edges) + ".",
-         {}});
+        {cause + (names.empty() ? "" : ": " + names) + ".", {}, cause});
+  };
+  add("Doubtful: scale ratios in use that chance explains as well, since "
+      "nothing else places one of their views",
+      summary.weak_ratios.size(), writer.Triplets(summary.weak_ratios));
+  add("Of the " + std::to_string(summary.num_edges) +
+          " relative poses in use, those that lie on no cycle, so that no "
+          "other one can confirm them",
+      summary.unchecked.size(), "");
+  add("Relative poses in use though their directions contradict the solved "
+      "centres, since views would be lost without them",
+      summary.kept_outliers.size(),
+      writer.Pairs(PairsOf(summary.kept_outliers)));
+  std::vector<ViewPair> replaced;
+  for (const ReplacedDirection& edge : summary.matches.replaced) {
+    replaced.push_back(edge.views);
   }
-  if (!summary.kept_outliers.empty()) {
-    warnings.push_back(
-        {"Relative poses in use though their directions contradict the solved "
-         "centres, since views would be lost without them (" +
-             std::to_string(summary.kept_outliers.size()) +
-             "): " + writer.Pairs(PairsOf(summary.kept_outliers)) + ".",
-         {}});
-  }
-  if (!summary.matches.replaced.empty()) {
-    std::vector<ViewPair> pairs;
-    for (const ReplacedDirection& replaced : summary.matches.replaced) {
-      pairs.push_back(replaced.views);
-    }
-    warnings.push_back(
-        {"Relative poses whose own matches contradict their directions and "
-         "bear out others, which took their place (" +
-             std::to_string(pairs.size()) + "): " + writer.Pairs(pairs) + ".",
-         {}});
-  }
+  add("Relative poses whose own matches contradict their directions and bear "
+      "out others, which took their place",
+      replaced.size(), writer.Pairs(replaced));
   const auto left_out = [&](OutlierReason reason, const std::string& why) {
     std::vector<ViewPair> pairs;
     for (const OutlierEdge& edge : summary.outlier_edges) {
       if (edge.reason == reason) pairs.push_back(edge.views);
     }
-    if (pairs.empty()) return;
-    warnings.push_back({"Relative poses left out because " + why + " (" +
-                            std::to_string(pairs.size()) +
-                            "): " + writer.Pairs(pairs) + ".",
-                        {}});
+    add("Relative poses left out because " + why, pairs.size(),
+        writer.Pairs(pairs));
   };
   left_out(OutlierReason::kRotation, "their rotations contradict the others");
   left_out(OutlierReason::kDirection,
@@ -187,6 +199,28 @@ std::vector<std::string> PoseWarnings(const PoseSummary& summary,
   std::vector<std::string> texts;
   for (PoseWarning& warning : PoseWarningsByView(summary, scene)) {
     texts.push_back(std::move(warning.text));
+  }
+  return texts;
+}
+
+std::vector<std::string> PoseWarningsByCause(const PoseSummary& summary,
+                                             const Scene& scene) {
+  std::vector<std::string> causes;  // in the order of their first warning
+  std::map<std::string, std::set<ViewId>> views;
+  for (const PoseWarning& warning : PoseWarningsByView(summary, scene)) {
+    const bool is_new = views.count(warning.cause) == 0;
+    if (is_new) causes.push_back(warning.cause);
+    views[warning.cause].insert(warning.views.begin(), warning.views.end());
+  }
+  const Writer writer(scene);
+  std::vector<std::string> texts;
+  for (const std::string& cause : causes) {
+    const std::set<ViewId>& named = views.at(cause);
+    texts.push_back(cause +
+                    (named.empty()
+                         ? ""
+                         : ": " + writer.Names({named.begin(), named.end()})) +
+                    ".");
   }
   return texts;
 }

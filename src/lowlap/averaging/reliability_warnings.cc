@@ -90,13 +90,27 @@ class Agreement {
       all.push_back(ratio.views);
       if (!IsWeak(ratio, {})) strong.push_back(ratio.views);
     }
-    const ViewGraph told = Graph(Unconfirmed());
+    ReliabilityWarning untold;
+    untold.reason = WarningReason::kUntoldPoses;
+    untold.untold = Unconfirmed(strong);
+    const ViewGraph told = Graph(untold.untold);
     *evidence = {told.pairs(), strong, {}};
     for (const ScaleRatio& ratio : rejected_ratios_) {
       evidence->rejected_ratios.push_back(ratio.views);
     }
     const RigidityReport groups = AnalyzeRigidity(told, strong);
-    if (groups.groups.empty()) return warnings;
+    if (groups.groups.empty()) {
+      untold.views.assign(placed_.begin(), placed_.end());
+      if (!untold.untold.empty()) warnings.push_back(std::move(untold));
+      return warnings;
+    }
+    // Two views hold each other whatever is wrong: of more, no third bears them
+    // out.
+    if (placed_.size() == 2 && scene_.views.size() > 2) {
+      warnings.push_back(Unheld({}));
+      warnings.back().views.assign(placed_.begin(), placed_.end());
+      return warnings;
+    }
     const RigidGroup& firm = groups.groups.front();
     std::vector<ViewId> held;
     // By what sets fewer things aside, one after the other.
@@ -112,9 +126,7 @@ class Agreement {
     if (firm.views.size() > 2) held = firm.views;
     if (firm.views.size() < placed_.size()) {
       const RigidityReport by_strong = AnalyzeRigidity(Graph({}), strong);
-      ReliabilityWarning untold, weak;
-      untold.reason = WarningReason::kUntoldPoses;
-      untold.untold = Unconfirmed();
+      ReliabilityWarning weak;
       warn(GroupOf(firm.edges.front(), by_strong), std::move(untold));
       weak.reason = WarningReason::kWeakScale;
       weak.ratios = WeakRatios(by_strong);
@@ -179,19 +191,16 @@ class Agreement {
   }
 
   // The untold relative poses without which their views would not hold each
-  // other. What holds without any of them holds without one: most need no
+  // other by the strong ratios: a weak ratio rests on the poses that it would
+  // confirm. What holds without any of them holds without one: most need no
   // analysis of their own.
-  std::vector<ViewPair> Unconfirmed() const {
-    RatioTriplets ratios;
-    for (const ScaleRatio& ratio : agreeing_ratios_) {
-      ratios.push_back(ratio.views);
-    }
+  std::vector<ViewPair> Unconfirmed(const RatioTriplets& strong) const {
     std::vector<ViewPair> unconfirmed;
     if (untold_.empty()) return unconfirmed;
-    const RigidityReport told = AnalyzeRigidity(Graph(untold_), ratios);
+    const RigidityReport told = AnalyzeRigidity(Graph(untold_), strong);
     for (const ViewPair& views : untold_) {
       if (!HoldsBoth(told, views) &&
-          !HoldsBoth(AnalyzeRigidity(Graph({views}), ratios), views)) {
+          !HoldsBoth(AnalyzeRigidity(Graph({views}), strong), views)) {
         unconfirmed.push_back(views);
       }
     }
@@ -346,26 +355,6 @@ void CountFeatures(const Scene& scene, const Tracks& tracks,
 }
 
 }  // namespace
-
-const char* WarningReasonName(WarningReason reason) {
-  switch (reason) {
-    case WarningReason::kContradictedPoses:
-      return "contradicted_poses";
-    case WarningReason::kWeakScale:
-      return "weak_scale";
-    case WarningReason::kContradictedRatios:
-      return "contradicted_ratios";
-    case WarningReason::kUntoldPoses:
-      return "untold_poses";
-    case WarningReason::kUnheld:
-      return "unheld";
-    case WarningReason::kDoubtfulNeighbors:
-      return "doubtful_neighbors";
-    case WarningReason::kLostFeatures:
-      return "lost_features";
-  }
-  return "";
-}
 
 std::vector<ReliabilityWarning> FindReliabilityWarnings(
     const Scene& scene, const TranslationProblem& problem,

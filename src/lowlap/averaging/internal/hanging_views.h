@@ -6,7 +6,9 @@ namespace lowlap {
 
 /// Doubt spreads: adds the warning kDoubtfulNeighbors for the placed views that
 /// the firm evidence does not hold together with the largest set once the views
-/// of all other warnings are gone, in place of an earlier such warning.
+/// of all other warnings are gone, in place of an earlier such warning. Two
+/// views are no such set if more are placed: they hold each other whatever is
+/// wrong.
 void WarnOfHangingViews(PoseSummary* summary);
 
 }  // namespace lowlap

@@ -20,9 +20,16 @@ std::vector<std::string> PoseWarnings(const PoseSummary& summary,
 struct PoseWarning {
   std::string text;
   std::vector<ViewId> views;
+  /// What it shares with others of its kind: no names, no full stop.
+  std::string cause;
 };
 
 std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
                                             const Scene& scene);
+
+/// In short: one sentence for every cause, with the names of all views that it
+/// is about.
+std::vector<std::string> PoseWarningsByCause(const PoseSummary& summary,
+                                             const Scene& scene);
 
 }  // namespace lowlap

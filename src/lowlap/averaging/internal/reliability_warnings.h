@@ -31,7 +31,8 @@ struct ReliabilityOptions {
 ///   and agree with the solution fix their places (AnalyzeRigidity). The firm
 ///   ones are the largest set that is held without weak ratios (IsWeak), and
 ///   without relative poses of which their matches tell nothing (`matches`) and
-///   whose views would not hold each other without them; two views are none.
+///   whose views would not hold each other without them and weak ratios; two
+///   views are none if the scene has more.
 ///   Every other view hangs on what was set aside, or on other such views, and
 ///   is doubtful for it. A ratio agrees within `reach` deviations, or a tenth.
 /// - Ratios across one camera are contradicted if those rejected there, between

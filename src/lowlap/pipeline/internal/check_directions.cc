@@ -1,5 +1,6 @@
 #include "lowlap/pipeline/internal/check_directions.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <utility>
@@ -85,7 +86,12 @@ Result<MatchVerdicts> CheckDirections(Scene* scene, const PoseOptions& options,
         break;
     }
   }
-  if (verdicts.untold.size() == poses.size()) verdicts.untold.clear();
+  const bool has_points = std::any_of(
+      poses.begin(), poses.end(),
+      [](const RelativePose* pose) { return !pose->point_inliers.empty(); });
+  if (!has_points && verdicts.untold.size() == poses.size()) {
+    verdicts.untold.clear();
+  }
   return verdicts;
 }
 

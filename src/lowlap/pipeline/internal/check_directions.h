@@ -14,7 +14,7 @@ namespace lowlap {
 /// `options` call false are one. Poses with alternatives pass: what decides
 /// between these sees more than their matches. A pose of a view without an
 /// intrinsic or features is untold like one of too few matches; if all are,
-/// none is listed.
+/// and no points are matched at all, none is listed.
 ///
 /// Errors, with the scene unchanged: kCancelled.
 Result<MatchVerdicts> CheckDirections(Scene* scene, const PoseOptions& options,

@@ -48,7 +48,7 @@ function drawCameras(tab) {
   const columns = [
     ['photograph', view => view.name],
     ['state', view => !view.camera ? 'not placed'
-        : view.warnings.length > 0 ? 'doubtful' : 'placed'],
+        : view.warnings.length > 0 ? 'doubtful' : 'firm'],
     ['relative poses', view => countOf(view.pairs, pair => pair.used)],
     ['points', view => inModel(view.features.landmarks)],
     ['segments', view => inModel(view.features.lines)],

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/evaluation/pose_errors.h"
@@ -112,22 +113,14 @@ SubsetOutcome SolveSubset(const Scene& scene, const GroundTruth& truth,
 
 std::vector<std::string> DoubtCodes(const PoseSummary& summary) {
   std::vector<std::string> codes;
-  if (!summary.loops.empty()) codes.push_back("open_loop");
-  if (!summary.contested.empty()) codes.push_back("contested_link");
-  if (!summary.contests.empty()) codes.push_back("contest");
-  if (!summary.weak_ratios.empty()) codes.push_back("weak_ratio");
-  for (const WarningReason reason :
-       {WarningReason::kContradictedPoses, WarningReason::kWeakScale,
-        WarningReason::kContradictedRatios, WarningReason::kUntoldPoses,
-        WarningReason::kUnheld, WarningReason::kDoubtfulNeighbors,
-        WarningReason::kLostFeatures}) {
-    const bool present = std::any_of(summary.reliability_warnings.begin(),
-                                     summary.reliability_warnings.end(),
-                                     [&](const ReliabilityWarning& doubt) {
-                                       return doubt.reason == reason;
-                                     });
-    if (present) codes.push_back(WarningReasonName(reason));
-  }
+  const auto add = [&](const std::string& code) {
+    if (std::find(codes.begin(), codes.end(), code) == codes.end()) {
+      codes.push_back(code);
+    }
+  };
+  if (!summary.loops.empty()) add("open_loop");
+  if (!summary.weak_ratios.empty()) add("weak_ratio");
+  for (const ViewDoubt& doubt : ViewDoubts(summary)) add(doubt.reason);
   return codes;
 }
 

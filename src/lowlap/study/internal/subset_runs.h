@@ -32,9 +32,8 @@ struct SubsetOutcome {
   double seconds = 0;
 };
 
-/// What makes a solution doubtful, as words: "open_loop", "contested_link",
-/// "contest", "weak_ratio" and those of WarningReasonName; empty if it is not
-/// (PoseSummary::IsDoubtful).
+/// What makes a solution doubtful, as words: "open_loop", "weak_ratio" and the
+/// reasons of ViewDoubts; empty if it is not (PoseSummary::IsDoubtful).
 std::vector<std::string> DoubtCodes(const PoseSummary& summary);
 
 /// Every way to leave out `num_dropped` of the scene's views, in lexicographic

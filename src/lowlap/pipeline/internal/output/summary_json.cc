@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/core/internal/view_json.h"
 
 namespace lowlap {
@@ -94,6 +95,16 @@ Json OutliersJson(const std::vector<OutlierEdge>& edges) {
   return json;
 }
 
+Json GradesJson(const PoseSummary& summary) {
+  Json grades = Json::array();
+  for (const auto& [view, graded] : GradeViews(summary)) {
+    Json entry = {{"view", view}, {"grade", ViewGradeName(graded.grade)}};
+    if (!graded.reasons.empty()) entry["reasons"] = graded.reasons;
+    grades.push_back(std::move(entry));
+  }
+  return grades;
+}
+
 // What nothing confirms, or something contradicts.
 void AddDoubts(const PoseSummary& summary, Json* poses) {
   Json loops = Json::array(), contested = Json::array();
@@ -170,6 +181,7 @@ Json SolveJson(const SolveResult& solve) {
   poses["placed"] = solve.poses.num_placed;
   poses["unplaced"] = solve.poses.unplaced;
   poses["components"] = solve.poses.components;
+  poses["grades"] = GradesJson(solve.poses);
   poses["outlier_edges"] = OutliersJson(solve.poses.outlier_edges);
   poses["kept_outliers"] = OutliersJson(solve.poses.kept_outliers);
   poses["replaced_directions"] = Json::array();

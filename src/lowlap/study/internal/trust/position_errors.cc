@@ -1,0 +1,91 @@
+#include "lowlap/study/internal/trust/position_errors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace lowlap {
+namespace {
+
+double SizeOf(const GroundTruth& truth) {
+  double size = 0;
+  for (const auto& [view, pose] : truth) {
+    for (const auto& [other, of_other] : truth) {
+      size = std::max(size, (pose.center - of_other.center).norm());
+    }
+  }
+  return size;
+}
+
+struct AlignedErrors {
+  int num_near = -1;
+  double sum = 0;
+  double scale = 0;
+  std::vector<double> errors;
+
+  bool IsBetterThan(const AlignedErrors& other) const {
+    return num_near != other.num_near ? num_near > other.num_near
+                                      : sum < other.sum;
+  }
+};
+
+AlignedErrors ErrorsAt(const std::vector<Vec3>& turned,
+                       const std::vector<Vec3>& truth, double scale,
+                       const Vec3& translation, double wrong) {
+  AlignedErrors aligned;
+  aligned.num_near = 0;
+  aligned.scale = scale;
+  for (std::size_t n = 0; n < truth.size(); ++n) {
+    const double error = (scale * turned[n] + translation - truth[n]).norm();
+    aligned.errors.push_back(error);
+    aligned.num_near += error <= wrong ? 1 : 0;
+    aligned.sum += std::min(error, wrong);
+  }
+  return aligned;
+}
+
+}  // namespace
+
+PositionErrors RobustPositionErrors(const Scene& scene,
+                                    const GroundTruth& truth, double wrong) {
+  std::vector<ViewId> views;
+  std::vector<Vec3> solved, true_centers;
+  std::vector<Mat3> truth_from_solved;
+  for (const auto& [view, pose] : truth) {
+    const Pose* found = scene.FindPose(view);
+    if (found == nullptr) continue;
+    views.push_back(view);
+    solved.push_back(found->center);
+    true_centers.push_back(pose.center);
+    truth_from_solved.push_back(pose.rotation.transpose() * found->rotation);
+  }
+  const double size = SizeOf(truth);
+  AlignedErrors best;
+  for (const Mat3& rotation : truth_from_solved) {
+    std::vector<Vec3> turned;
+    for (const Vec3& center : solved) turned.push_back(rotation * center);
+    for (std::size_t i = 0; i < turned.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        const Vec3 step = turned[i] - turned[j];
+        const double scale =
+            step.dot(true_centers[i] - true_centers[j]) / step.squaredNorm();
+        if (!(scale > 0) || !std::isfinite(scale)) continue;
+        const Vec3 translation = (true_centers[i] + true_centers[j]) / 2 -
+                                 scale * (turned[i] + turned[j]) / 2;
+        AlignedErrors aligned =
+            ErrorsAt(turned, true_centers, scale, translation, wrong * size);
+        if (aligned.IsBetterThan(best)) best = std::move(aligned);
+      }
+    }
+  }
+  PositionErrors errors;
+  if (size > 0) errors.unit = best.scale / size;
+  for (std::size_t n = 0; n < views.size(); ++n) {
+    errors.error[views[n]] =
+        best.errors.empty() ? HUGE_VAL : best.errors[n] / size;
+  }
+  return errors;
+}
+
+}  // namespace lowlap

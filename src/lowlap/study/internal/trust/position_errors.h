@@ -1,0 +1,26 @@
+#pragma once
+
+#include <map>
+
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// Where solved cameras are, in shares of the size of the truth: the greatest
+/// distance of two of its cameras.
+struct PositionErrors {
+  std::map<ViewId, double> error;  // of the views with a solved pose
+  /// One unit of the solved world, in shares of the size; 0 if nothing aligns.
+  double unit = 0;
+};
+
+/// Errors after the similarity that brings most cameras within `wrong` of the
+/// truth and, of those, the one of least sum of errors (none counts for more
+/// than `wrong`): cameras that are far off have no part in it. The rotations
+/// tried are those of single cameras, scale and translation those of two. The
+/// errors are infinite if no two cameras have different places.
+PositionErrors RobustPositionErrors(const Scene& scene,
+                                    const GroundTruth& truth, double wrong);
+
+}  // namespace lowlap

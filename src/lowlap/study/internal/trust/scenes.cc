@@ -1,0 +1,154 @@
+#include "lowlap/study/internal/trust/scenes.h"
+
+#include "lowlap/core/internal/propagate.h"
+#include "lowlap/core/internal/random.h"
+#include "lowlap/study/internal/trust/spoil.h"
+
+namespace lowlap {
+namespace {
+
+template <class Value>
+const Value& OneOf(const std::vector<Value>& values, Random* random) {
+  return values[random->Index(static_cast<std::uint32_t>(values.size()))];
+}
+
+TrustScene DrawWrongDirections(Random* random) {
+  TrustScene scene;
+  SyntheticOptions& o = scene.options;
+  using Kind = SyntheticKind;
+  o.kind = OneOf<Kind>({Kind::kRoom, Kind::kRoom, Kind::kCorridor, Kind::kRing},
+                       random);
+  o.pairs = OneOf<std::string>(
+      {"window:2", "window:2", "window:2", "chain", "cycle"}, random);
+  o.num_views = OneOf<int>({6, 7, 8, 9, 10, 11}, random);
+  o.points_per_wall = OneOf<int>({10, 20, 30}, random);
+  o.lines_per_wall = OneOf<int>({20, 50}, random);
+  o.noise_px = OneOf<double>({0.5, 1}, random);
+  o.wrong_direction_share = OneOf<double>({0.1, 0.2}, random);
+  return scene;
+}
+
+TrustScene DrawMixed(Random* random) {
+  TrustScene scene;
+  SyntheticOptions& o = scene.options;
+  using Kind = SyntheticKind;
+  o.kind = OneOf<Kind>(
+      {Kind::kRoom, Kind::kRoom, Kind::kRoom, Kind::kCorridor, Kind::kRing,
+       Kind::kPlanar, Kind::kCollinear, Kind::kTwins, Kind::kPureRotation},
+      random);
+  o.pairs = OneOf<std::string>({"window:2", "window:2", "window:2", "window:3",
+                                "chain", "cycle", "loop:2", "all"},
+                               random);
+  o.num_views = OneOf<int>({6, 7, 8, 9, 10, 11}, random);
+  o.points_per_wall = OneOf<int>({4, 10, 20, 30, 60}, random);
+  o.lines_per_wall = OneOf<int>({20, 50, 100}, random);
+  o.noise_px = OneOf<double>({0.5, 1}, random);
+  o.trifocal_point_share = OneOf<double>({1, 1, 0.3, 0}, random);
+  if (random->Uniform() < 0.3) {
+    o.wrong_point_share = o.wrong_line_share = 0.1;
+  }
+  scene.estimates_poses = random->Uniform() < 0.3;
+  if (random->Uniform() < 0.1) {
+    scene.focal_factor = OneOf<double>({0.9, 0.97, 1.03, 1.1}, random);
+    scene.estimates_poses = true;
+  }
+  if (scene.estimates_poses) return scene;
+  o.pose_noise_factor = OneOf<double>({0, 1}, random);
+  o.wrong_direction_share = OneOf<double>({0, 0.1, 0.2}, random);
+  if (random->Uniform() < 0.1) o.wrong_pose_share = 0.1;
+  scene.has_look_alikes = random->Uniform() < 0.15;
+  return scene;
+}
+
+TrustScene DrawNoise(Random* random) {
+  TrustScene scene;
+  SyntheticOptions& o = scene.options;
+  using Kind = SyntheticKind;
+  o.kind = OneOf<Kind>({Kind::kRoom, Kind::kCorridor, Kind::kRing}, random);
+  o.pairs = OneOf<std::string>({"window:2", "chain", "cycle"}, random);
+  o.num_views = OneOf<int>({4, 5, 6, 7}, random);
+  o.points_per_wall = OneOf<int>({4, 10, 20}, random);
+  o.lines_per_wall = OneOf<int>({20, 50, 100}, random);
+  o.noise_px = OneOf<double>({0.5, 1}, random);
+  scene.features = OneOf<TrustScene::Features>(
+      {TrustScene::Features::kShuffled, TrustScene::Features::kDrawn}, random);
+  scene.estimates_poses = random->Uniform() < 0.25;
+  return scene;
+}
+
+}  // namespace
+
+const char* TrustFamilyName(TrustFamily family) {
+  switch (family) {
+    case TrustFamily::kWrongDirections:
+      return "wrong_directions";
+    case TrustFamily::kMixed:
+      return "mixed";
+    case TrustFamily::kNoise:
+      return "noise";
+  }
+  return "";
+}
+
+const std::vector<TrustFamily>& AllTrustFamilies() {
+  static const std::vector<TrustFamily> families = {
+      TrustFamily::kWrongDirections, TrustFamily::kMixed, TrustFamily::kNoise};
+  return families;
+}
+
+std::vector<std::string> TrustScene::Labels() const {
+  std::vector<std::string> labels = {
+      std::string("world ") + SyntheticKindName(options.kind),
+      "pairs " + options.pairs};
+  const std::size_t num_faultless = labels.size();
+  const auto add_if = [&](bool is_so, const char* label) {
+    if (is_so) labels.emplace_back(label);
+  };
+  add_if(options.wrong_direction_share > 0, "wrong directions");
+  add_if(options.wrong_pose_share > 0, "wrong relative poses");
+  add_if(options.wrong_point_share > 0, "wrong matches");
+  add_if(has_look_alikes, "look-alikes");
+  add_if(focal_factor != 1, "wrong focal length");
+  add_if(features == Features::kShuffled, "shuffled features");
+  add_if(features == Features::kDrawn, "unrelated views");
+  add_if(labels.size() == num_faultless, "nothing wrong");
+  add_if(estimates_poses, "relative poses from matches");
+  return labels;
+}
+
+TrustScene DrawTrustScene(TrustFamily family, std::uint64_t seed) {
+  Random random(seed, static_cast<std::uint64_t>(family));
+  TrustScene scene = family == TrustFamily::kWrongDirections
+                         ? DrawWrongDirections(&random)
+                     : family == TrustFamily::kMixed ? DrawMixed(&random)
+                                                     : DrawNoise(&random);
+  scene.options.seed = seed;
+  return scene;
+}
+
+Result<SyntheticScene> MakeTrustScene(const TrustScene& drawn,
+                                      const RunContext& context) {
+  LOWLAP_ASSIGN_OR_RETURN(auto made, Simulate(drawn.options));
+  // A stream that nothing else draws from.
+  constexpr std::uint64_t kStream = 100;
+  Random random(drawn.options.seed, kStream);
+  if (drawn.has_look_alikes) {
+    constexpr int kPoints = 40;
+    AddLookAlikes(kPoints, drawn.options.noise_px, &random, &made.scene);
+  }
+  if (drawn.features == TrustScene::Features::kShuffled) {
+    ShuffleFeatures(&random, &made.scene);
+  } else if (drawn.features == TrustScene::Features::kDrawn) {
+    DrawFeatures(&random, &made.scene);
+  }
+  for (auto& entry : made.scene.intrinsics) {
+    entry.second.fx_px *= drawn.focal_factor;
+    entry.second.fy_px *= drawn.focal_factor;
+  }
+  if (drawn.estimates_poses) {
+    LOWLAP_RETURN_IF_ERROR(EstimatePosesAnew(context, &made.scene));
+  }
+  return made;
+}
+
+}  // namespace lowlap

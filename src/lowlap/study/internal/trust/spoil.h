@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+
+#include "lowlap/core/internal/random.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+// What the simulator does not make worse.
+
+/// Every match becomes one of features that have nothing to do with each other:
+/// the points of a view change places, and so do its segments.
+void ShuffleFeatures(Random* random, Scene* scene);
+
+/// Every match becomes one of features drawn anywhere in the image: views of
+/// unrelated places.
+void DrawFeatures(Random* random, Scene* scene);
+
+/// Two views of places that look alike: one relative pose, drawn, becomes any
+/// motion, with up to `num_points` matches of its own that bear it out to the
+/// noise, in place of those it had.
+void AddLookAlikes(int num_points, double noise_px, Random* random,
+                   Scene* scene);
+
+/// The relative poses estimated anew from their matches with the intrinsics
+/// that the scene has, as those of photographs are; tracks are built anew.
+/// Pairs whose matches give none are gone. Errors: those of
+/// EstimateRelativePoses.
+Status EstimatePosesAnew(const RunContext& context, Scene* scene);
+
+}  // namespace lowlap

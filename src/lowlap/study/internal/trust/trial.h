@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/core/ids.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/study/internal/trust/scenes.h"
+
+namespace lowlap {
+
+/// A camera that is further off than this share of the scene's size is wrong.
+inline constexpr double kWrongCamera = 0.2;
+/// One that is no further off than this is good.
+inline constexpr double kGoodCamera = 0.05;
+
+/// A camera of a solved scene against the truth.
+struct JudgedView {
+  ViewId view = kInvalidId;
+  GradedView graded;
+  /// In shares of the scene's size (RobustPositionErrors). Infinite: not
+  /// placed, or there is no truth.
+  double error = 0;
+  /// The standard deviation that the adjustment states for the centre, in its
+  /// worst direction and the unit of the error; 0 for the camera that it holds.
+  double deviation = 0;
+
+  bool IsFirm() const { return graded.grade == ViewGrade::kFirm; }
+  bool IsDoubtful() const { return graded.grade == ViewGrade::kDoubtful; }
+  bool IsPlaced() const { return graded.grade != ViewGrade::kUnplaced; }
+};
+
+/// What SolveScene made of one scene, with its default options.
+struct TrustTrial {
+  std::vector<std::string> labels;  // of the scene
+  /// Why there is no solution; else empty.
+  std::string failure;
+  int num_triplets = 0;
+  int num_meaningful = 0;  // of their ratios
+  /// Something is doubtful, whether cameras are named or not.
+  bool is_doubtful = false;
+  std::vector<JudgedView> views;  // all of the scene
+};
+
+/// Draws, makes, solves and judges the scene. Only cancelling is an error.
+Result<TrustTrial> RunTrustTrial(TrustFamily family, std::uint64_t seed,
+                                 const RunContext& context);
+
+}  // namespace lowlap
