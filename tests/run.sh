@@ -3,8 +3,11 @@
 # packages are installed first, as root or through sudo.
 #
 #   tests/run.sh           install, check the formatting, build, test
-#   tests/run.sh --tidy    clang-tidy on the sources as well (some minutes more)
+#   tests/run.sh --tidy    cppcheck and clang-tidy on the sources as well (some
+#                          minutes more)
 #   tests/run.sh --no-slow without the tests that work on photographs
+#   tests/run.sh --fuzz    instead: every reader under a fuzzer for a minute, in
+#                          build/fuzz, with ASan and UBSan
 #
 # Tests on photographs look for them in $LOWLAP_DATA, or in shared/data beside
 # the repository, and are skipped without them.
@@ -12,13 +15,15 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tidy=false
+fuzz=false
 ctest_options=()
 for option in "$@"; do
   case $option in
     --tidy) tidy=true ;;
+    --fuzz) fuzz=true ;;
     --no-slow) ctest_options+=(--label-exclude slow) ;;
     *)
-      sed -n '2,10s/^# \{0,1\}//p' tests/run.sh >&2
+      sed -n '2,13s/^# \{0,1\}//p' tests/run.sh >&2
       echo "unknown option $option" >&2
       exit 2
       ;;
@@ -31,11 +36,42 @@ jobs=$(nproc)
 # What ccache needs to know of precompiled headers.
 export CCACHE_SLOPPINESS=pch_defines,time_macros
 
+# configure FOLDER OPTION...
+configure() {
+  step "Configuring $1"
+  cmake -S . -B "$1" -G Ninja -DCMAKE_CXX_COMPILER_LAUNCHER=ccache \
+    -DCMAKE_EXPORT_COMPILE_COMMANDS=ON -DLOWLAP_WARNINGS_AS_ERRORS=ON "${@:2}"
+}
+
+# compile FOLDER TARGET...
+compile() {
+  step "Building $1 with $jobs jobs"
+  cmake --build "$1" --parallel "$jobs" --target "${@:2}"
+}
+
+if $fuzz; then
+  step "Packages"
+  bash tutorials/install_dependencies.sh ccache clang libclang-rt-14-dev \
+    libomp-dev llvm python3
+  # ccache does not know Clang's precompiled headers.
+  configure build/fuzz -DCMAKE_CXX_COMPILER=clang++ \
+    -DCMAKE_BUILD_TYPE=RelWithDebInfo \
+    -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -gline-tables-only" \
+    -DLOWLAP_PRECOMPILED_HEADERS=OFF -DLOWLAP_BUILD_TESTS=OFF \
+    -DLOWLAP_SANITIZE=address,undefined -DLOWLAP_BUILD_FUZZERS=ON
+  compile build/fuzz fuzzers lowlap_cli
+  step "Inputs to start from"
+  python3 tests/fuzz/make_corpus.py build/fuzz/src/cli/lowlap build/fuzz/corpus
+  step "Fuzzing with $jobs jobs"
+  FUZZ_JOBS=$jobs bash tests/fuzz/run_fuzzers.sh build/fuzz 60
+  exit
+fi
+
 step "Packages"
 tools=(ccache clang-format doxygen dpkg-dev
        pybind11-dev python3-dev python3-numpy python3-pip python3-setuptools
        python3-wheel groff-base colmap chromium)
-if $tidy; then tools+=(clang-tidy clang-tools); fi
+if $tidy; then tools+=(clang-tidy clang-tools cppcheck); fi
 bash tutorials/install_dependencies.sh "${tools[@]}"
 
 step "Formatting"
@@ -43,19 +79,17 @@ find src tests third_party_adapters tutorials \
   \( -name '*.cc' -o -name '*.h' \) -print0 |
   xargs -0 clang-format --dry-run -Werror
 
-step "Configuring"
-cmake -S . -B "$build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
-  -DCMAKE_CXX_COMPILER_LAUNCHER=ccache -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \
-  -DLOWLAP_WARNINGS_AS_ERRORS=ON -DLOWLAP_BUILD_EXAMPLES=ON \
+configure "$build" -DCMAKE_BUILD_TYPE=Release -DLOWLAP_BUILD_EXAMPLES=ON \
   -DLOWLAP_BUILD_PYTHON=ON -DPython_EXECUTABLE=/usr/bin/python3
-
-step "Building with $jobs jobs"
-cmake --build "$build" --parallel "$jobs"
-
-step "Reference pages"
-cmake --build "$build" --target docs
+compile "$build" all docs
 
 if $tidy; then
+  step "cppcheck"
+  cppcheck --std=c++17 --language=c++ --enable=warning,performance,portability \
+    --suppressions-list=tests/cppcheck_suppressions.txt --quiet \
+    --suppress=missingIncludeSystem --error-exitcode=1 -j "$jobs" \
+    -I src -I . '-DLOWLAP_VERSION="0"' src/lowlap src/cli third_party_adapters
+
   step "clang-tidy"
   # Clang cannot read GCC's precompiled headers, and is to see every source.
   cmake -S . -B build/tidy -G Ninja -DCMAKE_EXPORT_COMPILE_COMMANDS=ON \

@@ -5,6 +5,8 @@
 #include <csignal>
 #include <cstdio>
 
+#include "lowlap/core/internal/format.h"
+
 namespace lowlap::cli {
 namespace {
 
@@ -56,7 +58,7 @@ RunContext MakeContext(const CommonFlags& flags) {
   context.log = [flags](LogLevel level, const std::string& message) {
     if (flags.quiet || (level == LogLevel::kDebug && !flags.verbose)) return;
     const char* prefix = level == LogLevel::kWarning ? "warning: " : "";
-    std::fprintf(stderr, "%s%s\n", prefix, message.c_str());
+    std::fprintf(stderr, "%s%s\n", prefix, Printable(message).c_str());
   };
   const bool show = !flags.quiet && ::isatty(STDERR_FILENO) != 0;
   context.progress = [show](const std::string& stage, std::size_t done,

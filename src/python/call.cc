@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "lowlap/core/internal/format.h"
+
 namespace lowlap::python {
 namespace {
 
@@ -25,8 +27,10 @@ const char* LevelName(LogLevel level) {
 
 void Raise(const Error& error) {
   const py::object type = ErrorType();
+  // Python's strings hold no bytes that are not UTF-8.
   const py::object value =
-      type(ErrorCodeName(error.code), error.message, error.file, error.place);
+      type(ErrorCodeName(error.code), Printable(error.message),
+           Printable(error.file), Printable(error.place));
   PyErr_SetObject(type.ptr(), value.ptr());
   throw py::error_already_set();
 }

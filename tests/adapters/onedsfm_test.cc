@@ -246,6 +246,8 @@ TEST_F(OneDSfmFolder, MalformedGeometriesAreErrorsWithALine) {
   EXPECT_NE(error.message.find("no rotation"), std::string::npos);
   error = FailureWith("EGs.txt", "1 2 1 0 0 0 1 0 0 0 1 0 0 0\n");
   EXPECT_NE(error.message.find("no length"), std::string::npos);
+  error = FailureWith("EGs.txt", "1 2 1 0 0 0 1 0 0 0 1 1e200 0 0\n");
+  EXPECT_NE(error.message.find("no length"), std::string::npos);
   error = FailureWith("EGs.txt", "2 2 1 0 0 0 1 0 0 0 1 1 0 0\n");
   EXPECT_NE(error.message.find("itself"), std::string::npos);
   error = FailureWith("EGs.txt", "1 2 1 0 0 0 1 0 0 0 1 1 0 nan\n");
@@ -261,8 +263,19 @@ TEST_F(OneDSfmFolder, OtherMalformedFilesAreErrorsWithAPlace) {
   EXPECT_EQ(error.place, "line 2");
   error = FailureWith("list.txt", "a.jpg\nb.jpg\n");
   EXPECT_EQ(error.code, ErrorCode::kInvalidScene);
+  error = FailureWith("list.txt", "a.jpg\nb\xFF.jpg\n");
+  EXPECT_EQ(error.place, "line 2");
+  EXPECT_NE(error.message.find("'b\\xFF.jpg' is not UTF-8"), std::string::npos);
   error = FailureWith("coords.txt", "#index = 0, keys = 2\n");
   EXPECT_EQ(error.place, "line 1");
+  for (const char* wrong : {"name = \xFF, keys = 0, px = 4, py = 3",
+                            "name = a, keys = 0, px = -4, py = 3",
+                            "name = a, keys = 0, px = 4, py = 1e10"}) {
+    error = FailureWith("coords.txt",
+                        std::string("#index = 0, ") + wrong + ", focal = 5\n");
+    EXPECT_EQ(error.code, ErrorCode::kParse) << wrong;
+    EXPECT_EQ(error.place, "line 1") << wrong;
+  }
   error = FailureWith("coords.txt",
                       "#index = 0, name = a, keys = 2, px = 4, py = 3, focal = "
                       "5\n0 1 1 0 0 0 0 0\n");

@@ -19,5 +19,11 @@ TEST(Escaped, ShowsWhatCannotBeShown) {
   EXPECT_EQ(Escaped("K\xff\n.txt"), "K\\xFF\\x0A.txt");
 }
 
+TEST(Printable, LeavesWhatATerminalShows) {
+  EXPECT_EQ(Printable("caf\xC3\xA9\n\x1B[2J\x7F"),
+            "caf\xC3\xA9\n\\x1B[2J\\x7F");
+  EXPECT_EQ(Printable("caf\xC3\xA9 \xFF"), "caf\\xC3\\xA9 \\xFF");
+}
+
 }  // namespace
 }  // namespace lowlap

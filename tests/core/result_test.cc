@@ -19,6 +19,12 @@ TEST(Error, ToStringLeavesOutEmptyParts) {
   EXPECT_EQ(error.ToString(), "$.views: message");
 }
 
+// Messages quote what stands in a file.
+TEST(Error, ToStringDoesNotUpsetATerminal) {
+  const Error error{ErrorCode::kParse, "'\x1B[2J\xFF'", "a\r.json", {}};
+  EXPECT_EQ(error.ToString(), "a\\x0D.json: '\\x1B[2J\\xFF'");
+}
+
 TEST(Error, CodesHaveNamesOfTheirOwn) {
   std::set<std::string> names;
   const int last = static_cast<int>(ErrorCode::kCancelled);

@@ -62,7 +62,8 @@ TEST_F(ImageTest, ConvertsColourToGrey) {
 
 TEST_F(ImageTest, SizeAgreesWithTheDecodedImageInEveryFormat) {
   const cv::Mat mat(17, 300, CV_8UC3, cv::Scalar(10, 20, 30));
-  for (const std::string name : {"a.png", "a.jpg", "a.bmp", "a.tif"}) {
+  for (const std::string name :
+       {"a.png", "a.jpg", "a.bmp", "a.tif", "a.webp", "a.ppm"}) {
     SCOPED_TRACE(name);
     cv::imwrite(Path(name), mat);
     const Result<ImageSize> size = ReadImageSize(Path(name));
@@ -83,7 +84,9 @@ TEST_F(ImageTest, NamesAMissingFile) {
 TEST_F(ImageTest, NamesAFileThatIsNoImage) {
   for (const std::string& bytes :
        {std::string(), std::string("K.txt 1 0 0"), std::string("\xff\xd8"),
-        std::string("\xff\xd8\xff\xe0"), std::string("\x89PNG\r\n\x1a\n")}) {
+        std::string("\xff\xd8\xff\xe0"), std::string("\x89PNG\r\n\x1a\n"),
+        std::string("RIFF"), std::string("II*\0\xff\xff\xff\xff", 8),
+        std::string("P5 7"), std::string("BM")}) {
     const std::string path = WriteBytes("bad.jpg", bytes);
     EXPECT_THAT(ReadGrayImage(path), IsError(ErrorCode::kParse, "bad.jpg"));
     EXPECT_THAT(ReadImageSize(path), IsError(ErrorCode::kParse, "bad.jpg"));
@@ -131,7 +134,16 @@ TEST_F(ImageTest, AnImageTooLargeIsRefusedBeforeItIsDecoded) {
   std::string bmp("BM");
   bmp += std::string(16, '\0') + std::string("\x00\x7d\x00\x00", 4) +
          std::string("\x00\x7d\x00\x00", 4) + std::string(28, '\0');
-  for (const std::string& bytes : {png, bmp}) {
+  std::string tiff("II*\0\x08\0\0\0\x02\0", 10);
+  for (const char tag : {'\0', '\1'}) {  // 256, 257: width, height
+    tiff += std::string(1, tag) + std::string("\x01\x04\0\x01\0\0\0", 7) +
+            std::string("\x00\x7d\x00\x00", 4);
+  }
+  const std::string webp = std::string("RIFF\x16\0\0\0WEBPVP8X\x0a\0\0\0", 20) +
+                           std::string(4, '\0') +
+                           std::string("\xff\x7c\0\xff\x7c\0", 6);
+  const std::string pgm = "P5 #32\n32000\t32000 255\n";
+  for (const std::string& bytes : {png, bmp, tiff, webp, pgm}) {
     const std::string path = WriteBytes("huge.png", bytes);
     EXPECT_THAT(ReadGrayImage(path),
                 IsError(ErrorCode::kUnsupported, "32000 x 32000"));

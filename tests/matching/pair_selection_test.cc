@@ -94,8 +94,8 @@ TEST(SelectViewPairsTest, ReadsAFile) {
 
 TEST(ParsePairsTest, IdsNamesQuotesCommentsAndOrder) {
   const auto pairs = ParsePairs(FourViews(),
-                                "# pairs to match\n"
-                                "\n"
+                                "# pairs to \"match\n"
+                                " \t\n"
                                 "  3 0 \r\n"
                                 "\"my photo.jpg\"\tb.jpg\n"
                                 "0 3\n"
@@ -132,6 +132,7 @@ TEST(ParsePairsTest, ErrorsNameTheLine) {
   EXPECT_THAT(parse("0 -3"), IsError(ErrorCode::kParse, "\"-3\""));
   EXPECT_THAT(parse("3 3"), IsError(ErrorCode::kParse, "itself"));
   EXPECT_THAT(parse("0 \"my photo.jpg"), IsError(ErrorCode::kParse, "quote"));
+  EXPECT_THAT(parse("\"\" 3"), IsError(ErrorCode::kParse, "no view"));
 }
 
 TEST(ParsePairsTest, AnAmbiguousNameIsAnError) {

@@ -1,5 +1,7 @@
 #include "lowlap/core/result.h"
 
+#include "lowlap/core/internal/format.h"
+
 namespace lowlap {
 
 const char* ErrorCodeName(ErrorCode code) {
@@ -31,7 +33,7 @@ std::string Error::ToString() const {
   for (const std::string* part : {&file, &place}) {
     if (!part->empty()) text += *part + ": ";
   }
-  return text + message;
+  return Printable(text + message);
 }
 
 }  // namespace lowlap

@@ -30,7 +30,7 @@ struct Error {
   std::string file;
   std::string place;
 
-  /// "file: place: message", without the empty parts.
+  /// "file: place: message" without the empty parts, as a terminal can show it.
   std::string ToString() const;
 };
 

@@ -17,6 +17,10 @@ Result<std::vector<ListedImage>> ParseList(std::string_view text,
     ListedImage image;
     const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
     image.name = std::string(line.substr(0, end));
+    if (!IsUtf8(image.name)) {
+      reader.Fail("the name '" + Escaped(image.name) + "' is not UTF-8");
+      return reader.error();
+    }
     if (end < line.size()) {
       const std::string_view focal = line.substr(line.find_last_of(" \t") + 1);
       TokenReader number(focal, file);

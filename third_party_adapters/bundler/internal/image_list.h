@@ -15,7 +15,8 @@ struct ListedImage {
   double focal_px = 0;  // 0: unknown
 };
 
-/// kParse, with file and line, for a focal length that is none.
+/// kParse, with file and line, for a focal length that is none, and for a name
+/// that is not UTF-8.
 Result<std::vector<ListedImage>> ParseList(std::string_view text,
                                            const std::string& file);
 

@@ -10,6 +10,7 @@
 
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/scene/validation.h"
 #include "third_party_adapters/bundler/internal/bundle.h"
 #include "third_party_adapters/bundler/internal/image_list.h"
 #include "third_party_adapters/onedsfm/internal/problem_files.h"
@@ -159,15 +160,21 @@ void AddRelativePoses(const Files& files, Problem* problem) {
           problem);
 }
 
-/// What the tracks match in the pairs that have a relative pose.
+/// What a track, sorted by view, matches in the pairs that have a relative
+/// pose. These are far fewer than all pairs of a long track.
 void AddMatches(const Track& track, Scene* scene) {
-  for (std::size_t a = 0; a < track.size(); ++a) {
-    for (std::size_t b = a + 1; b < track.size(); ++b) {
-      const auto found =
-          scene->relative_poses.find({track[a].view, track[b].view});
-      if (found == scene->relative_poses.end()) continue;
-      found->second.point_inliers.push_back(
-          {track[a].feature, track[b].feature});
+  const auto is_before = [](const auto& observation, ViewId view) {
+    return observation.view < view;
+  };
+  for (const auto& [view, feature] : track) {
+    for (auto pose = scene->relative_poses.lower_bound({view, ViewId(0)});
+         pose != scene->relative_poses.end() && pose->first.first == view;
+         ++pose) {
+      const ViewId second = pose->first.second;
+      const auto other =
+          std::lower_bound(track.begin(), track.end(), second, is_before);
+      if (other == track.end() || other->view != second) continue;
+      pose->second.point_inliers.push_back({feature, other->feature});
     }
   }
 }
@@ -237,6 +244,7 @@ Result<Problem> ReadProblem(const std::string& folder) {
   }
   AddNote(problem.scene.views.size() - problem.scene.intrinsics.size(),
           "views have no known focal length", &problem);
+  LOWLAP_RETURN_IF_ERROR(ValidateScene(problem.scene));
   return problem;
 }
 

@@ -42,11 +42,11 @@ struct Problem {
 };
 
 /// Errors, each with file and line: kNotFound without EGs.txt; kParse for text
-/// that is malformed or ends early, and for matrices that are no rotations (to
-/// 1e-3); kInvalidScene for images or keypoints that do not exist. Left out
-/// with a note: relative poses and track observations of images that are not
-/// used, relative poses listed again, tracks that see an image twice (in that
-/// image), tracks without coords.txt.
+/// that is malformed, not UTF-8, or ends early, and for matrices that are no
+/// rotations (to 1e-3); kInvalidScene for images or keypoints that do not
+/// exist. Left out with a note: relative poses and track observations of images
+/// that are not used, relative poses listed again, tracks that see an image
+/// twice (in that image), tracks without coords.txt.
 Result<Problem> ReadProblem(const std::string& folder);
 
 /// The reference cameras of gt_bundle.out by image index, in the frame and unit

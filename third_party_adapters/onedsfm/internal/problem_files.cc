@@ -1,11 +1,14 @@
 #include "third_party_adapters/onedsfm/internal/problem_files.h"
 
 #include <charconv>
+#include <cmath>
 
 #include "third_party_adapters/internal/number_text.h"
 
 namespace lowlap::onedsfm {
 namespace {
+
+constexpr double kMaxHalfSizePx = 1e9;  // twice it is an int
 
 // The value of `name = value` in a header of coords.txt, up to `end`; empty if
 // there is none.
@@ -44,7 +47,8 @@ Result<std::vector<RelativeGeometry>> ParseGeometries(std::string_view text,
                   " is paired with itself");
       break;
     }
-    if (!(geometry.direction.norm() > 0)) {
+    const double length = geometry.direction.norm();
+    if (!(length > 0) || !std::isfinite(length)) {
       reader.Fail("the direction of images " + std::to_string(geometry.i) +
                   " and " + std::to_string(geometry.j) + " has no length");
       break;
@@ -83,7 +87,9 @@ Result<std::map<ImageIndex, ImageKeys>> ParseCoords(std::string_view text,
         ParseField(FieldOf(line, "px = ", ","), &image.half_size_px.x()) &&
         ParseField(FieldOf(line, "py = ", ","), &image.half_size_px.y()) &&
         ParseField(FieldOf(line, "focal = ", ""), &image.focal_px) &&
-        image.half_size_px.allFinite() && std::isfinite(image.focal_px);
+        (image.half_size_px.array() >= 0).all() &&
+        (image.half_size_px.array() <= kMaxHalfSizePx).all() &&
+        std::isfinite(image.focal_px);
     if (!is_header) {
       reader.Fail(
           "'#index = I, name = N, keys = K, px = X, py = Y, focal = F' is "
@@ -92,6 +98,9 @@ Result<std::map<ImageIndex, ImageKeys>> ParseCoords(std::string_view text,
       break;
     }
     image.name = std::string(FieldOf(line, "name = ", ", keys = "));
+    if (!IsUtf8(image.name)) {
+      reader.Fail("the name '" + Escaped(image.name) + "' is not UTF-8");
+    }
     for (std::size_t k = 0; k < num_keys && reader.status(); ++k) {
       if (reader.Next<std::size_t>("a keypoint index") != k) {
         reader.Fail("keypoint " + std::to_string(k) + " of image " +

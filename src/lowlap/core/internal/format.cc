@@ -5,6 +5,23 @@
 #include <cstdio>
 
 namespace lowlap {
+namespace {
+
+template <class IsHidden>
+std::string WithCodes(const std::string& text, const IsHidden& is_hidden) {
+  std::string shown;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (is_hidden(byte)) {
+      shown += Format("\\x%02X", byte);
+    } else {
+      shown += c;
+    }
+  }
+  return shown;
+}
+
+}  // namespace
 
 std::string Format(const char* format, ...) {
   va_list arguments, again;
@@ -47,18 +64,14 @@ bool IsUtf8(const std::string& text) {
 }
 
 std::string Escaped(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte < 0x7F) {
-      escaped += c;
-    } else {
-      char code[8];
-      std::snprintf(code, sizeof(code), "\\x%02X", byte);
-      escaped += code;
-    }
-  }
-  return escaped;
+  return WithCodes(text, [](unsigned char c) { return c < 0x20 || c >= 0x7F; });
+}
+
+std::string Printable(const std::string& text) {
+  const bool is_utf8 = IsUtf8(text);
+  return WithCodes(text, [&](unsigned char c) {
+    return (c < 0x20 && c != '\n') || c == 0x7F || (c > 0x7F && !is_utf8);
+  });
 }
 
 std::string PairName(const ViewPair& views) {

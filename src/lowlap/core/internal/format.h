@@ -16,6 +16,9 @@ bool IsUtf8(const std::string& text);
 /// for messages about text that cannot be shown.
 std::string Escaped(const std::string& text);
 
+/// The same for a terminal: line ends stay, and UTF-8 does if all of it is.
+std::string Printable(const std::string& text);
+
 /// "2-5".
 std::string PairName(const ViewPair& views);
 

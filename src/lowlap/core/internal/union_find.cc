@@ -29,13 +29,13 @@ bool UnionFind::Union(std::size_t a, std::size_t b) {
 }
 
 std::vector<std::size_t> UnionFind::Labels() {
-  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  std::vector<std::size_t> label_of_root(parent_.size(), kNone);
+  constexpr std::size_t kUnlabeled = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> label_of_root(parent_.size(), kUnlabeled);
   std::vector<std::size_t> labels(parent_.size());
   std::size_t next = 0;
   for (std::size_t n = 0; n < parent_.size(); ++n) {
     std::size_t& label = label_of_root[Find(n)];
-    if (label == kNone) label = next++;
+    if (label == kUnlabeled) label = next++;
     labels[n] = label;
   }
   return labels;

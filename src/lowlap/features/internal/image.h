@@ -28,18 +28,19 @@ struct ImageSize {
 /// kilobytes can ask for gigabytes.
 inline constexpr double kMaxImagePixels = 3e8;
 
-/// Reads any image format of OpenCV, colour converted to grey. The pixels are
-/// as stored: an EXIF orientation is ignored, because intrinsics refer to the
-/// sensor. Errors: kNotFound, kParse (not an image, or a JPEG file that is cut
-/// off), kUnsupported (more than kMaxImagePixels), with the path.
+/// Reads a JPEG, PNG, TIFF, BMP, WebP, PBM, PGM or PPM file, colour converted
+/// to grey. The pixels are as stored: an EXIF orientation is ignored, because
+/// intrinsics refer to the sensor. Errors: kNotFound, kParse (not an image, or
+/// a JPEG file that is cut off), kUnsupported (more than kMaxImagePixels), with
+/// the path.
 Result<GrayImage> ReadGrayImage(const std::string& path);
 
 /// The same from a file's bytes; `path` is for messages only.
 Result<GrayImage> DecodeGrayImage(const std::string& bytes,
                                   const std::string& path);
 
-/// The size of an image as ReadGrayImage would return it; JPEG, PNG and BMP
-/// files are not decoded for it. Errors as there.
+/// The size of an image as ReadGrayImage would return it; the file is not
+/// decoded for it. Errors as there, as far as they show.
 Result<ImageSize> ReadImageSize(const std::string& path);
 
 /// The same from a file's bytes; `path` is for messages only.

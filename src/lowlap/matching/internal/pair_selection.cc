@@ -71,9 +71,10 @@ Result<std::vector<ViewPair>> ParsePairs(const Scene& scene,
       return MakeError(ErrorCode::kParse, message, file,
                        "line " + std::to_string(number));
     };
+    const std::size_t start = line.find_first_not_of(" \t\r\v\f");
+    if (start == std::string::npos || line[start] == '#') continue;
     const auto words = SplitWords(line);
     if (!words) return fail("a quote is not closed");
-    if (words->empty() || words->front().front() == '#') continue;
     if (words->size() != 2) {
       return fail("expected two views, found " + std::to_string(words->size()) +
                   " words");

@@ -8,7 +8,7 @@
 namespace lowlap {
 namespace {
 
-using Mat23 = Eigen::Matrix<double, 2, 3>;
+using EndsJacobian = Eigen::Matrix<double, 2, 3>;
 
 }  // namespace
 
@@ -49,7 +49,7 @@ bool LineReprojectionCost::Evaluate(const double* const* parameters,
     }
   }
   const SegmentRays& segment = moved ? *moved : segment_;
-  Mat23 by_normal;
+  EndsJacobian by_normal;
   for (int n = 0; n < 2; ++n) {
     Eigen::RowVector3d row;
     residuals[n] =
@@ -61,8 +61,8 @@ bool LineReprojectionCost::Evaluate(const double* const* parameters,
   if (jacobians[0] != nullptr) {
     JacobianMap<2, 4>(jacobians[0]) = by_normal * rotation.Jacobian(moment);
   }
-  const Mat23 by_moment = by_normal * matrix;
-  const Mat23 by_center = by_moment * CrossMatrix(direction);
+  const EndsJacobian by_moment = by_normal * matrix;
+  const EndsJacobian by_center = by_moment * CrossMatrix(direction);
   if (jacobians[1] != nullptr) {
     JacobianMap<2, 3>(jacobians[1]) = by_center;
   }

@@ -1,5 +1,7 @@
 #include "lowlap/adjustment/internal/rounds/linearised_problem.h"
 
+#include <ceres/crs_matrix.h>
+
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <map>
