@@ -65,15 +65,18 @@ RelativePose WithHypothesis(const RelativePose& pose,
 // have been found with the pose, and draw an alternative over to it: that says
 // nothing, and the alternative stays as it was.
 RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
-                     const TwoViewOptions& options) {
-  RelativePose improved = ImproveRelativePose(input, pose, options);
+                     const TwoViewOptions& options,
+                     std::vector<FeatureMatch>* lone_matches) {
+  RelativePose improved =
+      ImproveRelativePose(input, pose, options, lone_matches);
   const auto differs = [&](const RelativePose& other) {
     return !SamePose(other.Cam2FromCam1(), improved.Cam2FromCam1());
   };
   std::vector<AlternativeMotion> alternatives;
   for (const AlternativeMotion& other : pose.alternatives) {
     const RelativePose before = WithHypothesis(pose, other);
-    const RelativePose after = ImproveRelativePose(input, before, options);
+    const RelativePose after =
+        ImproveRelativePose(input, before, options, nullptr);
     if (differs(after)) {
       alternatives.push_back(MotionOf(after));
     } else if (differs(before)) {
@@ -100,7 +103,8 @@ void UseGuidedMatches(const ViewMeasurements& first,
                       const ViewMeasurements& second,
                       const PairOptions& options,
                       std::vector<FeatureMatch>* line_matches,
-                      TwoViewInput* input, RelativePose* pose) {
+                      TwoViewInput* input, RelativePose* pose,
+                      std::vector<FeatureMatch>* lone_matches) {
   const DetectedFeatures &d1 = *first.detected, &d2 = *second.detected;
   input->point_matches = pose->point_inliers;
   if (options.use_points &&
@@ -115,7 +119,7 @@ void UseGuidedMatches(const ViewMeasurements& first,
   *line_matches = GuidedLineMatches(first, second, pose->Cam2FromCam1(),
                                     *line_matches, options);
   if (options.use_lines) input->line_matches = *line_matches;
-  *pose = Improve(*input, *pose, options.two_view);
+  *pose = Improve(*input, *pose, options.two_view, lone_matches);
 }
 
 }  // namespace
@@ -179,7 +183,8 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
   }
   std::vector<FeatureMatch> line_matches = putative.lines;
   if (first.detected != nullptr && second.detected != nullptr) {
-    UseGuidedMatches(first, second, options, &line_matches, &input, &pose);
+    UseGuidedMatches(first, second, options, &line_matches, &input, &pose,
+                     &result->lone_matches);
   }
   pose.line_inliers =
       FilterLineMatches(line_matches, *input.features1, *input.features2,
@@ -191,6 +196,7 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
     return estimate;
   }
   estimate.pose = std::move(pose);
+  estimate.lone_matches = std::move(result->lone_matches);
   return estimate;
 }
 
@@ -224,11 +230,12 @@ PairEstimate TakePair(const ViewPair& views, const ViewMeasurements& first,
 
 RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,
                         const ViewMeasurements& second,
-                        const PairOptions& options) {
+                        const PairOptions& options,
+                        std::vector<FeatureMatch>* lone_matches) {
   TwoViewInput input = MakeInput(pose.views, first, second);
   if (options.use_points) input.point_matches = pose.point_inliers;
   if (options.use_lines) input.line_matches = pose.line_inliers;
-  RelativePose refined = Improve(input, pose, options.two_view);
+  RelativePose refined = Improve(input, pose, options.two_view, lone_matches);
   refined.line_inliers =
       FilterLineMatches(pose.line_inliers, first.features, second.features,
                         refined.Cam2FromCam1(), options.line_filter);

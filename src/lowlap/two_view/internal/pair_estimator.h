@@ -37,6 +37,8 @@ ViewMeasurements MeasureView(const ViewFeatures& features,
 struct PairEstimate {
   std::optional<RelativePose> pose;
   std::string reason;  // why there is none
+  /// Point inliers that hold the pose alone (TwoViewResult).
+  std::vector<FeatureMatch> lone_matches;
   /// No pose, since a rotation alone explains what the views see.
   bool no_parallax = false;
   /// Of the pose of least NFA, if any was meaningful.
@@ -66,9 +68,10 @@ PairEstimate TakePair(const ViewPair& views, const ViewMeasurements& first,
                       const PairOptions& options);
 
 /// The pose improved once more on its inliers, after features have moved; as it
-/// was, where that leads nowhere.
+/// was, where that leads nowhere. `lone_matches` are as in TwoViewResult.
 RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,
                         const ViewMeasurements& second,
-                        const PairOptions& options);
+                        const PairOptions& options,
+                        std::vector<FeatureMatch>* lone_matches = nullptr);
 
 }  // namespace lowlap

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -66,10 +67,27 @@ Status ValidateInput(const TwoViewInput& input) {
   return {};
 }
 
+// Those of `indices` that are points, in their order.
+std::vector<FeatureMatch> PointMatches(const TwoViewInput& input,
+                                       const ShuffledMatches& matches,
+                                       const std::vector<int>& indices) {
+  std::vector<int> inliers;
+  for (const int i : indices) {
+    if (matches.match_of_pair[i] != ShuffledMatches::kCrossing) {
+      inliers.push_back(matches.match_of_pair[i]);
+    }
+  }
+  std::sort(inliers.begin(), inliers.end());
+  std::vector<FeatureMatch> points;
+  for (const int m : inliers) points.push_back(input.point_matches[m]);
+  return points;
+}
+
 RelativePose ToRelativePose(const TwoViewInput& input,
                             const ShuffledMatches& matches,
                             const PoseSearch& search,
-                            const PoseCandidate& candidate) {
+                            const PoseCandidate& candidate,
+                            std::vector<FeatureMatch>* lone_matches) {
   const PoseRefinementOptions refinement = search.RefinementOptions(candidate);
   const std::vector<int> borne_out = BorneOutMatches(
       candidate.pose, matches.pairs, candidate.inliers, refinement);
@@ -77,15 +95,13 @@ RelativePose ToRelativePose(const TwoViewInput& input,
   pose.views = input.views;
   pose.rotation = candidate.pose.rotation;
   pose.direction = candidate.pose.translation;
-  std::vector<int> inliers;
-  for (const int i : borne_out) {
-    if (matches.match_of_pair[i] != ShuffledMatches::kCrossing) {
-      inliers.push_back(matches.match_of_pair[i]);
-    }
-  }
-  std::sort(inliers.begin(), inliers.end());
-  for (const int m : inliers) {
-    pose.point_inliers.push_back(input.point_matches[m]);
+  pose.point_inliers = PointMatches(input, matches, candidate.inliers);
+  if (lone_matches != nullptr) {
+    std::vector<int> lone;
+    std::set_difference(candidate.inliers.begin(), candidate.inliers.end(),
+                        borne_out.begin(), borne_out.end(),
+                        std::back_inserter(lone));
+    *lone_matches = PointMatches(input, matches, lone);
   }
   pose.log10_nfa = candidate.support.log10_nfa;
   pose.point_threshold_px = candidate.support.threshold;
@@ -219,17 +235,19 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   if (!translation.IsSeen()) {
     result.geometry = TwoViewGeometry::kRotationOnly;
   }
-  result.pose = ToRelativePose(input, matches, search, *best);
+  result.pose =
+      ToRelativePose(input, matches, search, *best, &result.lone_matches);
   if (result.geometry == TwoViewGeometry::kAmbiguousPlane) {
     result.alternatives.push_back(
-        ToRelativePose(input, matches, search, *other));
+        ToRelativePose(input, matches, search, *other, nullptr));
   }
   return result;
 }
 
 RelativePose ImproveRelativePose(const TwoViewInput& input,
                                  const RelativePose& pose,
-                                 const TwoViewOptions& options) {
+                                 const TwoViewOptions& options,
+                                 std::vector<FeatureMatch>* lone_matches) {
   // No sample is drawn; the order only matters to the background of chance.
   Random random(0);
   const ShuffledMatches matches = ShuffleMatches(input, random);
@@ -242,7 +260,8 @@ RelativePose ImproveRelativePose(const TwoViewInput& input,
                           SampsonLaw(input), bounded);
   const PoseCandidate candidate = search.Finish(pose.Cam2FromCam1());
   if (!std::isfinite(candidate.support.log10_nfa)) return pose;
-  RelativePose improved = ToRelativePose(input, matches, search, candidate);
+  RelativePose improved =
+      ToRelativePose(input, matches, search, candidate, lone_matches);
   improved.log10_nfa = pose.log10_nfa;
   return improved;
 }

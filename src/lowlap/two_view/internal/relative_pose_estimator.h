@@ -48,6 +48,9 @@ const char* TwoViewGeometryName(TwoViewGeometry geometry);
 
 struct TwoViewResult {
   RelativePose pose;
+  /// Those of its point inliers that hold it alone (BorneOutMatches): of these
+  /// its covariance knows nothing.
+  std::vector<FeatureMatch> lone_matches;
   TwoViewGeometry geometry = TwoViewGeometry::kGeneral;
   /// Other motions that the points cannot exclude (log10 NFA < 0, too); line or
   /// triplet evidence may. Empty unless kAmbiguousPlane.
@@ -102,9 +105,10 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
 /// (log10_nfa) stays that of the first ones, which knew nothing of the pose.
 /// Where too few of them fit the pose to refine it, it comes back as it was.
 /// `input` is valid; its line matches count with their crossings and
-/// directions.
-RelativePose ImproveRelativePose(const TwoViewInput& input,
-                                 const RelativePose& pose,
-                                 const TwoViewOptions& options);
+/// directions. `lone_matches`, if not null, are as in TwoViewResult.
+RelativePose ImproveRelativePose(
+    const TwoViewInput& input, const RelativePose& pose,
+    const TwoViewOptions& options,
+    std::vector<FeatureMatch>* lone_matches = nullptr);
 
 }  // namespace lowlap

@@ -1,5 +1,7 @@
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
 
+#include <algorithm>
+#include <set>
 #include <utility>
 
 #include "lowlap/core/internal/parallel.h"
@@ -88,6 +90,32 @@ void LogPairsWithoutParallax(const Scene& scene,
                   names + (count > kMaxNamed ? ", ..." : ""));
 }
 
+using MatchesOfPairs = std::map<ViewPair, std::vector<FeatureMatch>>;
+
+// The tracks of the relative poses' inliers. Matches that hold a relative pose
+// alone are none unless a third view bears them out.
+void BuildTracks(const MatchesOfPairs& lone_matches,
+                 const RelativePoseOptions& options, Scene* scene) {
+  scene->point_tracks = BuildPointTracks(*scene);
+  std::set<Track> borne_out_by_none;
+  for (const auto& entry : scene->point_tracks) {
+    if (entry.second.size() == 2) borne_out_by_none.insert(entry.second);
+  }
+  for (const auto& [views, matches] : lone_matches) {
+    std::vector<FeatureMatch>& inliers =
+        scene->relative_poses.at(views).point_inliers;
+    for (const FeatureMatch& match : matches) {
+      const Track track = {{views.first, match.first},
+                           {views.second, match.second}};
+      if (borne_out_by_none.count(track) == 0) continue;
+      inliers.erase(std::remove(inliers.begin(), inliers.end(), match),
+                    inliers.end());
+    }
+  }
+  scene->point_tracks = BuildPointTracks(*scene);
+  scene->line_tracks = BuildLineTracks(*scene, options.line_tracks);
+}
+
 }  // namespace
 
 Status RelativePoseOptions::Validate() const {
@@ -124,15 +152,16 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
 
   scene->relative_poses.clear();
   std::vector<PairReport> reports;
+  MatchesOfPairs lone_matches;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     reports.push_back(Report(pairs[n], matches.at(pairs[n]), estimates[n]));
     if (estimates[n].pose) {
       scene->relative_poses[pairs[n]] = std::move(*estimates[n].pose);
+      lone_matches[pairs[n]] = std::move(estimates[n].lone_matches);
     }
   }
   LogPairsWithoutParallax(*scene, reports, context);
-  scene->point_tracks = BuildPointTracks(*scene);
-  scene->line_tracks = BuildLineTracks(*scene, options.line_tracks);
+  BuildTracks(lone_matches, options, scene);
   return reports;
 }
 
@@ -150,15 +179,20 @@ Status RefineRelativePoses(Scene* scene,
   LOWLAP_ASSIGN_OR_RETURN(
       const auto measurements,
       MeasureViews(*scene, pairs, &detected, options.vanishing, context));
+  std::vector<std::vector<FeatureMatch>> lone(poses.size());
   const Status done =
       ParallelFor(context, "relative poses", poses.size(), [&](std::size_t n) {
         RelativePose& pose = *poses[n];
         pose = RefinePair(pose, measurements.at(pose.views.first),
-                          measurements.at(pose.views.second), options.pair);
+                          measurements.at(pose.views.second), options.pair,
+                          &lone[n]);
       });
   if (!done) return done;
-  scene->point_tracks = BuildPointTracks(*scene);
-  scene->line_tracks = BuildLineTracks(*scene, options.line_tracks);
+  MatchesOfPairs lone_matches;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    lone_matches[pairs[n]] = std::move(lone[n]);
+  }
+  BuildTracks(lone_matches, options, scene);
   return {};
 }
 

@@ -17,6 +17,8 @@ namespace lowlap {
 
 /// Fills scene->relative_poses, point_tracks and line_tracks from putative
 /// matches of the scene's features: EstimatePair for every pair, then tracks.
+/// A match that holds a relative pose alone (TwoViewResult) is no inlier unless
+/// a third view sees it, too.
 /// Pairs that fail get no relative pose; the report says why, and pairs without
 /// parallax are named in the log. `detected` as in MeasureView, for all views;
 /// null: matches are all there is. Pairs of `given` are not estimated, but

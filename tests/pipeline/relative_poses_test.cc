@@ -1,0 +1,90 @@
+#include "lowlap/pipeline/internal/measure/relative_poses.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "lowlap/core/internal/random.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using ::testing::Contains;
+using testing::IsOk;
+using ::testing::Not;
+
+constexpr int kFarPoints = 30;
+constexpr FeatureIndex kNear = kFarPoints;
+
+// Three views of a far cloud, and of one near point that tells more of the
+// directions between them than all the others.
+class LoneMatchTest : public ::testing::Test {
+ protected:
+  LoneMatchTest() {
+    Intrinsic& intrinsic = scene_.intrinsics[0];
+    intrinsic.width_px = 1600;
+    intrinsic.height_px = 1200;
+    intrinsic.fx_px = intrinsic.fy_px = 1300;
+    intrinsic.principal_point_px = {800, 600};
+    const Vec3 centers[] = {{0, 0, 0}, {0.3, 0, 0}, {0.6, 0.08, 0}};
+    Random random(1);
+    for (std::uint32_t v = 0; v < 3; ++v) {
+      View& view = scene_.views[v];
+      view.filename = std::to_string(v) + ".jpg";
+      view.width_px = 1600;
+      view.height_px = 1200;
+      view.intrinsic_id = 0;
+      view.pose_id = v;
+    }
+    for (int n = 0; n <= kFarPoints; ++n) {
+      const Vec3 far =
+          random.Uniform(4, 9) *
+          Vec3(random.Uniform(-0.4, 0.4), random.Uniform(-0.3, 0.3), 1);
+      const Vec3 point = n == kFarPoints ? 0.8 * Vec3(0.35, 0, 1) : far;
+      for (std::uint32_t v = 0; v < 3; ++v) {
+        const Mat3 cam_from_world =
+            RotationFromAngleAxis(Vec3(0.01, 0.05, -0.02) * v);
+        scene_.features[v].points_px.push_back(
+            intrinsic.Project(cam_from_world * (point - centers[v])) +
+            Vec2(random.Gaussian(0.1), random.Gaussian(0.1)));
+      }
+    }
+  }
+
+  void Relate(const std::vector<ViewPair>& pairs) {
+    std::map<ViewPair, PairMatches> matches;
+    for (const ViewPair& pair : pairs) {
+      for (FeatureIndex n = 0; n <= kNear; ++n) {
+        matches[pair].points.push_back({n, n});
+      }
+    }
+    ASSERT_THAT(EstimateRelativePoses(&scene_, matches, nullptr, {}, {}),
+                IsOk());
+    for (const ViewPair& pair : pairs) {
+      ASSERT_EQ(scene_.relative_poses.count(pair), 1u);
+    }
+  }
+
+  const std::vector<FeatureMatch>& Inliers(const ViewPair& pair) {
+    return scene_.relative_poses.at(pair).point_inliers;
+  }
+
+  Scene scene_;
+};
+
+TEST_F(LoneMatchTest, IsNoTrackOfTwoViews) {
+  Relate({{0, 1}});
+  EXPECT_THAT(Inliers({0, 1}), Not(Contains(FeatureMatch{kNear, kNear})));
+  EXPECT_EQ(scene_.point_tracks.size(), Inliers({0, 1}).size());
+  EXPECT_GT(scene_.point_tracks.size(), 25u);
+}
+
+TEST_F(LoneMatchTest, StaysWhereAThirdViewBearsItOut) {
+  Relate({{0, 1}, {1, 2}});
+  EXPECT_THAT(Inliers({0, 1}), Contains(FeatureMatch{kNear, kNear}));
+  EXPECT_THAT(Inliers({1, 2}), Contains(FeatureMatch{kNear, kNear}));
+}
+
+}  // namespace
+}  // namespace lowlap
