@@ -27,7 +27,8 @@ struct GradedView {
 };
 
 /// Every view of the summary. This is the one rule that says which cameras are
-/// doubtful: the console, the report, summary.json and `--strict` go by it.
+/// doubtful: the console, summary.json and `--strict` go by it; the views that
+/// the report marks, those that a warning names, are the same.
 std::map<ViewId, GradedView> GradeViews(const PoseSummary& summary);
 
 /// What is said of views, in the order in which it is said.

@@ -97,22 +97,27 @@ using MatchesOfPairs = std::map<ViewPair, std::vector<FeatureMatch>>;
 void BuildTracks(const MatchesOfPairs& lone_matches,
                  const RelativePoseOptions& options, Scene* scene) {
   scene->point_tracks = BuildPointTracks(*scene);
-  std::set<Track> borne_out_by_none;
+  std::set<Track> of_two_views;
   for (const auto& entry : scene->point_tracks) {
-    if (entry.second.size() == 2) borne_out_by_none.insert(entry.second);
+    if (entry.second.size() == 2) of_two_views.insert(entry.second);
   }
-  for (const auto& [views, matches] : lone_matches) {
-    std::vector<FeatureMatch>& inliers =
-        scene->relative_poses.at(views).point_inliers;
-    for (const FeatureMatch& match : matches) {
-      const Track track = {{views.first, match.first},
-                           {views.second, match.second}};
-      if (borne_out_by_none.count(track) == 0) continue;
-      inliers.erase(std::remove(inliers.begin(), inliers.end(), match),
-                    inliers.end());
-    }
+  bool is_changed = false;
+  for (const auto& entry : lone_matches) {
+    const auto& [first, second] = entry.first;
+    const std::vector<FeatureMatch>& lone = entry.second;
+    const auto is_left_out = [&, first = first,
+                              second = second](const FeatureMatch& match) {
+      return std::find(lone.begin(), lone.end(), match) != lone.end() &&
+             of_two_views.count(
+                 {{first, match.first}, {second, match.second}}) > 0;
+    };
+    auto& inliers = scene->relative_poses.at(entry.first).point_inliers;
+    const auto end =
+        std::remove_if(inliers.begin(), inliers.end(), is_left_out);
+    is_changed = is_changed || end != inliers.end();
+    inliers.erase(end, inliers.end());
   }
-  scene->point_tracks = BuildPointTracks(*scene);
+  if (is_changed) scene->point_tracks = BuildPointTracks(*scene);
   scene->line_tracks = BuildLineTracks(*scene, options.line_tracks);
 }
 
