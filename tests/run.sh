@@ -2,12 +2,19 @@
 # Builds lowlap in build/ci and tests it, on a fresh Debian 12 machine too: the
 # packages are installed first, as root or through sudo.
 #
-#   tests/run.sh           install, check the formatting, build, test
-#   tests/run.sh --tidy    cppcheck and clang-tidy on the sources as well (some
-#                          minutes more)
-#   tests/run.sh --no-slow without the tests that work on photographs
-#   tests/run.sh --fuzz    instead: every reader under a fuzzer for a minute, in
-#                          build/fuzz, with ASan and UBSan
+#   tests/run.sh             install, check the formatting, build, test
+#   tests/run.sh --tidy      cppcheck and clang-tidy on the sources as well (some
+#                            minutes more)
+#   tests/run.sh --no-slow   without the tests that work on photographs
+#
+# Instead, in builds of their own, without the tests that work on photographs:
+#
+#   tests/run.sh --sanitize  the tests under ASan and UBSan, and those of threaded
+#                            libraries under TSan
+#   tests/run.sh --coverage  the lines of src/lowlap that the tests reach; fails
+#                            under 90 %
+#   tests/run.sh --fuzz      every reader under a fuzzer for a minute, with ASan
+#                            and UBSan
 #
 # Tests on photographs look for them in $LOWLAP_DATA, or in shared/data beside
 # the repository, and are skipped without them.
@@ -15,15 +22,15 @@ set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tidy=false
-fuzz=false
+check=
 ctest_options=()
 for option in "$@"; do
   case $option in
     --tidy) tidy=true ;;
-    --fuzz) fuzz=true ;;
+    --sanitize | --coverage | --fuzz) check=${option#--} ;;
     --no-slow) ctest_options+=(--label-exclude slow) ;;
     *)
-      sed -n '2,13s/^# \{0,1\}//p' tests/run.sh >&2
+      sed -n '2,22s/^# \{0,1\}//p' tests/run.sh >&2
       echo "unknown option $option" >&2
       exit 2
       ;;
@@ -49,21 +56,9 @@ compile() {
   cmake --build "$1" --parallel "$jobs" --target "${@:2}"
 }
 
-if $fuzz; then
-  step "Packages"
-  bash tutorials/install_dependencies.sh ccache clang libclang-rt-14-dev \
-    libomp-dev llvm python3
-  # ccache does not know Clang's precompiled headers.
-  configure build/fuzz -DCMAKE_CXX_COMPILER=clang++ \
-    -DCMAKE_BUILD_TYPE=RelWithDebInfo \
-    -DCMAKE_CXX_FLAGS_RELWITHDEBINFO="-O1 -gline-tables-only" \
-    -DLOWLAP_PRECOMPILED_HEADERS=OFF -DLOWLAP_BUILD_TESTS=OFF \
-    -DLOWLAP_SANITIZE=address,undefined -DLOWLAP_BUILD_FUZZERS=ON
-  compile build/fuzz fuzzers lowlap_cli
-  step "Inputs to start from"
-  python3 tests/fuzz/make_corpus.py build/fuzz/src/cli/lowlap build/fuzz/corpus
-  step "Fuzzing with $jobs jobs"
-  FUZZ_JOBS=$jobs bash tests/fuzz/run_fuzzers.sh build/fuzz 60
+if [[ $check ]]; then
+  source tests/checks.sh
+  "run_$check"
   exit
 fi
 

@@ -5,6 +5,10 @@
 # options share one precompiled header; sources include what they use all the
 # same, so that they compile with LOWLAP_PRECOMPILED_HEADERS off, too.
 option(LOWLAP_PRECOMPILED_HEADERS "Precompile the headers of libraries" ON)
+# Clang's hold the times of the headers, and ccache could keep nothing.
+if(LOWLAP_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+  add_compile_options("SHELL:-Xclang -fno-pch-timestamp")
+endif()
 
 set(LOWLAP_COMMON_HEADERS
     <algorithm> <array> <cmath> <cstddef> <cstdint> <filesystem> <functional>

@@ -31,19 +31,28 @@ Eigen::Matrix2Xi Columns(const std::vector<FeatureMatch>& matches,
   return columns;
 }
 
-void AddView(const Scene& scene, ViewId view,
-             TranslationScaleEstimator* estimator) {
-  const ViewFeatures& features = scene.features.at(view);
+Eigen::Matrix2Xd Points(const ViewFeatures& features) {
   Eigen::Matrix2Xd points(2, features.points_px.size());
   for (std::size_t n = 0; n < features.points_px.size(); ++n) {
     points.col(n) = features.points_px[n];
   }
+  return points;
+}
+
+Eigen::Matrix4Xd Segments(const ViewFeatures& features) {
   Eigen::Matrix4Xd segments(4, features.segments.size());
   for (std::size_t n = 0; n < features.segments.size(); ++n) {
     segments.col(n) << features.segments[n].start_px,
         features.segments[n].end_px;
   }
-  estimator->AddView(view, *scene.FindIntrinsic(view), points, segments);
+  return segments;
+}
+
+void AddView(const Scene& scene, ViewId view,
+             TranslationScaleEstimator* estimator) {
+  const ViewFeatures& features = scene.features.at(view);
+  estimator->AddView(view, *scene.FindIntrinsic(view), Points(features),
+                     Segments(features));
 }
 
 void AddPose(const RelativePose& pose, Order order,
@@ -138,6 +147,31 @@ TEST(TranslationScaleEstimator, JoinsThePiecesOfBrokenLines) {
     EXPECT_EQ(candidates(estimate->ratios[n]), candidates(joined[n]));
     EXPECT_LT(candidates(joined[n]), candidates(apart[n]));
   }
+}
+
+TEST(TranslationScaleEstimator, ACalibrationMatrixIsACameraWithoutDistortion) {
+  const SyntheticScene chain = Chain();
+  TranslationScaleEstimator estimator;
+  for (const auto& [views, pose] : chain.scene.relative_poses) {
+    AddPose(pose, Order::kAscending, &estimator);
+  }
+  for (const auto& entry : chain.scene.views) {
+    const Intrinsic& intrinsic = *chain.scene.FindIntrinsic(entry.first);
+    Mat3 calibration_px = Mat3::Identity();
+    calibration_px(0, 0) = intrinsic.fx_px;
+    calibration_px(1, 1) = intrinsic.fy_px;
+    calibration_px.topRightCorner<2, 1>() = intrinsic.principal_point_px;
+    const ViewFeatures& features = chain.scene.features.at(entry.first);
+    estimator.AddView(entry.first, calibration_px, intrinsic.width_px,
+                      intrinsic.height_px, Points(features),
+                      Segments(features));
+  }
+  const auto estimate = estimator.Estimate();
+  const auto expected = HostOf(chain.scene, Order::kAscending).Estimate();
+  ASSERT_THAT(estimate, IsOk());
+  ASSERT_THAT(expected, IsOk());
+  EXPECT_EQ(estimate->ratios, expected->ratios);
+  EXPECT_EQ(estimate->poses, expected->poses);
 }
 
 TEST(TranslationScaleEstimator, KeepsTheRotationsOfTheHost) {

@@ -70,8 +70,10 @@ Scene FullScene() {
   for (const ViewId id : {1u, 4u, 7u}) {
     ViewFeatures& features = scene.features[id];
     for (int n = 0; n < 6; ++n) {
-      features.points_px.emplace_back(random.Uniform(0, 640),
-                                      random.Uniform(0, 480));
+      // In this order, which the files of earlier versions were written with.
+      const double y = random.Uniform(0, 480);
+      const double x = random.Uniform(0, 640);
+      features.points_px.emplace_back(x, y);
       features.segments.push_back(
           {{random.Uniform(0, 640), 5e-324}, {-0.1, 1e300}, 1.0 / 7});
     }
@@ -144,7 +146,7 @@ Scene RandomScene(std::uint64_t seed, std::uint32_t num_views,
   scene.root_path = "images";
   scene.intrinsics[0] = MakeIntrinsic(CameraModel::kRadialK3);
   const auto pixel = [&] {
-    return Vec2(random.Uniform(0, 640), random.Uniform(0, 480));
+    return Vec2{random.Uniform(0, 640), random.Uniform(0, 480)};
   };
   for (std::uint32_t id = 0; id < num_views; ++id) {
     scene.views[id] = {"", std::to_string(id) + ".jpg", 640, 480, 0, id, {}};

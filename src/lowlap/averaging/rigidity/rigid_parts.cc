@@ -104,7 +104,8 @@ void MergeByNullSpace(const std::vector<RigidPart>& parts, UnionFind* sets) {
   Random random(20170331);
   Eigen::Index row = 0, view_column = 3 * num_parts;
   for (const auto& entry : shared) {
-    const Vec2 center(random.Uniform(-1, 1), random.Uniform(-1, 1));
+    // Braces: arguments in parentheses are evaluated in any order.
+    const Vec2 center{random.Uniform(-1, 1), random.Uniform(-1, 1)};
     for (const std::size_t p : entry.second) {
       const Eigen::Index part = static_cast<Eigen::Index>(p);
       for (int axis = 0; axis < 2; ++axis, ++row) {

@@ -1,0 +1,42 @@
+#include "lowlap/features/internal/opencv.h"
+
+#include <gtest/gtest.h>
+
+#include <new>
+
+#include "support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using testing::IsError;
+
+TEST(SingleThreadedOpenCv, TheLastHolderRestoresTheNumberOfThreads) {
+  const int before = cv::getNumThreads();
+  cv::setNumThreads(3);
+  {
+    const SingleThreadedOpenCv outer;
+    EXPECT_EQ(cv::getNumThreads(), 1);
+    { const SingleThreadedOpenCv inner; }
+    EXPECT_EQ(cv::getNumThreads(), 1);
+  }
+  EXPECT_EQ(cv::getNumThreads(), 3);
+  cv::setNumThreads(before);
+}
+
+TEST(CatchOpenCv, ExceptionsOfOpenCvBecomeErrors) {
+  const Status status = CatchOpenCv("sum", []() -> Status {
+    const cv::Mat sum = cv::Mat::ones(2, 2, CV_8U) + cv::Mat::ones(3, 3, CV_8U);
+    return {};
+  });
+  EXPECT_THAT(status, IsError(ErrorCode::kNumerical, "sum: OpenCV"));
+}
+
+TEST(CatchOpenCv, MemoryThatCannotBeHadIsAnError) {
+  const Result<int> result =
+      CatchOpenCv("image", []() -> Result<int> { throw std::bad_alloc(); });
+  EXPECT_THAT(result, IsError(ErrorCode::kNumerical, "image: "));
+}
+
+}  // namespace
+}  // namespace lowlap
