@@ -1,9 +1,13 @@
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <new>
 #include <string>
+#include <system_error>
 
 #include "cli/command.h"
+#include "cli/interrupts.h"
 
 namespace {
 
@@ -12,6 +16,29 @@ bool HasCommand(const CLI::App& program, const std::string& name) {
     if (command->check_name(name)) return true;
   }
   return false;
+}
+
+// What was printed is a result, too: a full disk must not pass unnoticed.
+bool IsPrinted() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  std::fprintf(stderr, "error: standard output cannot be written: %s\n",
+               std::generic_category().message(errno).c_str());
+  return false;
+}
+
+int Run(const lowlap::cli::Action& action) {
+  try {
+    const lowlap::Result<int> exit_code = action();
+    if (!exit_code) return lowlap::cli::Fail(exit_code.error());
+    return IsPrinted() ? *exit_code : 1;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "error: memory ran out%s\n",
+                 lowlap::cli::DuringStage().c_str());
+  } catch (const std::exception& exception) {
+    // The library reports other errors as values.
+    std::fprintf(stderr, "error: %s\n", exception.what());
+  }
+  return 1;
 }
 
 }  // namespace
@@ -56,13 +83,7 @@ int main(int argc, char** argv) {
   }
   CLI11_PARSE(program, argc, argv);
   lowlap::cli::CatchInterrupts();
-  try {
-    const lowlap::Result<int> exit_code = action();
-    return exit_code ? *exit_code : lowlap::cli::Fail(exit_code.error());
-  } catch (const std::exception& exception) {
-    // The library reports errors as values; this is memory running out and the
-    // like.
-    std::fprintf(stderr, "error: %s\n", exception.what());
-    return 1;
-  }
+  const int exit_code = Run(action);
+  lowlap::cli::EndInterrupts();
+  return exit_code;
 }
