@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <atomic>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -36,12 +37,14 @@ Stage& CurrentStage() {
 }
 
 void OnSignal(int signal) {
+  const int errno_before = errno;
   caught_signal = signal;
   constexpr char kMessage[] = "\nstopping\n";
   // Nothing can be done about a failed write.
   [[maybe_unused]] const ssize_t ignored =
       ::write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
   ::sem_post(&signal_came);
+  errno = errno_before;
 }
 
 void EndAfterInterrupt() {

@@ -1,6 +1,8 @@
 #include <CLI/CLI.hpp>
+#include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 #include <string>
@@ -16,6 +18,24 @@ bool HasCommand(const CLI::App& program, const std::string& name) {
     if (command->check_name(name)) return true;
   }
   return false;
+}
+
+std::atomic<bool> memory_ran_out{false};
+const std::terminate_handler terminate_before = std::get_terminate();
+
+void OnNoMemory() {
+  memory_ran_out = true;
+  throw std::bad_alloc();
+}
+
+// Libraries that cannot do with an exception (Ceres) end up here.
+[[noreturn]] void OnTerminate() {
+  if (!memory_ran_out) {
+    terminate_before();
+    std::abort();
+  }
+  std::fputs("error: memory ran out\n", stderr);
+  std::_Exit(1);
 }
 
 // What was printed is a result, too: a full disk must not pass unnoticed.
@@ -83,6 +103,8 @@ int main(int argc, char** argv) {
   }
   CLI11_PARSE(program, argc, argv);
   lowlap::cli::CatchInterrupts();
+  std::set_new_handler(OnNoMemory);
+  std::set_terminate(OnTerminate);
   const int exit_code = Run(action);
   lowlap::cli::EndInterrupts();
   return exit_code;

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <limits>
 #include <system_error>
-#include <utility>
 
 #include "lowlap/core/internal/format.h"
 #include "lowlap/io/internal/failure.h"
@@ -83,13 +82,8 @@ void Sqlite::Fail(const std::string& place) const {
   const int code = sqlite3_errcode(get()) & 0xFF;
   const bool is_content = code == SQLITE_CORRUPT || code == SQLITE_NOTADB ||
                           code == SQLITE_ERROR;  // a column is missing
-  std::string message = std::string("SQLite: ") + sqlite3_errmsg(get());
-  const int reason = is_content ? 0 : sqlite3_system_errno(get());
-  if (reason != 0) {
-    message += " (" + std::generic_category().message(reason) + ")";
-  }
   throw Failure{Error{is_content ? ErrorCode::kParse : ErrorCode::kIo,
-                      std::move(message),
+                      std::string("SQLite: ") + sqlite3_errmsg(get()),
                       {},
                       place}};
 }
