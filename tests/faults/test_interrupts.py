@@ -7,7 +7,7 @@ import subprocess
 import time
 import unittest
 
-from support import FaultCase, start
+from support import FaultCase, is_temporary, start
 
 SEED = 11
 INTERRUPTS = 30
@@ -32,6 +32,22 @@ class Interrupts(FaultCase):
         self.assertIn(process.returncode, (128 + asked_for, -signal.SIGKILL),
                       messages)
         return time.monotonic() - begin, messages
+
+    def test_studies_end_within_a_second_and_go_on(self):
+        moments = random.Random(SEED)
+        out = self.folder / "study"
+        kept = 0
+        for _ in range(6):
+            process = start(["robustness", "-o", out])
+            time.sleep(START_S + moments.uniform(0, 2))
+            took_s, _ = self.answer_s(process, signal.SIGINT)
+            self.assertLess(took_s, 2 * WITHIN_S)
+            self.assertEqual([path for path in out.iterdir()
+                              if is_temporary(path.name)], [])
+            text = (out / "trials.jsonl").read_text()
+            self.assertTrue(text.endswith("\n"))
+            self.assertGreaterEqual(len(text), kept)
+            kept = len(text)
 
     def test_run_ends_within_a_second(self):
         images = self.castle()

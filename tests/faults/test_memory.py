@@ -49,12 +49,11 @@ class Memory(FaultCase):
 
     def test_commands_without_photographs(self):
         room = self.folder / "room.lowlap"
-        self.succeed(["simulate", "--views", 40, "--points", 2000,
-                      "--lines", 500, "-o", room])
+        self.succeed(["simulate", "--views", 15, "--points", 400,
+                      "--lines", 200, "-o", room])
         codes = [self.run_limited(
-            ["solve", room, "--no-adjust", "--threads", 4,
-             "-o", self.folder / "out"], megabytes)
-            for megabytes in (*range(220, 320, 10), 4000)]
+            ["solve", room, "--threads", 4, "-o", self.folder / "out"],
+            megabytes) for megabytes in (*range(220, 280, 3), 4000)]
         self.assertIn(1, codes)
         self.assertEqual(codes[-1], 0)
 
