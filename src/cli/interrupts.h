@@ -5,9 +5,9 @@
 namespace lowlap::cli {
 
 // With CatchInterrupts and IsInterrupted of command.h: an interrupted command
-// stops at its next step. If that takes longer than a quarter of a second, the program
-// ends without it: files that are taking their names still do, temporary ones
-// are removed.
+// stops at its next step. If that takes longer than a quarter of a second, the
+// program ends without it: files that are taking their names still do,
+// temporary ones are removed.
 
 /// Remembers the stage, for messages; false after an interrupt.
 bool Continue(const std::string& stage);

@@ -40,8 +40,8 @@ class ReadOnly(FaultCase):
             ["convert", self.room, self.out / "scene.json"],
             ["convert", self.room, self.out / "model", "--to", "limap"],
             ["simulate", "--views", 4, "-o", self.out / "scene.json"],
-            ["subsets", self.room, "--drop", 1, "--gt", self.room,
-             "-o", self.out],
+            ["subsets", self.room, "--drop", 1,
+             "--gt", self.model / "scene.lowlap", "-o", self.out],
             ["robustness", "--quick", "-o", self.out],
         ]
 

@@ -52,7 +52,7 @@ class Interrupts(FaultCase):
     def test_run_ends_within_a_second(self):
         images = self.castle()
         moments = random.Random(SEED)
-        answers_s, kills_s = [], []
+        answers_s, kills_s, slowest = [], [], ""
         for n in range(INTERRUPTS):
             # Every second goes on from the cache, to interrupt later stages;
             # every fifth is killed: how long the machine takes by itself.
@@ -67,6 +67,7 @@ class Interrupts(FaultCase):
             took_s, messages = self.answer_s(
                 process, moments.choice([signal.SIGINT, signal.SIGTERM]))
             answers_s.append(took_s)
+            slowest = messages if took_s == max(answers_s) else slowest
             self.assertIn("error: interrupted", messages)
             self.assertFalse(out.exists())
             for path in cache.glob("*.tmp*"):  # killed before, not interrupted
@@ -74,7 +75,7 @@ class Interrupts(FaultCase):
         print(f"answered within {max(answers_s):.2f} s, median "
               f"{statistics.median(answers_s):.2f} s; killed within "
               f"{max(kills_s):.2f} s")
-        self.assertLess(max(answers_s), WITHIN_S + max(kills_s))
+        self.assertLess(max(answers_s), WITHIN_S + max(kills_s), slowest)
 
 
 if __name__ == "__main__":
