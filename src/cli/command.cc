@@ -2,40 +2,12 @@
 
 #include <unistd.h>
 
-#include <csignal>
 #include <cstdio>
 
+#include "cli/interrupts.h"
 #include "lowlap/core/internal/format.h"
 
 namespace lowlap::cli {
-namespace {
-
-volatile std::sig_atomic_t caught_signal = 0;
-
-void OnSignal(int signal) {
-  caught_signal = signal;
-  constexpr char kMessage[] =
-      "\nstopping after the step at work; once more to stop at once\n";
-  // Nothing can be done about a failed write.
-  [[maybe_unused]] const ssize_t ignored =
-      ::write(STDERR_FILENO, kMessage, sizeof kMessage - 1);
-}
-
-}  // namespace
-
-void CatchInterrupts() {
-  struct sigaction action {};
-  action.sa_handler = OnSignal;
-  action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
-  for (const int signal : {SIGINT, SIGTERM}) {
-    // Ignored from outside, as in a job in the background, it stays ignored.
-    struct sigaction inherited {};
-    ::sigaction(signal, nullptr, &inherited);
-    if (inherited.sa_handler != SIG_IGN) ::sigaction(signal, &action, nullptr);
-  }
-}
-
-bool IsInterrupted() { return caught_signal != 0; }
 
 void AddCommonFlags(CLI::App* command, CommonFlags* flags) {
   AddOption(command, "--threads", flags->threads,
@@ -68,7 +40,7 @@ RunContext MakeContext(const CommonFlags& flags) {
       if (done == total) std::fprintf(stderr, "\r\033[K");
       std::fflush(stderr);
     }
-    return !IsInterrupted();
+    return Continue(stage);
   };
   return context;
 }
@@ -77,7 +49,7 @@ int Fail(const Error& error) {
   if (IsInterrupted() && error.code == ErrorCode::kCancelled) {
     std::fprintf(stderr, "error: interrupted%s%s; no result is written\n",
                  error.place.empty() ? "" : " during ", error.place.c_str());
-    return 128 + caught_signal;
+    return InterruptExitCode();
   }
   std::fprintf(stderr, "error: %s\n", error.ToString().c_str());
   return 1;

@@ -1,9 +1,15 @@
 #include <CLI/CLI.hpp>
+#include <atomic>
+#include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <new>
 #include <string>
+#include <system_error>
 
 #include "cli/command.h"
+#include "cli/interrupts.h"
 
 namespace {
 
@@ -12,6 +18,47 @@ bool HasCommand(const CLI::App& program, const std::string& name) {
     if (command->check_name(name)) return true;
   }
   return false;
+}
+
+std::atomic<bool> memory_ran_out{false};
+const std::terminate_handler terminate_before = std::get_terminate();
+
+void OnNoMemory() {
+  memory_ran_out = true;
+  throw std::bad_alloc();
+}
+
+// Libraries that cannot do with an exception (Ceres) end up here.
+[[noreturn]] void OnTerminate() {
+  if (!memory_ran_out) {
+    terminate_before();
+    std::abort();
+  }
+  std::fputs("error: memory ran out\n", stderr);
+  std::_Exit(1);
+}
+
+// What was printed is a result, too: a full disk must not pass unnoticed.
+bool IsPrinted() {
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return true;
+  std::fprintf(stderr, "error: standard output cannot be written: %s\n",
+               std::generic_category().message(errno).c_str());
+  return false;
+}
+
+int Run(const lowlap::cli::Action& action) {
+  try {
+    const lowlap::Result<int> exit_code = action();
+    if (!exit_code) return lowlap::cli::Fail(exit_code.error());
+    return IsPrinted() ? *exit_code : 1;
+  } catch (const std::bad_alloc&) {
+    std::fprintf(stderr, "error: memory ran out%s\n",
+                 lowlap::cli::DuringStage().c_str());
+  } catch (const std::exception& exception) {
+    // The library reports other errors as values.
+    std::fprintf(stderr, "error: %s\n", exception.what());
+  }
+  return 1;
 }
 
 }  // namespace
@@ -56,13 +103,9 @@ int main(int argc, char** argv) {
   }
   CLI11_PARSE(program, argc, argv);
   lowlap::cli::CatchInterrupts();
-  try {
-    const lowlap::Result<int> exit_code = action();
-    return exit_code ? *exit_code : lowlap::cli::Fail(exit_code.error());
-  } catch (const std::exception& exception) {
-    // The library reports errors as values; this is memory running out and the
-    // like.
-    std::fprintf(stderr, "error: %s\n", exception.what());
-    return 1;
-  }
+  std::set_new_handler(OnNoMemory);
+  std::set_terminate(OnTerminate);
+  const int exit_code = Run(action);
+  lowlap::cli::EndInterrupts();
+  return exit_code;
 }

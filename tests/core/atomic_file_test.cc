@@ -14,6 +14,7 @@
 #include <thread>
 #include <vector>
 
+#include "lowlap/core/internal/file_changes.h"
 #include "support/matchers.h"
 
 namespace lowlap {
@@ -245,6 +246,30 @@ TEST_F(AtomicFileTest, WhatAKilledWriterLeftGoesWithTheNextOne) {
   ASSERT_THAT(WriteFileAtomically(path_, "whole"), IsOk());
   EXPECT_EQ(*ReadWholeFile(path_), "whole");
   EXPECT_EQ(CountFiles(), 1u);
+}
+
+TEST_F(AtomicFileTest, TheSecondNamesOfAKilledWriterGoWithTheNextOne) {
+  std::ofstream(path_ + ".tmp-old0") << "replaced";
+  std::ofstream(path_ + ".tmp-old1") << "replaced";
+  ASSERT_THAT(WriteFileAtomically(path_, "whole"), IsOk());
+  EXPECT_EQ(CountFiles(), 1u);
+}
+
+TEST_F(AtomicFileTest, TheEndOfFileChangesRemovesWhatIsPrepared) {
+  const pid_t writer = ::fork();
+  if (writer == 0) {
+    FileSet files;
+    const bool added = files.Add(path_, "whole").has_value() &&
+                       files.Add(Path("other"), "whole").has_value() &&
+                       WriteFileAtomically(Path("third"), "whole").has_value();
+    EndFileChanges();
+    ::_exit(added ? 0 : 1);
+  }
+  int status = -1;
+  ::waitpid(writer, &status, 0);
+  EXPECT_EQ(status, 0);
+  EXPECT_EQ(CountFiles(), 1u);
+  EXPECT_EQ(*ReadWholeFile(Path("third")), "whole");
 }
 
 TEST_F(AtomicFileTest, WhatALivingWriterPreparesStays) {

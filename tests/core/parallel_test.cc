@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <new>
 #include <vector>
 
 #include "lowlap/core/internal/random.h"
@@ -29,6 +30,22 @@ TEST(ParallelFor, CallsEveryItemOnce) {
                   IsOk());
       for (const auto& call : calls) EXPECT_EQ(call, 1);
     }
+  }
+}
+
+TEST(ParallelFor, WhatAnItemThrowsReachesTheCaller) {
+  for (const int threads : {1, 4}) {
+    std::atomic<int> calls{0};
+    EXPECT_THROW(
+        {
+          const Status ignored =
+              ParallelFor(WithThreads(threads), "", 100000, [&](std::size_t i) {
+                ++calls;
+                if (i == 10) throw std::bad_alloc();
+              });
+        },
+        std::bad_alloc);
+    EXPECT_LT(calls, 100000);
   }
 }
 

@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/core/internal/file_changes.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/io/internal/failure.h"
@@ -61,6 +62,7 @@ class DatabaseWriter {
     sqlite_.Run("BEGIN IMMEDIATE");
     FindImages();
     CheckKeypoints();
+    const auto lock = LockFileChanges();
     RemoveGeometries();
     AddGeometries();
     sqlite_.Run("COMMIT");

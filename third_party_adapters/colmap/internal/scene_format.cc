@@ -45,8 +45,9 @@ Result<SceneNotes> WriteModelScene(const Scene& scene,
   }
   std::error_code error;
   fs::create_directories(folder, error);
-  if (!fs::is_directory(folder, error)) {
-    return MakeError(ErrorCode::kIo, "cannot be made a folder", folder);
+  if (error) {
+    return MakeError(ErrorCode::kIo,
+                     "cannot be made a folder: " + error.message(), folder);
   }
   const bool has_rigs = Exists(PartPath(folder, "rigs", form)) ||
                         Exists(PartPath(folder, "frames", form));

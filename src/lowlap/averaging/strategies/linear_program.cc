@@ -91,6 +91,9 @@ Result<LinearProgram::Optimum> LinearProgram::Minimize(
                       cost_.data(), row_lower_.data(), row_upper_.data());
     model.setMaximumIterations(max_iterations);
     ClpSolve method;
+    // Its handler of interrupts would take the place of the program's, and from
+    // several threads stay there. StepAsker stops it.
+    method.setSpecialOption(2, 1);
     if (num_rows() > kMaxRowsOfClpsChoice) {
       method.setSolveType(ClpSolve::useDual);
     }

@@ -13,6 +13,7 @@
 #include <system_error>
 #include <utility>
 
+#include "lowlap/core/internal/file_changes.h"
 #include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
@@ -33,16 +34,6 @@ int Open(const std::string& path, int flags) {
     file = ::open(path.c_str(), flags | O_CLOEXEC, kMode);
   } while (file < 0 && errno == EINTR);
   return file;
-}
-
-bool WriteAll(int file, std::string_view content) {
-  while (!content.empty()) {
-    const ssize_t written = ::write(file, content.data(), content.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return false;
-    content.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
 }
 
 /// Where a path leads, and how it is to be written.
@@ -87,11 +78,18 @@ bool Lock(int file, const std::string& name) {
   return false;
 }
 
-/// Removes NAME.tmpN, NAME.tmp(N+1), ... as far as nobody writes to them.
-void RemoveStale(const std::string& target, int n) {
+constexpr char kTemporary[] = ".tmp";
+constexpr char kSecondName[] = ".tmp-old";
+constexpr int kMaxWriters = 10000;
+// A process may have 1,024 files open as a rule. Of larger sets, the rest is
+// closed, and so unlocked, under names that nobody else takes.
+constexpr std::size_t kMaxOpen = 256;
+
+/// Removes STARTn, START(n+1), ... as far as nobody has locked them.
+void RemoveStale(const std::string& start, int n) {
   for (;; ++n) {
-    const std::string name = target + ".tmp" + std::to_string(n);
-    const int file = Open(name, O_WRONLY | O_NOFOLLOW);
+    const std::string name = start + std::to_string(n);
+    const int file = Open(name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
     if (file < 0) return;
     if (Lock(file, name)) ::unlink(name.c_str());
     ::close(file);
@@ -107,9 +105,8 @@ std::string UniqueName(const std::string& start) {
 
 /// Opens an empty temporary file beside `target`; -1 and errno on failure.
 int OpenTemporary(const std::string& target, std::string* name) {
-  constexpr int kMaxWriters = 10000;
   for (int n = 0; n < kMaxWriters; ++n) {
-    *name = target + ".tmp" + std::to_string(n);
+    *name = target + kTemporary + std::to_string(n);
     const int file = Open(*name, O_WRONLY | O_CREAT | O_NOFOLLOW);
     if (file < 0) {
       const int reason = errno;
@@ -121,14 +118,15 @@ int OpenTemporary(const std::string& target, std::string* name) {
     }
     if (Lock(file, *name)) {
       if (::ftruncate(file, 0) == 0) {
-        RemoveStale(target, n + 1);
+        RemoveStale(target + kTemporary, n + 1);
+        RemoveStale(target + kSecondName, 0);
         return file;
       }
     }
     const bool is_taken = errno == EWOULDBLOCK;
     ::close(file);
     if (!is_taken) {  // a file system without locks
-      *name = UniqueName(target + ".tmp");
+      *name = UniqueName(target + kTemporary);
       return Open(*name, O_WRONLY | O_CREAT | O_EXCL);
     }
   }
@@ -142,17 +140,27 @@ class ReplacedFiles {
   ~ReplacedFiles() {
     for (const Replaced& file : files_) {
       if (file.second_name) ::unlink(file.second_name->c_str());
+      if (file.lock >= 0) ::close(file.lock);
     }
   }
 
   void Keep(const std::string& target) {
-    Replaced file{target, {}, false};
-    int failed = 0;
-    do {  // a writer that was killed may have left such a name
-      file.second_name = UniqueName(target + ".old");
+    Replaced file;
+    file.target = target;
+    const std::string start = target + kSecondName;
+    const bool is_locked = files_.size() < kMaxOpen;
+    int failed = -1;
+    errno = EEXIST;
+    for (int n = 0; failed != 0 && errno == EEXIST && n < kMaxWriters; ++n) {
+      file.second_name =
+          is_locked ? start + std::to_string(n) : UniqueName(start);
       failed = ::link(target.c_str(), file.second_name->c_str());
-    } while (failed != 0 && errno == EEXIST);
-    if (failed != 0) {
+    }
+    if (failed == 0 && is_locked) {
+      // So that other writers see that it is in use.
+      file.lock = Open(*file.second_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK);
+      if (file.lock >= 0) ::flock(file.lock, LOCK_EX | LOCK_NB);
+    } else if (failed != 0) {
       file.was_missing = errno == ENOENT;
       file.second_name.reset();
     }
@@ -173,6 +181,7 @@ class ReplacedFiles {
   struct Replaced {
     std::string target;
     std::optional<std::string> second_name;
+    int lock = -1;  // the open second name
     bool was_missing = false;
   };
   std::vector<Replaced> files_;
@@ -181,8 +190,12 @@ class ReplacedFiles {
 }  // namespace
 
 FileSet::~FileSet() {
+  const auto lock = LockFileChanges();
   for (const Output& output : outputs_) {
-    if (!output.temporary.empty()) ::unlink(output.temporary.c_str());
+    if (!output.temporary.empty()) {
+      ::unlink(output.temporary.c_str());
+      ForgetTemporaryFile(output.temporary);
+    }
     if (output.file >= 0) ::close(output.file);
   }
 }
@@ -198,18 +211,19 @@ Status FileSet::Add(const std::string& path, std::string_view content) {
     return SystemError("cannot be opened for writing", path, EISDIR);
   }
   Output output{path, target.path, {}, {}, -1};
-  // A process may have 1,024 files open as a rule. Of larger sets, the rest is
-  // closed, and so unlocked, under names that nobody else takes.
-  constexpr std::size_t kMaxOpen = 256;
   const bool stays_open = outputs_.size() < kMaxOpen;
-  if (stays_open) {
-    output.file = OpenTemporary(target.path, &output.temporary);
-  } else {
-    output.temporary = UniqueName(target.path + ".tmp");
-    output.file = Open(output.temporary, O_WRONLY | O_CREAT | O_EXCL);
-  }
-  if (output.file < 0) {
-    return SystemError("cannot be opened for writing", path);
+  {
+    const auto lock = LockFileChanges();
+    if (stays_open) {
+      output.file = OpenTemporary(target.path, &output.temporary);
+    } else {
+      output.temporary = UniqueName(target.path + kTemporary);
+      output.file = Open(output.temporary, O_WRONLY | O_CREAT | O_EXCL);
+    }
+    if (output.file < 0) {
+      return SystemError("cannot be opened for writing", path);
+    }
+    AddTemporaryFile(output.temporary);
   }
   outputs_.push_back(std::move(output));
   const int file = outputs_.back().file;
@@ -235,6 +249,7 @@ Status FileSet::Commit() {
       return SystemError("cannot be written", output.path, reason);
     }
   }
+  const auto lock = LockFileChanges();
   ReplacedFiles replaced;
   for (Output& output : outputs_) {
     if (output.temporary.empty()) continue;
@@ -244,6 +259,7 @@ Status FileSet::Commit() {
       replaced.PutBack();
       return SystemError("cannot be replaced", output.path, reason);
     }
+    ForgetTemporaryFile(output.temporary);
     output.temporary.clear();
     if (output.file >= 0) ::close(std::exchange(output.file, -1));
   }

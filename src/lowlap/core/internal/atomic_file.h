@@ -15,12 +15,12 @@ namespace lowlap {
 ///
 /// A file is prepared under a temporary name in its folder (NAME.tmp0), which
 /// is locked while the writer lives (those beyond the first hundreds have names
-/// of their own instead), and then renamed. What a killed writer left is taken
-/// over or removed by the next one; only the second name of a replaced file,
-/// NAME.oldPID-N, stays if it is killed while it renames. A symbolic link
-/// stays, and the file that it names is written. Devices and pipes are written
-/// to, all of them before the first file appears. Errors are kIo with the path
-/// and the system's reason.
+/// of their own instead), and then renamed; what it replaces has a second name
+/// (NAME.tmp-old0) meanwhile. What a killed writer left is taken over or
+/// removed by the next one; names of their own stay. A symbolic link stays, and
+/// the file that it names is written. Devices and pipes are written to, all of
+/// them before the first file appears. Errors are kIo with the path and the
+/// system's reason.
 class FileSet {
  public:
   FileSet() = default;

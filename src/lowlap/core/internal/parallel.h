@@ -14,8 +14,8 @@ namespace lowlap {
 /// Items are handed out one at a time, so uneven work balances. Determinism is
 /// the caller's: write results to slot i and draw random numbers from a
 /// generator seeded by i, never from a shared one. `stage` names the progress
-/// messages (empty: none). Returns kCancelled if the progress sink stopped it;
-/// some items are then left undone. `body` must not throw.
+/// messages (empty: none). kCancelled if the progress sink stopped it: items
+/// are then left undone. What `body` throws stops it, too, and is rethrown.
 Status ParallelFor(const RunContext& context, const std::string& stage,
                    std::size_t count,
                    const std::function<void(std::size_t)>& body);

@@ -1,7 +1,5 @@
 #include "lowlap/features/internal/features.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,22 +7,14 @@
 #include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
-#include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/image_memory.h"
+#include "lowlap/features/internal/points/point_memory.h"
 #include "lowlap/features/internal/undistorted_image.h"
 
 namespace lowlap {
 namespace {
-
-// SIFT's pyramid: 4 times the pixels, 11 images of 4 bytes, octaves 4/3.
-constexpr double kBytesPerPixel = 240;
-
-double MachineMemoryGb() {
-  return 1e-9 * static_cast<double>(sysconf(_SC_PHYS_PAGES)) *
-         static_cast<double>(sysconf(_SC_PAGESIZE));
-}
 
 Status AddPoints(const GrayImage& image, const FeatureOptions& options,
                  DetectedFeatures* detected) {
@@ -110,18 +100,14 @@ Result<DetectedFeatures> DetectFeaturesOfView(const Scene& scene, ViewId id,
                                               const std::string& image_bytes,
                                               const FeatureOptions& options) {
   const std::string path = scene.ImagePath(id);
+  if (options.detect_points) {
+    LOWLAP_ASSIGN_OR_RETURN(const ImageSize size,
+                            DecodeImageSize(image_bytes, path));
+    LOWLAP_RETURN_IF_ERROR(
+        CheckMemoryOfPoints(size.width_px, size.height_px, path));
+  }
   LOWLAP_ASSIGN_OR_RETURN(const GrayImage image,
                           DecodeGrayImage(image_bytes, path));
-  const double needed_gb =
-      1e-9 * kBytesPerPixel * static_cast<double>(image.pixels.size());
-  if (options.detect_points && needed_gb > MachineMemoryGb()) {
-    return MakeError(
-        ErrorCode::kUnsupported,
-        Format("the points of an image of %d x %d pixels take "
-               "about %.0f GB of memory, this machine has %.0f",
-               image.width, image.height, needed_gb, MachineMemoryGb()),
-        path);
-  }
   const View& view = scene.views.at(id);
   if (image.width != view.width_px || image.height != view.height_px) {
     return MakeError(ErrorCode::kInvalidScene,
@@ -148,7 +134,7 @@ int DetectionThreads(const Scene& scene, const FeatureOptions& options,
                           static_cast<double>(view.width_px) * view.height_px);
   }
   const double fit =
-      options.max_memory_gb * 1e9 / (kBytesPerPixel * largest_px);
+      options.max_memory_gb * 1e9 / (kPointBytesPerPixel * largest_px);
   return static_cast<int>(
       std::clamp(fit, 1.0, static_cast<double>(context.ThreadCount())));
 }

@@ -8,6 +8,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/features/internal/image_head.h"
+#include "lowlap/features/internal/opencv.h"
 
 namespace lowlap {
 namespace {
@@ -57,26 +58,25 @@ Result<GrayImage> ReadGrayImage(const std::string& path) {
 Result<GrayImage> DecodeGrayImage(const std::string& bytes,
                                   const std::string& path) {
   LOWLAP_RETURN_IF_ERROR(CheckedSize(bytes, path));
-  GrayImage image;
-  try {
+  auto decoded = CatchOpenCv("cannot be read", [&]() -> Result<GrayImage> {
+    GrayImage image;
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
                           const_cast<char*>(bytes.data()));
-    const cv::Mat decoded = cv::imdecode(
+    const cv::Mat pixels = cv::imdecode(
         encoded, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
-    if (decoded.empty()) {
+    if (pixels.empty()) {
       return MakeError(ErrorCode::kParse, "not an image that can be read",
                        path);
     }
-    image.width = decoded.cols;
-    image.height = decoded.rows;
-    image.pixels.assign(decoded.begin<std::uint8_t>(),
-                        decoded.end<std::uint8_t>());
-  } catch (const std::exception& e) {
-    return MakeError(ErrorCode::kParse,
-                     std::string("the image cannot be read: ") + e.what(),
-                     path);
-  }
-  return image;
+    image.width = pixels.cols;
+    image.height = pixels.rows;
+    image.pixels.assign(pixels.begin<std::uint8_t>(),
+                        pixels.end<std::uint8_t>());
+    return image;
+  });
+  if (!decoded)
+    decoded.error() = {ErrorCode::kParse, decoded.error().message, path, {}};
+  return decoded;
 }
 
 Result<ImageSize> ReadImageSize(const std::string& path) {

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <map>
 #include <mutex>
+#include <new>
 #include <opencv2/core.hpp>
 
 namespace lowlap {
@@ -92,12 +93,16 @@ class ReusingAllocator : public cv::MatAllocator {
   void Give(unsigned char* memory, std::size_t bytes) const {
     const std::lock_guard<std::mutex> lock(mutex_);
     used_ -= bytes;
-    if (num_holders_ == 0) {
-      cv::fastFree(memory);
-      return;
+    if (num_holders_ > 0) {
+      try {
+        kept_.emplace(bytes, memory);
+        kept_bytes_ += bytes;
+        return;
+      } catch (const std::bad_alloc&) {
+        // No memory to remember it in; destructors of matrices come here.
+      }
     }
-    kept_.emplace(bytes, memory);
-    kept_bytes_ += bytes;
+    cv::fastFree(memory);
   }
 
   void DropLargest() const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <exception>
+#include <new>
 #include <opencv2/core.hpp>
 #include <string>
 
@@ -28,13 +29,18 @@ class SingleThreadedOpenCv {
   SingleThreadedOpenCv& operator=(const SingleThreadedOpenCv&) = delete;
 };
 
-/// Runs a function that returns a Result and may throw out of OpenCV or the
-/// allocator; such an exception becomes an error.
+/// Runs a function that returns a Result and may throw out of OpenCV; such an
+/// exception becomes an error, unless memory ran out: std::bad_alloc.
 template <class Function>
 auto CatchOpenCv(const std::string& what, Function&& function)
     -> decltype(function()) {
   try {
     return function();
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const cv::Exception& e) {
+    if (e.code == cv::Error::StsNoMem) throw std::bad_alloc();
+    return MakeError(ErrorCode::kNumerical, what + ": " + e.what());
   } catch (const std::exception& e) {
     return MakeError(ErrorCode::kNumerical, what + ": " + e.what());
   }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/file_changes.h"
 #include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
@@ -73,11 +74,12 @@ Result<ResultLog> ResultLog::Open(
 
 Status ResultLog::Append(const std::string& record) const {
   const std::string line = record + "\n";
-  const ssize_t written = ::write(file_, line.data(), line.size());
-  if (written == static_cast<ssize_t>(line.size()) && ::fdatasync(file_) == 0) {
-    return {};
-  }
-  return SystemError("cannot be written", path_);
+  const ::off_t end = ::lseek(file_, 0, SEEK_END);
+  if (WriteAll(file_, line) && ::fdatasync(file_) == 0) return {};
+  const Status error = SystemError("cannot be written", path_);
+  // Without the half of a line; if that fails, too, the next study drops it.
+  [[maybe_unused]] const int ignored = ::ftruncate(file_, end);
+  return error;
 }
 
 }  // namespace lowlap

@@ -10,6 +10,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/features/internal/opencv.h"
+#include "lowlap/features/internal/points/point_memory.h"
 
 namespace lowlap {
 namespace {
@@ -169,6 +170,7 @@ Result<PointFeatures> DetectPoints(const GrayImage& image,
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   LOWLAP_RETURN_IF_ERROR(image.Validate());
   if (std::min(image.width, image.height) < kMinSidePx) return PointFeatures{};
+  LOWLAP_RETURN_IF_ERROR(CheckMemoryOfPoints(image.width, image.height, {}));
   return CatchOpenCv("SIFT", [&]() -> Result<PointFeatures> {
     const SingleThreadedOpenCv single_threaded;
     const cv::Ptr<cv::SIFT> sift = cv::SIFT::create(

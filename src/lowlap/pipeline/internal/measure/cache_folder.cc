@@ -51,9 +51,10 @@ bool IsTemporary(const fs::path& file) {
 Result<CacheFolder> CacheFolder::Open(const std::string& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder, error)) {
-    return MakeError(ErrorCode::kIo, "cannot be made a folder for the cache",
-                     folder);
+  if (error) {
+    return MakeError(
+        ErrorCode::kIo,
+        "cannot be made a folder for the cache: " + error.message(), folder);
   }
   std::vector<fs::path> leftovers;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
