@@ -19,7 +19,7 @@ struct Flags {
   std::string scene;
   std::string output;
   std::vector<std::string> features = {"points", "lines", "coplanar"};
-  std::string coplanar_ties = "pairs";
+  std::string coplanar_ties = "planes";
   bool retriangulate = false;
   std::string refine_intrinsics;
   double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;

@@ -105,7 +105,7 @@ SolveArguments TakeComparedOptions(Keywords* keywords) {
   std::vector<std::string> features = {"points", "lines", "coplanar"};
   keywords->TakeWords("adjust_features", &features);
   RaiseIfError(SetAdjustedFeatures(features, &options.adjustment));
-  std::string ties = "pairs";
+  std::string ties = "planes";
   keywords->Take("coplanar_ties", &ties);
   options.adjustment.coplanar_ties = ValueOf(ParseCoplanarTies(ties));
   keywords->Take("principal_point_stddev",

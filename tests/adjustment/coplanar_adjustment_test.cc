@@ -65,6 +65,7 @@ class CoplanarAdjustmentTest
  protected:
   AdjustmentOptions Options() const {
     AdjustmentOptions options;
+    options.coplanar_ties = CoplanarTies::kPairs;
     options.coplanar_residual = GetParam();
     return options;
   }
@@ -165,6 +166,7 @@ TEST(CoplanarChainTest, ALineIsHeldByAFewPairsOnly) {
   ASSERT_THAT(BuildStructure(&test.scene, {}, {}), IsOk());
   const std::size_t all = test.scene.coplanar_pairs.size();
   AdjustmentOptions adjustment;
+  adjustment.coplanar_ties = CoplanarTies::kPairs;
   adjustment.max_pairs_per_line = 2;
   const Result<AdjustmentSummary> summary =
       AdjustScene(&test.scene, adjustment, {});
@@ -183,7 +185,9 @@ TEST(CoplanarTiesTest, PlanesHoldAChainBetterThanPairs) {
     TestSceneOptions options = ChainOptions();
     options.noise_px = 0.5;
     options.seed = seed;
-    by_pairs += RunChain(options, 0.05, {}).after;
+    AdjustmentOptions pairs;
+    pairs.coplanar_ties = CoplanarTies::kPairs;
+    by_pairs += RunChain(options, 0.05, pairs).after;
     AdjustmentOptions planes;
     planes.coplanar_ties = CoplanarTies::kPlanes;
     const Outcome outcome = RunChain(options, 0.05, planes);

@@ -2,144 +2,110 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
-#include "lowlap/adjustment/internal/planes/plane_fit.h"
-#include "lowlap/core/internal/random.h"
+#include "tests/adjustment/planes_fixture.h"
 #include "tests/support/matchers.h"
 
 namespace lowlap {
 namespace {
 
-using ::testing::IsEmpty;
+using ::testing::Each;
+using ::testing::Field;
 using testing::IsOk;
+using ::testing::Le;
 using ::testing::SizeIs;
 
-constexpr double kStddev = 0.002;
+constexpr double kStddev = PlaneLandmarks::kStddev;
 
-class Landmarks {
- public:
-  explicit Landmarks(std::uint64_t seed) : random_(seed) {}
-
-  double Uniform() { return random_.Uniform(-2, 2); }
-
-  void AddPoint(const Vec3& point) {
-    const Vec3 error(random_.Gaussian(), random_.Gaussian(),
-                     random_.Gaussian());
-    landmarks_.push_back({false, static_cast<int>(num_points_++), {}});
-    landmarks_.back().places = {Place(point + kStddev * error)};
-  }
-  void AddLine(const Vec3& from, const Vec3& to) {
-    landmarks_.push_back({true, static_cast<int>(state_.lines.size()), {}});
-    landmarks_.back().places = {Place(from), Place(to)};
-    state_.lines.emplace_back();
-  }
-  // Two lines across z = height, and the pair of them.
-  void AddPair(double height) {
-    for (int n = 0; n < 2; ++n) {
-      AddLine(Vec3(Uniform(), Uniform(), height),
-              Vec3(Uniform(), Uniform(), height));
-    }
-    PairState pair;
-    pair.second = static_cast<int>(state_.lines.size()) - 1;
-    pair.first = pair.second - 1;
-    state_.pairs.push_back(pair);
-  }
-  std::vector<PlaneState> Find() const {
-    const auto planes = FindPlanes(landmarks_, state_, {});
-    EXPECT_THAT(planes, IsOk());
-    return *planes;
-  }
-
- private:
-  static FreePlace Place(const Vec3& point) {
-    return {point, kStddev * kStddev * Mat3::Identity()};
-  }
-
-  Random random_;
-  std::size_t num_points_ = 0;
-  std::vector<FreeLandmark> landmarks_;
-  StructureState state_;
-};
-
-TEST(FindPlanes, FindsTwoPlanesInACloud) {
-  Landmarks landmarks(1);
-  for (int n = 0; n < 60; ++n) {
-    landmarks.AddPoint(Vec3(landmarks.Uniform(), landmarks.Uniform(), 1));
-    landmarks.AddPoint(Vec3(landmarks.Uniform(), landmarks.Uniform(), -0.5));
-    landmarks.AddPoint(
-        Vec3(landmarks.Uniform(), landmarks.Uniform(), landmarks.Uniform()));
-  }
-  for (int n = 0; n < 4; ++n) {
-    landmarks.AddPair(1);
-    landmarks.AddPair(-0.5);
-  }
-  const std::vector<PlaneState> planes = landmarks.Find();
-  ASSERT_THAT(planes, SizeIs(2));
-  for (const PlaneState& plane : planes) {
-    EXPECT_LT(plane.log10_nfa, -20);
-    EXPECT_GT(std::abs(plane.normal.z()), 0.9999);
-    const double height = plane.anchor.z() + plane.offset * plane.normal.z();
-    EXPECT_LT(std::min(std::abs(height - 1), std::abs(height + 0.5)), kStddev);
-    EXPECT_THAT(plane.lines, SizeIs(8));
-    // Sixty, and what of the cloud is there by chance.
-    EXPECT_GE(plane.points.size(), 55U);
-    EXPECT_LE(plane.points.size(), 65U);
-    EXPECT_LT(plane.thickness, 2 * kStddev);
-  }
+std::vector<PlaneState> Find(const PlaneLandmarks& landmarks) {
+  const auto planes = FindPlanes(landmarks.landmarks(), {});
+  EXPECT_THAT(planes, IsOk());
+  return *planes;
 }
 
-TEST(FindPlanes, ThicknessIsWhatDeviationsDoNotExplain) {
-  Landmarks landmarks(2);
-  Random random(3);
-  constexpr double kRoughness = 0.015;
-  for (int n = 0; n < 400; ++n) {
-    landmarks.AddPoint(Vec3(landmarks.Uniform(), landmarks.Uniform(),
-                            1 + kRoughness * random.Gaussian()));
-    landmarks.AddPoint(
-        Vec3(landmarks.Uniform(), landmarks.Uniform(), landmarks.Uniform()));
+// A floor that two pairs of views see, the second one `off` from where it is.
+PlaneLandmarks FloorOfTwoPairs(double off) {
+  PlaneLandmarks landmarks(1);
+  for (int n = 0; n < 100; ++n) landmarks.AddPoint(landmarks.OnFloor(1));
+  for (int n = 0; n < 50; ++n) landmarks.AddPoint(landmarks.InCloud());
+  landmarks.SeenFrom({1, 2});
+  for (int n = 0; n < 60; ++n) landmarks.AddPoint(landmarks.OnFloor(1 + off));
+  return landmarks;
+}
+
+double LoosestTie(const PlaneState& plane) {
+  double loosest = 0;
+  for (const PlaneTie& tie : plane.points) {
+    loosest = std::max(loosest, tie.looseness * plane.thickness);
   }
-  for (int n = 0; n < 6; ++n) landmarks.AddPair(1);
-  const std::vector<PlaneState> planes = landmarks.Find();
+  return loosest;
+}
+
+TEST(FindPlanes, FacetsOfDifferentPairsAreOnePlane) {
+  const std::vector<PlaneState> planes = Find(FloorOfTwoPairs(0));
   ASSERT_THAT(planes, SizeIs(1));
-  EXPECT_NEAR(planes[0].thickness, kRoughness, 0.25 * kRoughness);
+  EXPECT_GE(planes[0].points.size(), 158U);
+  EXPECT_LT(LoosestTie(planes[0]), 2 * kStddev);
+  const double height =
+      planes[0].anchor.z() + planes[0].offset * planes[0].normal.z();
+  EXPECT_NEAR(height, 1, kStddev);
 }
 
-// An NFA below 1 allows one plane in a cloud on average.
-TEST(FindPlanes, HardlyAPlaneIsInACloud) {
-  constexpr int kClouds = 100;
-  std::size_t num_planes = 0;
-  for (std::uint64_t seed = 0; seed < kClouds; ++seed) {
-    Landmarks landmarks(seed);
-    for (int n = 0; n < 200; ++n) {
-      landmarks.AddPoint(
-          Vec3(landmarks.Uniform(), landmarks.Uniform(), landmarks.Uniform()));
-    }
-    for (int n = 0; n < 5; ++n) landmarks.AddPair(landmarks.Uniform());
-    num_planes += landmarks.Find().size();
+// By less than drift may leave, by far more than the floor is thick.
+TEST(FindPlanes, AFacetThatDriftedIsTiedLoosely) {
+  constexpr double kOff = 0.05;
+  const std::vector<PlaneState> planes = Find(FloorOfTwoPairs(kOff));
+  ASSERT_THAT(planes, SizeIs(1));
+  EXPECT_GE(planes[0].points.size(), 155U);
+  EXPECT_GT(LoosestTie(planes[0]), 0.4 * kOff);
+  EXPECT_LT(LoosestTie(planes[0]), kOff);
+}
+
+TEST(FindPlanes, WhatIsFarApartStaysApart) {
+  EXPECT_THAT(Find(FloorOfTwoPairs(0.5)), SizeIs(2));
+}
+
+TEST(FindPlanes, LandmarksOfThinPairsJoin) {
+  // A rough floor: what joins it must be known as well as it is thick.
+  PlaneLandmarks landmarks(3);
+  Random random(5);
+  for (int n = 0; n < 100; ++n) {
+    landmarks.AddPoint(landmarks.OnFloor(1 + 0.01 * random.Gaussian()));
+    landmarks.AddPoint(landmarks.InCloud());
   }
-  EXPECT_LE(num_planes, kClouds / 5);
-}
-
-TEST(FindPlanes, WithoutLandmarksThereIsNone) {
-  EXPECT_THAT(Landmarks(0).Find(), IsEmpty());
-}
-
-TEST(PlaneFit, IsExactOnAPlane) {
-  const Vec3 normal = Vec3(1, 2, -1).normalized();
-  std::vector<FreeLandmark> landmarks;
-  Random random(4);
-  for (int n = 0; n < 10; ++n) {
-    Vec3 point(random.Gaussian(), random.Gaussian(), random.Gaussian());
-    point += (3 - normal.dot(point)) * normal;
-    landmarks.push_back({false, n, {{point, 1e-6 * Mat3::Identity()}}});
+  landmarks.SeenFrom({1, 2});
+  for (int n = 0; n < 3; ++n) {
+    landmarks.AddLine(landmarks.OnFloor(1), landmarks.OnFloor(1));
   }
-  std::vector<const FreeLandmark*> members;
-  for (const FreeLandmark& landmark : landmarks) members.push_back(&landmark);
-  const Plane plane = FitPlane(members, {Vec3(1, 1, -1).normalized(), 0}, 0.1);
-  EXPECT_NEAR(plane.normal.dot(normal), 1, 1e-12);
-  EXPECT_NEAR(plane.offset, 3, 1e-12);
-  EXPECT_NEAR(PlaneThickness(members, plane), 0.25e-3, 1e-9);
+  landmarks.AddLine(landmarks.InCloud(), landmarks.InCloud());
+  const std::vector<PlaneState> planes = Find(landmarks);
+  ASSERT_THAT(planes, SizeIs(1));
+  EXPECT_THAT(planes[0].lines, SizeIs(3));
+  EXPECT_THAT(planes[0].lines, Each(Field(&PlaneTie::landmark, Le(2))));
+}
+
+TEST(FindPlanes, DoNotJoinWhatNothingElseJoins) {
+  PlaneLandmarks landmarks(1);
+  for (int n = 0; n < 50; ++n) landmarks.AddPoint(landmarks.OnFloor(1));
+  for (int n = 0; n < 50; ++n) landmarks.AddPoint(landmarks.InCloud());
+  landmarks.SeenFrom({2, 3});
+  for (int n = 0; n < 50; ++n) landmarks.AddPoint(landmarks.OnFloor(1));
+  EXPECT_THAT(Find(landmarks), SizeIs(2));
+}
+
+// What three views see is in the facets of three pairs.
+TEST(FindPlanes, ALandmarkIsTiedOnce) {
+  PlaneLandmarks landmarks(2);
+  landmarks.SeenFrom({0, 1, 2});
+  for (int n = 0; n < 50; ++n) {
+    landmarks.AddPoint(landmarks.OnFloor(1));
+    landmarks.AddPoint(landmarks.InCloud());
+  }
+  const std::vector<PlaneState> planes = Find(landmarks);
+  ASSERT_THAT(planes, SizeIs(1));
+  EXPECT_LE(planes[0].points.size(), 55U);
 }
 
 }  // namespace

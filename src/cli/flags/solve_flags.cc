@@ -176,9 +176,10 @@ void AddAdjustFlags(CLI::App* command, SolveFlags* flags) {
 
 void AddCoplanarTiesFlag(CLI::App* command, std::string* ties) {
   AddOption(command, "--coplanar-ties", *ties,
-            "What of the coplanar kind holds the bundle adjustment: the pairs "
-            "of lines of the ratios, the planes of the scene with the points "
-            "and lines on them, or both")
+            "What of the coplanar kind holds the end of the bundle adjustment: "
+            "the pairs of lines of the ratios, the planes of the scene with "
+            "the points and lines on them (the pairs where there are none), or "
+            "both")
       .Must(Check::OneOf({"pairs", "planes", "both"}))
       .ShowDefault();
 }

@@ -33,7 +33,7 @@ struct SolveFlags {
   ScaleFlags scale;
   std::string strategy = "graph";
   std::vector<std::string> adjust_features = {"points", "lines", "coplanar"};
-  std::string coplanar_ties = "pairs";
+  std::string coplanar_ties = "planes";
   bool no_adjust = false;
   std::string refine_intrinsics;
   double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;

@@ -23,9 +23,12 @@ enum class AdjustedCoplanarResidual {
 
 /// What the coplanar kind holds together in the adjustment.
 enum class CoplanarTies {
-  kPairs,   // the pairs of lines of the ratios (the paper's, section 5)
-  kPlanes,  // at the end the planes of the scene, with all that is on them
-  kBoth,    // at the end both
+  /// The pairs of lines of the ratios (the paper's, section 5).
+  kPairs,
+  /// Those at first; at the end the planes of the scene with all that is on
+  /// them, and the pairs only where there are no planes.
+  kPlanes,
+  kBoth,  // at the end both
 };
 
 /// How tracks become landmarks.
@@ -82,7 +85,10 @@ struct AdjustmentOptions {
   /// Hold poses to the measured relative poses, as far as their covariances
   /// say. It decides where structure is thin, and hardly shows elsewhere.
   bool use_relative_poses = true;
-  CoplanarTies coplanar_ties = CoplanarTies::kPairs;
+  /// Hold baselines to the measured scale ratios, likewise: without them a
+  /// scale that little structure carries on may go anywhere.
+  bool use_scale_ratios = true;
+  CoplanarTies coplanar_ties = CoplanarTies::kPlanes;
   AdjustedCoplanarResidual coplanar_residual =
       AdjustedCoplanarResidual::kTransfer;
 

@@ -26,6 +26,9 @@ constexpr double kRoughTolerance = 1e-5;
 // Pairs could be exchanged for one another for ever.
 constexpr int kRoundsWithNewPairs = 3;
 constexpr int kRoundsWithPlanes = 3;
+// The rounds with planes go on from there.
+constexpr double kToleranceBeforePlanes = 1e-2;
+constexpr double kPlaneTolerance = 1e-4;
 constexpr double kFirstTolerance = 1e-3;
 
 // Root mean square error of points, lines and coplanar pairs, in pixels.
@@ -137,6 +140,9 @@ class Adjuster {
     if (options.use_relative_poses) {
       state_.priors = LoadRelativePosePriors(scene, cameras_);
     }
+    if (options.use_scale_ratios) {
+      state_.ratio_priors = LoadScaleRatioPriors(scene, cameras_);
+    }
     summary_.observations_without_camera =
         CountObservationsWithoutCamera(scene, cameras_);
   }
@@ -156,20 +162,23 @@ class Adjuster {
           Solve("fixed rotations", true, std::max(rough, kFirstTolerance)));
     }
     LOWLAP_RETURN_IF_ERROR(Solve("everything", false, rough));
+    const bool with_planes = options_.use_lines && options_.use_coplanar &&
+                             options_.coplanar_ties != CoplanarTies::kPairs;
+    const double tolerance =
+        with_planes
+            ? std::max(options_.outlier_round_tolerance, kToleranceBeforePlanes)
+            : options_.outlier_round_tolerance;
     bool at_rest = options_.max_outlier_rounds == 0;
     for (int round = 1; round <= options_.max_outlier_rounds; ++round) {
       LOWLAP_ASSIGN_OR_RETURN(const double changed,
                               Update(round <= kRoundsWithNewPairs));
-      at_rest = changed <= options_.outlier_round_tolerance;
+      at_rest = changed <= tolerance;
       if (at_rest) break;
       summary_.outlier_rounds = round;
       LOWLAP_RETURN_IF_ERROR(
           Solve("round " + std::to_string(round), false, rough));
     }
-    if (options_.use_lines && options_.use_coplanar &&
-        options_.coplanar_ties != CoplanarTies::kPairs) {
-      LOWLAP_RETURN_IF_ERROR(SolveWithPlanes(rough));
-    }
+    if (with_planes) LOWLAP_RETURN_IF_ERROR(SolveWithPlanes());
     LOWLAP_RETURN_IF_ERROR(
         Solve(kFinalStage, false, options_.function_tolerance));
     LOWLAP_RETURN_IF_ERROR(
@@ -262,19 +271,20 @@ class Adjuster {
     noise_ = EstimateAllNoise(cameras_, state_, options_);
   }
 
-  // The planes are those of structure that is adjusted already; what is on them
-  // is seen better every time.
-  Status SolveWithPlanes(double function_tolerance) {
-    if (options_.coplanar_ties == CoplanarTies::kPlanes) {
-      for (PairState& pair : state_.pairs) pair.used = false;
-    }
+  // The planes are those of structure that is adjusted already; every round
+  // draws together what lies on one. Where there are none, the pairs remain.
+  Status SolveWithPlanes() {
     for (int round = 1; round <= kRoundsWithPlanes; ++round) {
       LOWLAP_ASSIGN_OR_RETURN(
           state_.planes,
-          FindPlanes(FreeLandmarks(options_, noise_, cameras_, state_), state_,
+          FindPlanes(FreeLandmarks(options_, noise_, cameras_, state_),
                      context_));
+      if (state_.planes.empty()) break;
+      if (options_.coplanar_ties == CoplanarTies::kPlanes) {
+        for (PairState& pair : state_.pairs) pair.used = false;
+      }
       LOWLAP_RETURN_IF_ERROR(
-          Solve("planes " + std::to_string(round), false, function_tolerance));
+          Solve("planes " + std::to_string(round), false, kPlaneTolerance));
       LOWLAP_RETURN_IF_ERROR(Update(false));
     }
     summary_.planes = state_.planes.size();

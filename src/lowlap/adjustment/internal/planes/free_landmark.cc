@@ -1,5 +1,6 @@
 #include "lowlap/adjustment/internal/planes/free_landmark.h"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -17,6 +18,17 @@ FreePlace PlaceOnLine(const LineEstimate& line, double along, double noise_px) {
   return {line.point + along * line.direction, noise_px * noise_px * jacobian *
                                                    line.unit_covariance *
                                                    jacobian.transpose()};
+}
+
+template <class Track>
+std::vector<int> PosesOf(const CameraSet& cameras, const Track& track) {
+  std::vector<int> poses;
+  for (const auto& candidate : track.candidates) {
+    if (candidate.used) poses.push_back(cameras.views[candidate.view].pose);
+  }
+  std::sort(poses.begin(), poses.end());
+  poses.erase(std::unique(poses.begin(), poses.end()), poses.end());
+  return poses;
 }
 
 }  // namespace
@@ -38,10 +50,10 @@ std::vector<FreeLandmark> FreeLandmarks(const AdjustmentOptions& options,
         EstimateFromPixels(cameras, state.points[n]);
     if (!point) continue;
     const double variance = noise.points.stddev_px * noise.points.stddev_px;
-    landmarks.push_back(
-        {false,
-         static_cast<int>(n),
-         {{point->position, variance * point->unit_covariance}}});
+    landmarks.push_back({false,
+                         static_cast<int>(n),
+                         {{point->position, variance * point->unit_covariance}},
+                         PosesOf(cameras, state.points[n])});
   }
   for (std::size_t n = 0; n < state.lines.size(); ++n) {
     const LineTrackState& track = state.lines[n];
@@ -57,7 +69,8 @@ std::vector<FreeLandmark> FreeLandmarks(const AdjustmentOptions& options,
     };
     landmarks.push_back({true,
                          static_cast<int>(n),
-                         {place_at(track.low), place_at(track.high)}});
+                         {place_at(track.low), place_at(track.high)},
+                         PosesOf(cameras, track)});
   }
   return landmarks;
 }

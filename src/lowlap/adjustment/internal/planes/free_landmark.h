@@ -25,6 +25,7 @@ struct FreeLandmark {
   bool is_line = false;
   int index = -1;  // into StructureState::points or lines
   std::vector<FreePlace> places;
+  std::vector<int> poses;  // that see it, indices into CameraSet::poses
 
   /// Mean of the places.
   Vec3 Center() const;

@@ -3,186 +3,184 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lowlap/adjustment/internal/planes/facet.h"
 #include "lowlap/adjustment/internal/planes/plane_fit.h"
-#include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/robust/internal/nfa.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {
 
-constexpr int kNumThicknesses = 9;
-constexpr double kThickest = 1.0 / 128;  // of the scene's reach
-constexpr double kMemberReach = 3;       // deviations
+// What drift leaves of a plane. How much it is hardly matters, since ties are
+// as loose as what they join is apart.
+const double kMaxTurnRad = RadFromDeg(2.5);
+constexpr double kMaxShift = 0.03;  // of the scene's reach
+constexpr double kJoinReach = 3;    // deviations
+constexpr std::size_t kMinTies = 4;
 
-struct Hypothesis {
-  Plane plane;
-  std::size_t first = 0;  // indices of the free landmarks of its lines
-  std::size_t second = 0;
-};
+using FacetGroup = std::vector<const Facet*>;
 
-std::vector<Hypothesis> HypothesesOfPairs(
-    const std::vector<FreeLandmark>& landmarks, const StructureState& state) {
-  std::vector<int> by_line(state.lines.size(), -1);
-  for (std::size_t n = 0; n < landmarks.size(); ++n) {
-    if (landmarks[n].is_line) by_line[landmarks[n].index] = static_cast<int>(n);
+// The connected part of the scene that each landmark is in: what nothing else
+// joins, a plane does not.
+std::vector<std::size_t> PartsOf(const std::vector<FreeLandmark>& landmarks) {
+  int last = 0;
+  for (const FreeLandmark& landmark : landmarks) {
+    last = std::max(last, landmark.poses.back());
   }
-  std::vector<Hypothesis> hypotheses;
-  for (const PairState& pair : state.pairs) {
-    if (by_line[pair.first] < 0 || by_line[pair.second] < 0) continue;
-    Hypothesis hypothesis;
-    hypothesis.first = static_cast<std::size_t>(by_line[pair.first]);
-    hypothesis.second = static_cast<std::size_t>(by_line[pair.second]);
-    const FreeLandmark& a = landmarks[hypothesis.first];
-    const FreeLandmark& b = landmarks[hypothesis.second];
-    const Vec3 normal = (a.places[1].point - a.places[0].point)
-                            .cross(b.places[1].point - b.places[0].point);
-    if (!(normal.norm() > 0)) continue;
-    Plane& plane = hypothesis.plane;
-    plane.normal = normal.normalized();
-    plane.offset = 0.5 * plane.normal.dot(a.Center() + b.Center());
-    hypotheses.push_back(hypothesis);
+  UnionFind joined(static_cast<std::size_t>(last) + 1);
+  for (const FreeLandmark& landmark : landmarks) {
+    for (const int pose : landmark.poses) {
+      joined.Union(static_cast<std::size_t>(landmark.poses.front()),
+                   static_cast<std::size_t>(pose));
+    }
   }
-  return hypotheses;
+  std::vector<std::size_t> parts;
+  for (const FreeLandmark& landmark : landmarks) {
+    parts.push_back(
+        joined.Find(static_cast<std::size_t>(landmark.poses.front())));
+  }
+  return parts;
 }
 
-// How far the scene reaches: the middle nine tenths of the distances, made up
-// to all.
-double ReachOf(std::vector<double> distances) {
-  const auto at = [&](std::size_t n) {
-    std::nth_element(distances.begin(),
-                     distances.begin() + static_cast<std::ptrdiff_t>(n),
-                     distances.end());
-    return distances[n];
-  };
-  const std::size_t tail = distances.size() / 20;
-  const double low = at(tail);
-  return (at(distances.size() - 1 - tail) - low) / 0.9;
+// How far two facets are from one plane, in what is allowed; below 1 they are
+// taken for one.
+double Difference(const Facet& a, const Facet& b, double reach) {
+  const double cosine = std::abs(a.plane.normal.dot(b.plane.normal));
+  const Vec3 between = a.center - b.center;
+  const double shift = 0.5 * (std::abs(a.plane.normal.dot(between)) +
+                              std::abs(b.plane.normal.dot(between)));
+  return std::hypot(std::acos(std::min(1.0, cosine)) / kMaxTurnRad,
+                    shift / (kMaxShift * reach));
 }
 
-struct PlaneScore {
-  double log10_nfa = 0;
-  double thickness = 0;
+std::size_t PartOf(const Facet& facet, const std::vector<std::size_t>& parts) {
+  return parts[facet.members.front()];
+}
 
-  bool operator<(const PlaneScore& other) const {
-    return log10_nfa < other.log10_nfa;
-  }
-};
-
-class PlaneFinder {
- public:
-  PlaneFinder(const std::vector<FreeLandmark>& landmarks,
-              const StructureState& state)
-      : landmarks_(landmarks),
-        hypotheses_(HypothesesOfPairs(landmarks, state)),
-        taken_(landmarks.size(), 0),
-        factorials_(static_cast<int>(landmarks.size())),
-        log10_tests_(std::log10(
-            std::max<std::size_t>(1, hypotheses_.size() * kNumThicknesses))) {}
-
-  // Members only become fewer, and a score only worse: one that is computed
-  // anew and still the least is the least of all.
-  Result<std::vector<PlaneState>> Run(const RunContext& context) {
-    std::vector<PlaneScore> scores(hypotheses_.size());
-    LOWLAP_RETURN_IF_ERROR(
-        ParallelFor(context, {}, scores.size(),
-                    [&](std::size_t n) { scores[n] = ScoreOf(n); }));
-    std::vector<PlaneState> planes;
-    while (true) {
-      const auto best = std::min_element(scores.begin(), scores.end());
-      if (best == scores.end() || !(best->log10_nfa < 0)) break;
-      const auto n = static_cast<std::size_t>(best - scores.begin());
-      const PlaneScore again = ScoreOf(n);
-      if (again.log10_nfa > best->log10_nfa) {
-        *best = again;
-        continue;
-      }
-      *best = {};
-      PlaneState plane;
-      if (Fit(hypotheses_[n].plane, again, &plane)) {
-        planes.push_back(std::move(plane));
-      }
-    }
-    return planes;
-  }
-
- private:
-  PlaneScore ScoreOf(std::size_t hypothesis) const {
-    const auto& [plane, first, second] = hypotheses_[hypothesis];
-    PlaneScore best;
-    if (taken_[first] || taken_[second]) return best;
-    std::vector<Across> across;
-    std::vector<double> distances;
-    for (std::size_t n = 0; n < landmarks_.size(); ++n) {
-      const Across one = AcrossPlane(landmarks_[n], plane);
-      distances.push_back(one.distance);
-      if (!taken_[n]) across.push_back(one);
-    }
-    const double reach = ReachOf(std::move(distances));
-    double thickness = kThickest * reach;
-    for (int step = 0; step < kNumThicknesses; ++step, thickness *= 0.5) {
-      int n = 0, k = 0;
-      for (const Across& one : across) {
-        if (one.stddev > thickness) continue;
-        ++n;
-        k += std::abs(one.distance) <= 2 * thickness ? 1 : 0;
-      }
-      if (k <= 2) continue;
-      const double log10_nfa =
-          log10_tests_ + Log10ChanceOfSet(factorials_, n - 2, k - 2,
-                                          std::log10(4 * thickness / reach));
-      if (log10_nfa < best.log10_nfa) best = {log10_nfa, thickness};
-    }
-    return best;
-  }
-
-  // Fits the plane to its members and takes them; false if too few are left.
-  bool Fit(Plane plane, const PlaneScore& score, PlaneState* state) {
-    double thickness = score.thickness;
-    std::vector<const FreeLandmark*> members;
-    constexpr int kRounds = 5;
-    for (int round = 0; round < kRounds; ++round) {
-      members.clear();
-      for (std::size_t n = 0; n < landmarks_.size(); ++n) {
-        if (taken_[n]) continue;
-        const Across across = AcrossPlane(landmarks_[n], plane);
-        if (across.stddev <= score.thickness &&
-            std::abs(across.distance) <=
-                kMemberReach * std::hypot(across.stddev, thickness)) {
-          members.push_back(&landmarks_[n]);
+// Each facet, the best first, goes to the group that has the one closest to
+// it, or begins its own.
+std::vector<FacetGroup> GroupFacets(const std::vector<Facet>& facets,
+                                    const std::vector<std::size_t>& parts,
+                                    const SceneReach& reach) {
+  std::vector<FacetGroup> groups;
+  for (const Facet& facet : facets) {
+    const double across = reach.Along(facet.plane.normal);
+    FacetGroup* closest = nullptr;
+    double least = 1;
+    for (FacetGroup& group : groups) {
+      if (PartOf(*group.front(), parts) != PartOf(facet, parts)) continue;
+      for (const Facet* other : group) {
+        const double difference = Difference(facet, *other, across);
+        if (difference < least) {
+          least = difference;
+          closest = &group;
         }
       }
-      if (members.size() < 4) return false;  // any three are on one
-      plane = FitPlane(members, plane, thickness);
-      thickness = std::min(score.thickness, PlaneThickness(members, plane));
     }
+    if (closest == nullptr) {
+      groups.emplace_back();
+      closest = &groups.back();
+    }
+    closest->push_back(&facet);
+  }
+  return groups;
+}
+
+// How far the facet's plane is from the plane where its members are: the root
+// of the mean square.
+double DistanceBetween(const std::vector<FreeLandmark>& landmarks,
+                       const Facet& facet, const Plane& plane) {
+  double sum = 0;
+  for (const int member : facet.members) {
+    const Vec3 center = landmarks[member].Center();
+    const double of_plane = plane.normal.dot(center) - plane.offset;
+    const double of_facet = facet.plane.normal.dot(center) - facet.plane.offset;
+    const double side = facet.plane.normal.dot(plane.normal) < 0 ? -1 : 1;
+    sum += (of_plane - side * of_facet) * (of_plane - side * of_facet);
+  }
+  return std::sqrt(sum / static_cast<double>(facet.members.size()));
+}
+
+class PlaneBuilder {
+ public:
+  PlaneBuilder(const std::vector<FreeLandmark>& landmarks,
+               const std::vector<std::size_t>& parts)
+      : landmarks_(landmarks), parts_(parts), taken_(landmarks.size(), 0) {}
+
+  // The plane of the facets, and takes what is on it; false if too little is.
+  bool Build(const FacetGroup& facets, PlaneState* state) {
+    std::vector<const FreeLandmark*> members;
+    double thickest = 0;
+    for (const Facet* facet : facets) {
+      for (const int member : facet->members) {
+        members.push_back(&landmarks_[member]);
+      }
+      thickest = std::max(thickest, facet->thickness);
+    }
+    // All members alike: the facets are off by more than the members' own
+    // deviations.
+    const Plane& best = facets.front()->plane;
+    double spread = thickest;
+    for (const Facet* facet : facets) {
+      spread = std::max(spread, DistanceBetween(landmarks_, *facet, best));
+    }
+    const Plane plane = FitPlane(members, best, spread);
     state->normal = plane.normal;
-    for (const FreeLandmark* member : members) {
-      state->anchor += member->Center();
-      (member->is_line ? state->lines : state->points).push_back(member->index);
-      taken_[member - landmarks_.data()] = 1;
+    state->thickness = thickest;
+    state->log10_nfa = facets.front()->log10_nfa;
+    std::size_t count = 0;
+    const auto add = [&](int index, double looseness) {
+      if (taken_[index] != 0) return;
+      taken_[index] = 1;
+      const FreeLandmark& landmark = landmarks_[index];
+      (landmark.is_line ? state->lines : state->points)
+          .push_back({landmark.index, looseness});
+      state->anchor += landmark.Center();
+      ++count;
+    };
+    for (const Facet* facet : facets) {
+      const double off = std::hypot(facet->thickness,
+                                    DistanceBetween(landmarks_, *facet, plane));
+      for (const int member : facet->members) add(member, off / thickest);
     }
-    state->anchor /= static_cast<double>(members.size());
+    if (count < kMinTies) return false;
+    const std::size_t part = PartOf(*facets.front(), parts_);
+    for (std::size_t n = 0; n < landmarks_.size(); ++n) {
+      if (parts_[n] != part) continue;
+      const Across across = AcrossPlane(landmarks_[n], plane);
+      if (across.stddev <= thickest &&
+          std::abs(across.distance) <=
+              kJoinReach * std::hypot(across.stddev, thickest)) {
+        add(static_cast<int>(n), 1);
+      }
+    }
+    state->anchor /= static_cast<double>(count);
     state->offset = plane.offset - plane.normal.dot(state->anchor);
-    state->thickness = thickness;
-    state->log10_nfa = score.log10_nfa;
     return true;
   }
 
+ private:
   const std::vector<FreeLandmark>& landmarks_;
-  const std::vector<Hypothesis> hypotheses_;
+  const std::vector<std::size_t>& parts_;
   std::vector<char> taken_;
-  LogFactorials factorials_;
-  double log10_tests_;
 };
 
 }  // namespace
 
 Result<std::vector<PlaneState>> FindPlanes(
-    const std::vector<FreeLandmark>& landmarks, const StructureState& state,
-    const RunContext& context) {
-  if (landmarks.size() < 4) return std::vector<PlaneState>();
-  return PlaneFinder(landmarks, state).Run(context);
+    const std::vector<FreeLandmark>& landmarks, const RunContext& context) {
+  if (landmarks.empty()) return std::vector<PlaneState>();
+  const SceneReach reach(landmarks);
+  LOWLAP_ASSIGN_OR_RETURN(const std::vector<Facet> facets,
+                          FindFacets(landmarks, reach, context));
+  const std::vector<std::size_t> parts = PartsOf(landmarks);
+  PlaneBuilder builder(landmarks, parts);
+  std::vector<PlaneState> planes;
+  for (const FacetGroup& group : GroupFacets(facets, parts, reach)) {
+    PlaneState plane;
+    if (builder.Build(group, &plane)) planes.push_back(std::move(plane));
+  }
+  return planes;
 }
 
 }  // namespace lowlap

@@ -7,21 +7,16 @@
 
 namespace lowlap {
 
-/// The planes of the scene, a contrario. A hypothesis is the plane of two lines
-/// that a coplanar pair joins. On a ladder of thicknesses t, let n landmarks be
-/// known across it to better than t, and k of them lie within 2 t of it; E is
-/// how far the scene reaches across the plane, and what is not on it lies
-/// anywhere there:
-///   NFA = T C(n - 2, k - 2) (4 t / E)^(k - 2),
-/// T the number of hypotheses times that of thicknesses. The plane of least NFA
-/// is fitted to its members, which then belong to no other one, and so on while
-/// the NFA is below 1.
+/// The planes of the scene. Facets of different pairs (FindFacets) that face
+/// the same way, to within what badly joined cameras drift, are one plane; it
+/// is fitted to the members of all, and what else lies on it, and is known as
+/// well as it is thick, joins them.
 ///
-/// The thickness of a plane is what its members' distances have beyond their
-/// own deviations: real walls are not flat. At least a quarter of the median
-/// deviation.
+/// A facet is tied as loosely as it is off: one that two cameras carried away
+/// by many thicknesses pulls them from there, and is held the tighter the
+/// closer it comes. What is not on the plane at all, the front of a box before
+/// a wall, stays off where its cameras are known, and hardly pulls.
 Result<std::vector<PlaneState>> FindPlanes(
-    const std::vector<FreeLandmark>& landmarks, const StructureState& state,
-    const RunContext& context);
+    const std::vector<FreeLandmark>& landmarks, const RunContext& context);
 
 }  // namespace lowlap

@@ -254,6 +254,7 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
   state.lines.clear();
   state.pairs.clear();
   state.priors.clear();
+  state.ratio_priors.clear();
   const ProblemSelection selection = SelectForSolve(cameras, state, freed);
   if (groups.empty() || selection.IsEmpty()) return {};
   const std::vector<Component> components =

@@ -47,7 +47,7 @@ ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
   AddLines();
   AddPairs();
   AddPlanes();
-  AddRelativePoses();
+  AddPriors();
   AddPrincipalPoints();
   SetManifolds();
   SplitBlocks();
@@ -218,27 +218,30 @@ void ProblemBuilder::AddPlanes() {
   };
   for (const int p : selection_.planes) {
     const PlaneState& plane = state_->planes[p];
-    const auto place_at = [&](const Vec3& place, int pose) {
-      return PlaceOnPlane(plane.anchor, 1 / plane.thickness,
+    const auto place_at = [&](const PlaneTie& tie, const Vec3& place,
+                              int pose) {
+      return PlaceOnPlane(plane.anchor, 1 / (tie.looseness * plane.thickness),
                           (place - cameras_->poses[pose].center).norm());
     };
-    for (const int n : plane.points) {
-      const PointTrackState& point = state_->points[n];
+    for (const PlaneTie& tie : plane.points) {
+      const PointTrackState& point = state_->points[tie.landmark];
       if (!point.IsLandmark()) continue;
       const int pose = pose_of(point);
       AddResiduals(
-          std::make_unique<PointOnPlaneCost>(place_at(point.position, pose)),
-          loss, {PointBlock(n), PlaneBlock(p), CenterBlock(pose)});
+          std::make_unique<PointOnPlaneCost>(
+              place_at(tie, point.position, pose)),
+          loss, {PointBlock(tie.landmark), PlaneBlock(p), CenterBlock(pose)});
     }
-    for (const int n : plane.lines) {
-      const LineTrackState& line = state_->lines[n];
+    for (const PlaneTie& tie : plane.lines) {
+      const LineTrackState& line = state_->lines[tie.landmark];
       if (!line.IsLandmark()) continue;
       const int pose = pose_of(line);
-      AddResiduals(std::make_unique<LineOnPlaneCost>(
-                       place_at(line.point + line.low * line.direction, pose),
-                       place_at(line.point + line.high * line.direction, pose),
-                       line.low, line.high),
-                   loss, {LineBlock(n), PlaneBlock(p), CenterBlock(pose)});
+      AddResiduals(
+          std::make_unique<LineOnPlaneCost>(
+              place_at(tie, line.point + line.low * line.direction, pose),
+              place_at(tie, line.point + line.high * line.direction, pose),
+              line.low, line.high),
+          loss, {LineBlock(tie.landmark), PlaneBlock(p), CenterBlock(pose)});
     }
   }
 }
@@ -255,8 +258,8 @@ void ProblemBuilder::AddPrincipalPoints() {
   }
 }
 
-void ProblemBuilder::AddRelativePoses() {
-  // In standard deviations; a false relative pose loses its hold.
+void ProblemBuilder::AddPriors() {
+  // In standard deviations; a false measurement loses its hold.
   constexpr double kLossScale = 3;
   losses_.push_back(std::make_unique<ceres::CauchyLoss>(kLossScale));
   ceres::LossFunction* loss = losses_.back().get();
@@ -266,12 +269,28 @@ void ProblemBuilder::AddRelativePoses() {
       component_of[pose] = static_cast<int>(n);
     }
   }
+  // Whether one component holds all; the centre of a pose without structure is
+  // none of the unknowns.
+  const auto in_one = [&](std::initializer_list<int> poses) {
+    const int component = component_of[*poses.begin()];
+    return component >= 0 &&
+           std::all_of(poses.begin(), poses.end(), [&](int pose) {
+             return component_of[pose] == component;
+           });
+  };
   for (const RelativePosePrior& prior : state_->priors) {
-    const int component = component_of[prior.first];
-    if (component < 0 || component != component_of[prior.second]) continue;
+    if (!in_one({prior.first, prior.second})) continue;
     AddResiduals(std::make_unique<RelativePoseCost>(prior.measured), loss,
                  {RotationBlock(prior.first), CenterBlock(prior.first),
                   RotationBlock(prior.second), CenterBlock(prior.second)});
+  }
+  for (const ScaleRatioPrior& prior : state_->ratio_priors) {
+    if (!in_one({prior.first, prior.middle, prior.last})) continue;
+    AddResiduals(std::make_unique<ScaleRatioCost>(prior.log_ratio,
+                                                  prior.log_ratio_stddev),
+                 loss,
+                 {CenterBlock(prior.first), CenterBlock(prior.middle),
+                  CenterBlock(prior.last)});
   }
 }
 

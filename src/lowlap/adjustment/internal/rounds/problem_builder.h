@@ -48,7 +48,7 @@ class ProblemBuilder {
   void AddLines();
   void AddPairs();
   void AddPlanes();
-  void AddRelativePoses();
+  void AddPriors();
   void AddPrincipalPoints();
   void SetManifolds();
   void SplitBlocks();

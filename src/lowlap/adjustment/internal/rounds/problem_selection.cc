@@ -51,14 +51,14 @@ void MoveComponent(const Component& component, const Eigen::Quaterniond& turn,
 template <class Visit>
 void VisitPosesOf(const CameraSet& cameras, const StructureState& state,
                   const PlaneState& plane, const Visit& visit) {
-  for (const int n : plane.points) {
-    if (state.points[n].IsLandmark()) {
-      visit(FirstPose(cameras, state.points[n]));
+  const auto visit_all = [&](const auto& ties, const auto& tracks) {
+    for (const PlaneTie& tie : ties) {
+      const auto& track = tracks[tie.landmark];
+      if (track.IsLandmark()) visit(FirstPose(cameras, track));
     }
-  }
-  for (const int n : plane.lines) {
-    if (state.lines[n].IsLandmark()) visit(FirstPose(cameras, state.lines[n]));
-  }
+  };
+  visit_all(plane.points, state.points);
+  visit_all(plane.lines, state.lines);
 }
 
 }  // namespace
@@ -96,7 +96,8 @@ ProblemSelection SelectForSolve(const CameraSet& cameras,
   std::vector<char> on_plane(state.lines.size(), 0);
   for (std::size_t n = 0; n < state.planes.size(); ++n) {
     selection.planes.push_back(static_cast<int>(n));
-    for (const int line : state.planes[n].lines) on_plane[line] = 1;
+    for (const PlaneTie& tie : state.planes[n].lines)
+      on_plane[tie.landmark] = 1;
   }
   for (std::size_t n = 0; n < state.lines.size(); ++n) {
     const LineTrackState& line = state.lines[n];

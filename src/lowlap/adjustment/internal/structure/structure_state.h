@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "lowlap/adjustment/internal/costs/relative_pose_prior.h"
+#include "lowlap/adjustment/internal/costs/scale_ratio_prior.h"
 #include "lowlap/adjustment/internal/structure/line_track.h"
 #include "lowlap/adjustment/internal/structure/noise_scale.h"
 #include "lowlap/adjustment/internal/structure/point_track.h"
@@ -21,6 +22,12 @@ struct PairState {
   int times_dropped = 0;
 };
 
+/// A landmark that a plane holds.
+struct PlaneTie {
+  int landmark = -1;     // index into StructureState::points or lines
+  double looseness = 1;  // what it may be off, in thicknesses of the plane
+};
+
 /// A plane of the scene, normal . (x - anchor) = offset, and the landmarks that
 /// are tied to it.
 struct PlaneState {
@@ -29,8 +36,8 @@ struct PlaneState {
   double offset = 0;
   double thickness = 0;  // standard deviation of what is on it, world units
   double log10_nfa = 0;
-  std::vector<int> points;  // indices into StructureState
-  std::vector<int> lines;
+  std::vector<PlaneTie> points;
+  std::vector<PlaneTie> lines;
 };
 
 /// All tracks and landmarks of a scene, in the form in which they are worked
@@ -41,6 +48,7 @@ struct StructureState {
   std::vector<PairState> pairs;
   std::vector<PlaneState> planes;
   std::vector<RelativePosePrior> priors;
+  std::vector<ScaleRatioPrior> ratio_priors;
 
   /// Whether both lines of the pair are landmarks.
   bool HasLines(const PairState& pair) const {
