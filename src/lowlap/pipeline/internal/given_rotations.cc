@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "lowlap/averaging/internal/error_limits.h"
-#include "lowlap/averaging/rotations/scene_rotations.h"
+#include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 #include "lowlap/core/internal/median.h"
 #include "lowlap/geometry/internal/rotation.h"
 
@@ -18,19 +18,37 @@ double ResidualRad(const RelativePose& pose,
                          cam_from_world.at(pose.views.first).transpose());
 }
 
-// The rotations, with the relative poses that contradict them as outliers.
+// Settles the alternatives of the scene's relative poses, drops those of views
+// without a rotation, and finds those that contradict the rotations.
 SceneRotations Compare(const std::map<ViewId, Mat3>& cam_from_world,
-                       const PoseOptions& options, const Scene& scene) {
+                       const PoseOptions& options, Scene* scene) {
   SceneRotations rotations;
   rotations.cam_from_world = cam_from_world;
   std::vector<double> residuals_rad;
-  for (const auto& entry : scene.relative_poses) {
-    residuals_rad.push_back(ResidualRad(entry.second, cam_from_world));
+  auto& poses = scene->relative_poses;
+  for (auto entry = poses.begin(); entry != poses.end();) {
+    RelativePose& pose = entry->second;
+    if (cam_from_world.count(pose.views.first) == 0 ||
+        cam_from_world.count(pose.views.second) == 0) {
+      entry = poses.erase(entry);
+      continue;
+    }
+    RelativePose closest = WithHypothesis(pose, 0);
+    for (std::size_t n = 1; n < NumHypotheses(pose); ++n) {
+      RelativePose other = WithHypothesis(pose, n);
+      if (ResidualRad(other, cam_from_world) <
+          ResidualRad(closest, cam_from_world)) {
+        closest = std::move(other);
+      }
+    }
+    pose = std::move(closest);
+    residuals_rad.push_back(ResidualRad(pose, cam_from_world));
+    ++entry;
   }
   rotations.median_residual_rad = Median(residuals_rad);
   const double sigma_rad = ResidualStddev<3>(std::move(residuals_rad));
   const ErrorLimits limits = LimitsOf(options);
-  for (const auto& [views, pose] : scene.relative_poses) {
+  for (const auto& [views, pose] : poses) {
     const double residual_rad = ResidualRad(pose, cam_from_world);
     if (residual_rad > limits.RotationRad(sigma_rad, RotationStddev(pose))) {
       rotations.outliers.push_back(
@@ -46,7 +64,7 @@ Result<PoseSummary> SolveGivenRotations(
     const std::map<ViewId, Mat3>& cam_from_world, const SolveOptions& options,
     const RunContext& context, StageLog* stages, Scene* scene) {
   SolveStart start;
-  start.rotations = Compare(cam_from_world, options.poses, *scene);
+  start.rotations = Compare(cam_from_world, options.poses, scene);
   const auto ratios =
       EstimateBelievedRatios(scene, start, options, context, stages);
   if (!ratios) return tl::unexpected<Error>(ratios.error());

@@ -9,13 +9,13 @@
 
 namespace lowlap {
 
-/// Ratios and poses under rotations that a host has found, one for every view:
-/// scene->poses get them as they are.
+/// Ratios and poses under rotations that a host has found: scene->poses get
+/// them as they are; views without one are not placed.
 ///
-/// A relative pose that contradicts them, by the rule of AverageSceneRotations,
-/// is left out; relative poses are taken to have one motion each. Errors, with
-/// the scene in an intermediate state: those of the ratios and of
-/// SolveScenePoses.
+/// Of the motions of a relative pose the one that is closest to the rotations
+/// is taken. A relative pose that contradicts them, by the rule of
+/// AverageSceneRotations, is left out. Errors, with the scene in an
+/// intermediate state: those of the ratios and of SolveScenePoses.
 Result<PoseSummary> SolveGivenRotations(
     const std::map<ViewId, Mat3>& cam_from_world, const SolveOptions& options,
     const RunContext& context, StageLog* stages, Scene* scene);
