@@ -228,6 +228,28 @@ TEST(CoplanarTiesTest, PlanesOfLinesAlone) {
             static_cast<std::size_t>(options.num_lines));
 }
 
+// Without rounds the observations are taken as they are, by planes too.
+TEST(CoplanarTiesTest, PlanesLeaveObservationsAloneWithoutRounds) {
+  TestSceneOptions options = ChainOptions();
+  options.noise_px = 0.5;
+  TestScene test = MakeTestScene(options);
+  test::PerturbScales(0.05, 71, &test.scene);
+  ASSERT_THAT(BuildStructure(&test.scene, {}, {}), IsOk());
+  std::size_t taken = 0;
+  for (auto& [id, landmark] : test.scene.structure) {
+    // Off by what a round would drop.
+    if (id.value() % 20 == 0) landmark.observations.front().pixel_px.x() += 60;
+    taken += landmark.observations.size();
+  }
+  AdjustmentOptions planes;
+  planes.max_outlier_rounds = 0;
+  const Result<AdjustmentSummary> summary =
+      AdjustScene(&test.scene, planes, {});
+  ASSERT_THAT(summary, IsOk());
+  EXPECT_GE(summary->planes, 3u);
+  EXPECT_EQ(summary->points.observations_used, taken);
+}
+
 TEST(CoplanarTiesTest, GoByTheirNames) {
   EXPECT_EQ(*ParseCoplanarTies("pairs"), CoplanarTies::kPairs);
   EXPECT_EQ(*ParseCoplanarTies("planes"), CoplanarTies::kPlanes);

@@ -26,7 +26,7 @@ constexpr double kRoughTolerance = 1e-5;
 // Pairs could be exchanged for one another for ever.
 constexpr int kRoundsWithNewPairs = 3;
 constexpr int kRoundsWithPlanes = 3;
-// The rounds with planes go on from there.
+// The share of the observations that may still change when planes take over.
 constexpr double kToleranceBeforePlanes = 1e-2;
 constexpr double kPlaneTolerance = 1e-4;
 constexpr double kFirstTolerance = 1e-3;
@@ -162,23 +162,29 @@ class Adjuster {
           Solve("fixed rotations", true, std::max(rough, kFirstTolerance)));
     }
     LOWLAP_RETURN_IF_ERROR(Solve("everything", false, rough));
-    const bool with_planes = options_.use_lines && options_.use_coplanar &&
-                             options_.coplanar_ties != CoplanarTies::kPairs;
-    const double tolerance =
-        with_planes
-            ? std::max(options_.outlier_round_tolerance, kToleranceBeforePlanes)
-            : options_.outlier_round_tolerance;
+    bool with_planes = options_.use_lines && options_.use_coplanar &&
+                       options_.coplanar_ties != CoplanarTies::kPairs;
     bool at_rest = options_.max_outlier_rounds == 0;
     for (int round = 1; round <= options_.max_outlier_rounds; ++round) {
       LOWLAP_ASSIGN_OR_RETURN(const double changed,
                               Update(round <= kRoundsWithNewPairs));
-      at_rest = changed <= tolerance;
+      if (with_planes && changed <= kToleranceBeforePlanes) {
+        LOWLAP_RETURN_IF_ERROR(LinkPlanes());
+        if (!state_.planes.empty()) break;
+        with_planes = false;
+      }
+      at_rest = changed <= options_.outlier_round_tolerance;
       if (at_rest) break;
       summary_.outlier_rounds = round;
       LOWLAP_RETURN_IF_ERROR(
           Solve("round " + std::to_string(round), false, rough));
     }
-    if (with_planes) LOWLAP_RETURN_IF_ERROR(SolveWithPlanes());
+    if (with_planes && state_.planes.empty()) {
+      LOWLAP_RETURN_IF_ERROR(LinkPlanes());
+    }
+    if (!state_.planes.empty()) {
+      LOWLAP_RETURN_IF_ERROR(SolveWithPlanes(&at_rest));
+    }
     LOWLAP_RETURN_IF_ERROR(
         Solve(kFinalStage, false, options_.function_tolerance));
     LOWLAP_RETURN_IF_ERROR(
@@ -271,21 +277,28 @@ class Adjuster {
     noise_ = EstimateAllNoise(cameras_, state_, options_);
   }
 
-  // The planes are those of structure that is adjusted already; every round
-  // draws together what lies on one. Where there are none, the pairs remain.
-  Status SolveWithPlanes() {
+  // The planes of the structure as it is; those before, should there be none.
+  Status LinkPlanes() {
+    LOWLAP_ASSIGN_OR_RETURN(
+        std::vector<PlaneState> planes,
+        FindPlanes(FreeLandmarks(options_, noise_, cameras_, state_),
+                   context_));
+    if (!planes.empty()) state_.planes = std::move(planes);
+    return {};
+  }
+
+  // Every round draws together what lies on a plane.
+  Status SolveWithPlanes(bool* at_rest) {
+    if (options_.coplanar_ties == CoplanarTies::kPlanes) {
+      for (PairState& pair : state_.pairs) pair.used = false;
+    }
     for (int round = 1; round <= kRoundsWithPlanes; ++round) {
-      LOWLAP_ASSIGN_OR_RETURN(
-          state_.planes,
-          FindPlanes(FreeLandmarks(options_, noise_, cameras_, state_),
-                     context_));
-      if (state_.planes.empty()) break;
-      if (options_.coplanar_ties == CoplanarTies::kPlanes) {
-        for (PairState& pair : state_.pairs) pair.used = false;
-      }
+      if (round > 1) LOWLAP_RETURN_IF_ERROR(LinkPlanes());
       LOWLAP_RETURN_IF_ERROR(
           Solve("planes " + std::to_string(round), false, kPlaneTolerance));
-      LOWLAP_RETURN_IF_ERROR(Update(false));
+      if (options_.max_outlier_rounds == 0) continue;
+      LOWLAP_ASSIGN_OR_RETURN(const double changed, Update(false));
+      *at_rest = changed <= options_.outlier_round_tolerance;
     }
     summary_.planes = state_.planes.size();
     for (const PlaneState& plane : state_.planes) {
