@@ -41,6 +41,69 @@ TEST(PairDirections, NeedsTwoVotes) {
   EXPECT_TRUE(PairsOf(scene).empty());
 }
 
+// Lines matched along one part of a direction that is not quite parallel to the
+// rest: what all lines of it say is another direction.
+TEST(PairDirections, LeavesOutAllLinesWhereTheMatchedOnesDiffer) {
+  const auto scene = MakeLineScene({}, 1);
+  auto directions1 = FindVanishingDirections(scene.views.features1, {});
+  const auto directions2 = FindVanishingDirections(scene.views.features2, {});
+  const Mat3 turn = RotationFromAngleAxis(Vec3::Constant(RadFromDeg(3)));
+  for (VanishingDirection& direction : directions1) {
+    direction.direction = turn * direction.direction;
+  }
+  const auto pairs =
+      PairDirections(scene.views.features1, scene.views.features2, directions1,
+                     directions2, scene.line_matches);
+  int num_whole = 0;
+  for (const DirectionPair& pair : pairs) {
+    if (pair.num_matches != 12) continue;
+    ++num_whole;
+    EXPECT_LT(DirectionResidual(pair, scene.cam2_from_cam1.rotation).norm(),
+              1e-3);
+  }
+  EXPECT_EQ(num_whole, 3);
+}
+
+TEST(PossibleDirections, AreThoseThatNoMatchConnects) {
+  auto scene = MakeLineScene({}, 1);
+  const auto directions1 = FindVanishingDirections(scene.views.features1, {});
+  const auto directions2 = FindVanishingDirections(scene.views.features2, {});
+  ASSERT_EQ(directions1.size(), 3u);
+  EXPECT_TRUE(
+      PossibleDirections(directions1, directions2, PairsOf(scene)).empty());
+  scene.line_matches.clear();
+  const auto possible = PossibleDirections(directions1, directions2, {});
+  EXPECT_EQ(possible.size(), 9u);
+  int num_right = 0;
+  for (const DirectionPair& pair : possible) {
+    EXPECT_EQ(pair.num_matches, 0);
+    // Each is known to a fraction of a degree; there are nine to choose from.
+    EXPECT_GT(pair.agreement_digits, 0.5);
+    EXPECT_LT(pair.agreement_digits, 2);
+    num_right +=
+        DirectionResidual(pair, scene.cam2_from_cam1.rotation).norm() < 1;
+  }
+  EXPECT_EQ(num_right, 3);
+  // The truth has only the wrong ones against it.
+  double all = 0, wrong = 0;
+  for (const DirectionPair& pair : possible) {
+    all += pair.agreement_digits;
+    if (DirectionResidual(pair, scene.cam2_from_cam1.rotation).norm() > 1) {
+      wrong += pair.agreement_digits;
+    }
+  }
+  EXPECT_NEAR(DirectionPenalty(possible, scene.cam2_from_cam1.rotation), wrong,
+              0.1);
+  EXPECT_LE(DirectionPenalty(possible, Mat3::Identity()), all);
+}
+
+// A direction that is known poorly agrees with another by chance.
+TEST(PossibleDirections, SayNothingWhereTheyAreVague) {
+  VanishingDirection direction;
+  direction.covariance = Vec3(1, 1, 0).asDiagonal();
+  EXPECT_TRUE(PossibleDirections({direction}, {direction}, {}).empty());
+}
+
 TEST(DirectionResidual, HasTheDerivativeOfFiniteDifferences) {
   // With round covariances the weights do not turn with the rotation.
   DirectionPair pair;

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "lowlap/two_view/internal/same_pose.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
@@ -40,6 +41,9 @@ TEST(PoseSearch, TheBestCandidateIsTheTruth) {
     EXPECT_LT(candidates[0].support.log10_nfa, -100);
     for (std::size_t n = 1; n < candidates.size(); ++n) {
       EXPECT_LE(candidates[n].score, candidates[n - 1].score);
+      for (std::size_t m = 0; m < n; ++m) {
+        EXPECT_FALSE(SamePose(candidates[n].pose, candidates[m].pose));
+      }
     }
   }
 }
@@ -60,8 +64,34 @@ TEST(PoseSearch, TwoSharedDirectionsGiveACandidateOfTheirOwn) {
   Random random(1);
   int num_samples = 0;
   const auto candidates = search.Search(random, num_samples);
-  ASSERT_GE(candidates.size(), 2u);
+  ASSERT_FALSE(candidates.empty());
   EXPECT_LT(candidates[0].direction_penalty, 1);
+}
+
+// With a false direction the rotation is a false one, too, and has a candidate
+// that is not the best.
+TEST(PoseSearch, WrongDirectionsDoNotWin) {
+  const TwoViewScene scene = NoisyScene(11);
+  const PointPairs pairs = scene.Pairs();
+  const Mat3 wrong = RotationFromAngleAxis(Vec3(0, RadFromDeg(20), 0)) *
+                     scene.cam2_from_cam1.rotation;
+  std::vector<DirectionPair> directions;
+  for (const Vec3& direction : {Vec3(1, 0.1, 0.3), Vec3(0.1, 1, 0.2)}) {
+    DirectionPair pair;
+    pair.direction1 = direction.normalized();
+    pair.direction2 = wrong * pair.direction1;
+    pair.covariance1 = pair.covariance2 = 1e-6 * Mat3::Identity();
+    pair.num_matches = 3;
+    directions.push_back(pair);
+  }
+  PoseSearch search(pairs, directions, kLaw, {});
+  Random random(1);
+  int num_samples = 0;
+  const auto candidates = search.Search(random, num_samples);
+  ASSERT_GE(candidates.size(), 2u);
+  EXPECT_TRUE(SamePose(candidates[0].pose, scene.cam2_from_cam1));
+  EXPECT_NEAR(candidates[0].direction_penalty, 6, 1e-9);
+  EXPECT_NEAR(candidates[0].score, search.ScoreOf(candidates[0].pose), 1e-9);
 }
 
 TEST(PoseSearch, FinishingFindsTheSigns) {
@@ -84,17 +114,6 @@ TEST(PoseSearch, CoreScoreCountsEveryPerfectMatchOnce) {
   const PoseSearch search(pairs, {}, kLaw, {});
   EXPECT_NEAR(search.CoreScore(scene.cam2_from_cam1, 1), 40 * std::log(10.0),
               1e-6);
-}
-
-TEST(SamePose, LooksAtRotationAndDirection) {
-  const RigidTransform pose{Mat3::Identity(), Vec3::UnitX()};
-  RigidTransform other = pose;
-  EXPECT_TRUE(SamePose(pose, other));
-  other.rotation = RotationFromAngleAxis(Vec3(0, 0, RadFromDeg(0.6)));
-  EXPECT_FALSE(SamePose(pose, other));
-  other = pose;
-  other.translation = Vec3(1, std::tan(RadFromDeg(2.5)), 0).normalized();
-  EXPECT_FALSE(SamePose(pose, other));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/validation.h"
-#include "lowlap/two_view/internal/pose_search.h"
+#include "lowlap/two_view/internal/same_pose.h"
 
 namespace lowlap {
 namespace {

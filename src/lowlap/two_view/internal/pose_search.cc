@@ -12,6 +12,7 @@
 #include "lowlap/two_view/internal/chance_support.h"
 #include "lowlap/two_view/internal/kernels/five_point.h"
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
+#include "lowlap/two_view/internal/same_pose.h"
 #include "lowlap/two_view/internal/sharpen_pose.h"
 
 namespace lowlap {
@@ -42,10 +43,7 @@ PoseSearch::PoseSearch(const PointPairs& pairs,
 
 std::vector<PoseCandidate> PoseSearch::Search(Random& random,
                                               int& num_samples) {
-  std::vector<RigidTransform> motions;
-  if (auto motion = FivePointMotion(random, num_samples)) {
-    motions.push_back(*motion);
-  }
+  std::vector<RigidTransform> motions = FivePointMotions(random, num_samples);
   std::vector<Mat3> rotations = RotationsFromDirections(directions_);
   if (rotations.size() > kMaxRotations) rotations.resize(kMaxRotations);
   for (const Mat3& rotation : rotations) {
@@ -61,11 +59,19 @@ std::vector<PoseCandidate> PoseSearch::Search(Random& random,
                    [](const PoseCandidate& a, const PoseCandidate& b) {
                      return a.score > b.score;
                    });
-  return candidates;
+  std::vector<PoseCandidate> distinct;
+  for (PoseCandidate& candidate : candidates) {
+    const bool is_known = std::any_of(
+        distinct.begin(), distinct.end(), [&](const PoseCandidate& better) {
+          return SamePose(candidate.pose, better.pose);
+        });
+    if (!is_known) distinct.push_back(std::move(candidate));
+  }
+  return distinct;
 }
 
-std::optional<RigidTransform> PoseSearch::FivePointMotion(Random& random,
-                                                          int& num_samples) {
+std::vector<RigidTransform> PoseSearch::FivePointMotions(Random& random,
+                                                         int& num_samples) {
   const AContrarioLadder ladder = MakeLadder(
       kernel_, EssentialKernel::kMaxModels, law_, options_.max_threshold_px);
   AContrarioRansacOptions ransac;
@@ -73,13 +79,13 @@ std::optional<RigidTransform> PoseSearch::FivePointMotion(Random& random,
   ransac.confidence = options_.confidence;
   const auto found = AContrarioRansac(kernel_, ladder, ransac, random);
   num_samples += found.num_samples;
-  if (!found.model) return std::nullopt;
-  const SharpenedPose sharp =
+  if (!found.model) return {};
+  SharpenedPoses sharp =
       SharpenPose(kernel_, *found.model, found.score.threshold, random);
   // Wide enough for the tail of the precision found, not for repetitions.
   max_threshold_px_ = std::min(options_.max_threshold_px, 10 * sharp.scale_px);
   core_scale_px_ = sharp.scale_px;
-  return sharp.cam2_from_cam1;
+  return std::move(sharp.cam2_from_cam1);
 }
 
 std::optional<RigidTransform> PoseSearch::MotionWithRotation(
@@ -163,9 +169,13 @@ PoseCandidate PoseSearch::Finish(const RigidTransform& cam2_from_cam1) const {
       candidate.pose, candidate.support.threshold);
   candidate.direction_penalty =
       DirectionPenalty(directions_, candidate.pose.rotation);
-  candidate.score = CoreScore(candidate.pose, core_scale_px_) / std::log(10.0) -
-                    candidate.direction_penalty;
+  candidate.score = ScoreOf(candidate.pose);
   return candidate;
+}
+
+double PoseSearch::ScoreOf(const RigidTransform& cam2_from_cam1) const {
+  return CoreScore(cam2_from_cam1, core_scale_px_) / std::log(10.0) -
+         DirectionPenalty(directions_, cam2_from_cam1.rotation);
 }
 
 double PoseSearch::CoreScore(const RigidTransform& cam2_from_cam1,
@@ -179,11 +189,6 @@ double PoseSearch::CoreScore(const RigidTransform& cam2_from_cam1,
     score += std::log(10 / (1 + std::min(ratio * ratio, 9.0)));
   }
   return score;
-}
-
-bool SamePose(const RigidTransform& a, const RigidTransform& b) {
-  return RotationAngleBetween(a.rotation, b.rotation) < RadFromDeg(0.5) &&
-         AngleBetween(a.translation, b.translation) < RadFromDeg(2);
 }
 
 }  // namespace lowlap

@@ -33,10 +33,20 @@ class PoseSearch {
   PoseSearch(const PointPairs& pairs, std::vector<DirectionPair> directions,
              const BackgroundLaw& law, const TwoViewOptions& options);
 
-  /// Motions worth a look, the greatest score first: that of five-point samples
-  /// (a-contrario RANSAC, sharpened), and for each rotation that two pairs of
-  /// directions give, that of two-point samples. Empty if no sample gave one.
+  /// Motions worth a look, no two of them the same (SamePose), the greatest
+  /// score first: those of five-point samples (a-contrario RANSAC, sharpened),
+  /// and for each rotation that two pairs of directions give, that of two-point
+  /// samples. Empty if no sample gave one.
   std::vector<PoseCandidate> Search(Random& random, int& num_samples);
+
+  /// The motion of two-point samples under a rotation; nullopt: no sample gave
+  /// one.
+  std::optional<RigidTransform> MotionWithRotation(const Mat3& rotation,
+                                                   Random& random,
+                                                   int& num_samples) const;
+
+  /// What speaks for a motion as it is (PoseCandidate::score).
+  double ScoreOf(const RigidTransform& cam2_from_cam1) const;
 
   /// A motion brought to its optimum: the signs that see most inliers, then
   /// threshold, inliers and refinement in turn until they agree.
@@ -51,11 +61,8 @@ class PoseSearch {
   PoseRefinementOptions RefinementOptions(const PoseCandidate& candidate) const;
 
  private:
-  std::optional<RigidTransform> FivePointMotion(Random& random,
-                                                int& num_samples);
-  std::optional<RigidTransform> MotionWithRotation(const Mat3& rotation,
-                                                   Random& random,
-                                                   int& num_samples) const;
+  std::vector<RigidTransform> FivePointMotions(Random& random,
+                                               int& num_samples);
   RigidTransform WithMostVisible(const RigidTransform& cam2_from_cam1) const;
   double PointVariancePx2(const RigidTransform& cam2_from_cam1,
                           double threshold_px) const;
@@ -69,9 +76,5 @@ class PoseSearch {
   double max_threshold_px_;
   double core_scale_px_;
 };
-
-/// To within half a degree of rotation and two of direction: closer than that,
-/// refinement from either side is expected to meet.
-bool SamePose(const RigidTransform& a, const RigidTransform& b);
 
 }  // namespace lowlap

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,17 +10,17 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/two_view/internal/lone_matches.h"
 #include "lowlap/two_view/internal/planar_motion.h"
+#include "lowlap/two_view/internal/pose_from_search.h"
 #include "lowlap/two_view/internal/pose_search.h"
 #include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/same_pose.h"
 #include "lowlap/two_view/internal/shuffled_matches.h"
 #include "lowlap/two_view/internal/translation_evidence.h"
 
 namespace lowlap {
 namespace {
 
-constexpr int kMinMatches = 6;
 /// A plane that holds this share of the inliers is worth a second motion.
 constexpr double kPlaneShare = 0.5;
 /// Two motions are told apart by an advantage worth ten points that fit one
@@ -67,49 +66,6 @@ Status ValidateInput(const TwoViewInput& input) {
   return {};
 }
 
-// Those of `indices` that are points, in their order.
-std::vector<FeatureMatch> PointMatches(const TwoViewInput& input,
-                                       const ShuffledMatches& matches,
-                                       const std::vector<int>& indices) {
-  std::vector<int> inliers;
-  for (const int i : indices) {
-    if (matches.match_of_pair[i] != ShuffledMatches::kCrossing) {
-      inliers.push_back(matches.match_of_pair[i]);
-    }
-  }
-  std::sort(inliers.begin(), inliers.end());
-  std::vector<FeatureMatch> points;
-  for (const int m : inliers) points.push_back(input.point_matches[m]);
-  return points;
-}
-
-RelativePose ToRelativePose(const TwoViewInput& input,
-                            const ShuffledMatches& matches,
-                            const PoseSearch& search,
-                            const PoseCandidate& candidate,
-                            std::vector<FeatureMatch>* lone_matches) {
-  const PoseRefinementOptions refinement = search.RefinementOptions(candidate);
-  const std::vector<int> borne_out = BorneOutMatches(
-      candidate.pose, matches.pairs, candidate.inliers, refinement);
-  RelativePose pose;
-  pose.views = input.views;
-  pose.rotation = candidate.pose.rotation;
-  pose.direction = candidate.pose.translation;
-  pose.point_inliers = PointMatches(input, matches, candidate.inliers);
-  if (lone_matches != nullptr) {
-    std::vector<int> lone;
-    std::set_difference(candidate.inliers.begin(), candidate.inliers.end(),
-                        borne_out.begin(), borne_out.end(),
-                        std::back_inserter(lone));
-    *lone_matches = PointMatches(input, matches, lone);
-  }
-  pose.log10_nfa = candidate.support.log10_nfa;
-  pose.point_threshold_px = candidate.support.threshold;
-  pose.covariance = RelativePoseCovariance(candidate.pose, matches.pairs,
-                                           borne_out, refinement);
-  return pose;
-}
-
 std::optional<ScenePlane> DominantPlaneOf(const PoseCandidate& candidate,
                                           const PointPairs& pairs,
                                           Random& random) {
@@ -131,12 +87,6 @@ std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
       candidate.pose, plane.normal, pairs.x1[plane.inliers.front()]);
   if (!motion) return std::nullopt;
   return search.Finish(*motion);
-}
-
-std::vector<DirectionPair> CommonDirections(const TwoViewInput& input) {
-  if (input.directions1 == nullptr || input.directions2 == nullptr) return {};
-  return PairDirections(*input.features1, *input.features2, *input.directions1,
-                        *input.directions2, input.line_matches);
 }
 
 }  // namespace
@@ -188,7 +138,9 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   }
   TwoViewResult result;
   result.num_matches = pairs.size();
-  PoseSearch search(pairs, CommonDirections(input), SampsonLaw(input), options);
+  PoseSearch search(
+      pairs, CommonDirections(input, static_cast<int>(matches.pairs.size())),
+      SampsonLaw(input), options);
   const std::vector<PoseCandidate> candidates =
       search.Search(random, result.num_samples);
   std::optional<PoseCandidate> best;
@@ -236,10 +188,10 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
     result.geometry = TwoViewGeometry::kRotationOnly;
   }
   result.pose =
-      ToRelativePose(input, matches, search, *best, &result.lone_matches);
+      PoseFromSearch(input, matches, search, *best, &result.lone_matches);
   if (result.geometry == TwoViewGeometry::kAmbiguousPlane) {
     result.alternatives.push_back(
-        ToRelativePose(input, matches, search, *other, nullptr));
+        PoseFromSearch(input, matches, search, *other, nullptr));
   }
   return result;
 }
@@ -256,12 +208,14 @@ RelativePose ImproveRelativePose(const TwoViewInput& input,
   TwoViewOptions bounded = options;
   bounded.max_threshold_px =
       std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
-  const PoseSearch search(matches.pairs, CommonDirections(input),
-                          SampsonLaw(input), bounded);
+  const PoseSearch search(
+      matches.pairs,
+      CommonDirections(input, static_cast<int>(matches.pairs.size())),
+      SampsonLaw(input), bounded);
   const PoseCandidate candidate = search.Finish(pose.Cam2FromCam1());
   if (!std::isfinite(candidate.support.log10_nfa)) return pose;
   RelativePose improved =
-      ToRelativePose(input, matches, search, candidate, lone_matches);
+      PoseFromSearch(input, matches, search, candidate, lone_matches);
   improved.log10_nfa = pose.log10_nfa;
   return improved;
 }

@@ -2,19 +2,37 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "lowlap/robust/internal/a_contrario_ransac.h"
 #include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/same_pose.h"
 
 namespace lowlap {
 namespace {
 
 constexpr double kFirstScalePx = 0.3;
 constexpr double kCore = 3;  // residuals up to kCore scales count
-constexpr int kNumSamples = 200;
-constexpr std::size_t kNumRefined = 8;
+constexpr std::size_t kNumKept = 2000;
+constexpr int kFew = 300;
+constexpr double kOneOptimumDeg = 0.1;
 constexpr std::size_t kMaxScored = 2000;
+
+// Few matches (but one at least) have many optima, which are cheap to find.
+int NumSamples(std::size_t num_inliers) {
+  return static_cast<int>(
+      std::clamp<std::size_t>(300000 / num_inliers, 200, 3000));
+}
+
+std::size_t NumRefined(std::size_t num_inliers) {
+  return std::clamp<std::size_t>(10000 / num_inliers, 8, 100);
+}
+
+std::size_t MaxOptima(std::size_t num_inliers) {
+  return std::clamp<std::size_t>(3000 / num_inliers, 1, 16);
+}
 
 class CoreSearch {
  public:
@@ -60,48 +78,81 @@ class CoreSearch {
     return score;
   }
 
-  RigidTransform Run(const RigidTransform& start,
-                     const std::vector<int>& inliers, Random& random) {
-    RigidTransform best = start;
-    double best_score = Climb(best);
-    if (inliers.size() < 6) return best;
+  /// The optima that the start and samples of `inliers` lead to, each once, the
+  /// greatest score first.
+  std::vector<RigidTransform> Run(const RigidTransform& start,
+                                  const std::vector<int>& inliers,
+                                  Random& random) {
+    std::vector<Optimum> optima;
+    AddOptimum(start, &optima);
+    if (inliers.size() >= 6) {
+      std::size_t num_climbed = 0;
+      for (const Optimum& sampled : BestSamples(inliers, random)) {
+        if (IsKnown(sampled.pose, optima)) continue;
+        AddOptimum(sampled.pose, &optima);
+        if (++num_climbed == NumRefined(inliers.size())) break;
+      }
+    }
+    std::stable_sort(optima.begin(), optima.end(), HasGreaterScore);
+    if (optima.size() > MaxOptima(inliers.size())) {
+      optima.resize(MaxOptima(inliers.size()));
+    }
+    std::vector<RigidTransform> poses;
+    for (const Optimum& optimum : optima) poses.push_back(optimum.pose);
+    return poses;
+  }
 
-    struct Candidate {
-      double score;
-      RigidTransform pose;
-    };
-    const auto better = [](const Candidate& a, const Candidate& b) {
-      return a.score > b.score;
-    };
-    std::vector<Candidate> candidates;  // a heap, the worst in front
+ private:
+  struct Optimum {
+    double score;
+    RigidTransform pose;
+  };
+  static bool HasGreaterScore(const Optimum& a, const Optimum& b) {
+    return a.score > b.score;
+  }
+  static bool IsKnown(const RigidTransform& pose,
+                      const std::vector<Optimum>& optima) {
+    return std::any_of(optima.begin(), optima.end(), [&](const Optimum& known) {
+      return SamePose(pose, known.pose, kOneOptimumDeg);
+    });
+  }
+
+  // The better one of two that are the same.
+  void AddOptimum(RigidTransform pose, std::vector<Optimum>* optima) {
+    const double score = Climb(pose);
+    for (Optimum& known : *optima) {
+      if (!SamePose(pose, known.pose, kOneOptimumDeg)) continue;
+      if (score > known.score) known = {score, pose};
+      return;
+    }
+    optima->push_back({score, pose});
+  }
+
+  std::vector<Optimum> BestSamples(const std::vector<int>& inliers,
+                                   Random& random) {
+    std::vector<Optimum> best;  // a heap, the worst in front
     std::vector<RigidTransform> models;
-    for (int n = 0; n < kNumSamples; ++n) {
+    const int num_samples = NumSamples(inliers.size());
+    for (int n = 0; n < num_samples; ++n) {
       auto sample = DrawSample<5>(static_cast<int>(inliers.size()), random);
       for (int& i : sample) i = inliers[i];
       models.clear();
       kernel_.Solve(sample, models);
       for (const RigidTransform& model : models) {
         const double score = Score(model);
-        if (candidates.size() == kNumRefined) {
-          if (score <= candidates.front().score) continue;
-          std::pop_heap(candidates.begin(), candidates.end(), better);
-          candidates.pop_back();
+        if (best.size() == kNumKept) {
+          if (score <= best.front().score) continue;
+          std::pop_heap(best.begin(), best.end(), HasGreaterScore);
+          best.pop_back();
         }
-        candidates.push_back({score, model});
-        std::push_heap(candidates.begin(), candidates.end(), better);
+        best.push_back({score, model});
+        std::push_heap(best.begin(), best.end(), HasGreaterScore);
       }
     }
-    for (Candidate& candidate : candidates) {
-      const double score = Climb(candidate.pose);
-      if (score > best_score) {
-        best_score = score;
-        best = candidate.pose;
-      }
-    }
+    std::stable_sort(best.begin(), best.end(), HasGreaterScore);
     return best;
   }
 
- private:
   const PointPairs& pairs_;
   EssentialKernel kernel_;
   double scale_px_;
@@ -110,12 +161,15 @@ class CoreSearch {
 
 }  // namespace
 
-SharpenedPose SharpenPose(const EssentialKernel& kernel,
-                          const RigidTransform& cam2_from_cam1,
-                          double threshold_px, Random& random) {
-  // Data are in random order, so the first ones are a fair sample.
-  std::vector<int> near =
-      kernel.WithinThreshold(cam2_from_cam1, 2 * threshold_px);
+SharpenedPoses SharpenPose(const EssentialKernel& kernel,
+                           const RigidTransform& cam2_from_cam1,
+                           double threshold_px, Random& random) {
+  // Of few matches, those that other optima explain count as well. Data are in
+  // random order, so the first ones are a fair sample.
+  std::vector<int> near = kernel.WithinThreshold(
+      cam2_from_cam1, kernel.NumData() < kFew
+                          ? std::numeric_limits<double>::infinity()
+                          : 2 * threshold_px);
   if (near.size() > kMaxScored) near.resize(kMaxScored);
   PointPairs pairs;
   pairs.focal1_px = kernel.pairs().focal1_px;
@@ -129,14 +183,16 @@ SharpenedPose SharpenPose(const EssentialKernel& kernel,
   const EssentialKernel near_kernel(pairs);
   const std::vector<int> inliers =
       near_kernel.WithinThreshold(cam2_from_cam1, threshold_px);
+  if (inliers.empty()) return {{cam2_from_cam1}, kFirstScalePx};
 
   for (double scale_px = kFirstScalePx;; scale_px *= 2) {
     CoreSearch search(pairs, scale_px);
-    const RigidTransform pose = search.Run(cam2_from_cam1, inliers, random);
+    std::vector<RigidTransform> optima =
+        search.Run(cam2_from_cam1, inliers, random);
     const std::size_t core =
-        near_kernel.WithinThreshold(pose, kCore * scale_px).size();
+        near_kernel.WithinThreshold(optima.front(), kCore * scale_px).size();
     if (2 * core >= inliers.size() || kCore * scale_px > threshold_px) {
-      return {pose, scale_px};
+      return {std::move(optima), scale_px};
     }
   }
 }

@@ -14,6 +14,9 @@ namespace {
 constexpr int kMinVotes = 2;
 constexpr int kMinVotesForAll = 8;
 constexpr int kMaxDigits = 10;
+constexpr std::size_t kMaxPossible = 4;
+/// By how much lines of different walls that count as parallel are not.
+constexpr double kWallStddevDeg = 0.3;
 
 // The direction of every segment that has one.
 std::map<FeatureIndex, std::size_t> DirectionOfSegment(
@@ -25,6 +28,22 @@ std::map<FeatureIndex, std::size_t> DirectionOfSegment(
     }
   }
   return result;
+}
+
+// The covariance, with what walls deviate from a direction that they share.
+Mat3 WidenedCovariance(const VanishingDirection& direction) {
+  const double stddev = RadFromDeg(kWallStddevDeg);
+  const Mat3 across =
+      Mat3::Identity() - direction.direction * direction.direction.transpose();
+  return direction.covariance + stddev * stddev * across;
+}
+
+// Of one view: to within their deviations.
+bool AreOne(const VanishingDirection& a, const VanishingDirection& b) {
+  const DirectionPair pair{a.direction, b.direction, WidenedCovariance(a),
+                           WidenedCovariance(b), 0};
+  return DirectionResidual(pair, Mat3::Identity()).norm() <=
+         kDirectionLossScale;
 }
 
 // Rotation that takes a, b to +-c, +-d: the frames of both couples aligned.
@@ -102,9 +121,10 @@ std::vector<DirectionPair> PairDirections(
         FitDirection(features2, segments2, directions2[n2].direction, matched);
     pairs.push_back(
         {d1.direction, d2.direction, d1.covariance, d2.covariance, count});
-    // That the two sets are one direction is known from the matched ones alone.
-    if (count < kMinVotesForAll) continue;
+    // That the two sets are one direction is known from the matched ones alone,
+    // which may be but a part that is parallel to itself.
     const VanishingDirection &a1 = directions1[n1], &a2 = directions2[n2];
+    if (count < kMinVotesForAll || !AreOne(d1, a1) || !AreOne(d2, a2)) continue;
     pairs.push_back(
         {a1.direction, a2.direction, a1.covariance, a2.covariance, count});
   }
@@ -112,6 +132,42 @@ std::vector<DirectionPair> PairDirections(
                    [](const DirectionPair& a, const DirectionPair& b) {
                      return a.num_matches > b.num_matches;
                    });
+  return pairs;
+}
+
+std::vector<DirectionPair> PossibleDirections(
+    const std::vector<VanishingDirection>& directions1,
+    const std::vector<VanishingDirection>& directions2,
+    const std::vector<DirectionPair>& connected) {
+  const double same = std::cos(RadFromDeg(3));
+  const auto free_of = [&](const std::vector<VanishingDirection>& directions,
+                           Vec3 DirectionPair::*member) {
+    std::vector<VanishingDirection> free;
+    for (const VanishingDirection& direction : directions) {
+      const bool is_connected = std::any_of(
+          connected.begin(), connected.end(), [&](const DirectionPair& pair) {
+            return std::abs((pair.*member).dot(direction.direction)) > same;
+          });
+      if (!is_connected && free.size() < kMaxPossible)
+        free.push_back(direction);
+    }
+    return free;
+  };
+  const auto free1 = free_of(directions1, &DirectionPair::direction1);
+  const auto free2 = free_of(directions2, &DirectionPair::direction2);
+  std::vector<DirectionPair> pairs;
+  for (const VanishingDirection& d1 : free1) {
+    for (const VanishingDirection& d2 : free2) {
+      DirectionPair pair{d1.direction, d2.direction, WidenedCovariance(d1),
+                         WidenedCovariance(d2), 0};
+      const double stddev =
+          std::sqrt((pair.covariance1 + pair.covariance2).trace());
+      pair.agreement_digits =
+          std::log10(std::sqrt(M_PI / 2) / stddev /
+                     static_cast<double>(free1.size() * free2.size()));
+      if (pair.agreement_digits > 0) pairs.push_back(pair);
+    }
+  }
   return pairs;
 }
 
@@ -139,9 +195,12 @@ double DirectionPenalty(const std::vector<DirectionPair>& pairs,
                         const Mat3& rotation) {
   double digits = 0;
   for (const DirectionPair& pair : pairs) {
+    const double most = pair.num_matches > 0
+                            ? std::min(pair.num_matches, kMaxDigits)
+                            : pair.agreement_digits;
     digits += std::min(
         DirectionResidual(pair, rotation).squaredNorm() / (2 * std::log(10.0)),
-        static_cast<double>(std::min(pair.num_matches, kMaxDigits)));
+        most);
   }
   return digits;
 }

@@ -21,6 +21,9 @@ struct DirectionPair {
   Mat3 covariance2 = Mat3::Zero();
   /// Matched lines that run along it in both views.
   int num_matches = 0;
+  /// For a possible pair, without matches: how unlikely it is, in decimal
+  /// digits, that a wrong rotation brings the two together.
+  double agreement_digits = 0;
 };
 
 /// The vanishing directions of two views that the matched lines connect: each
@@ -38,6 +41,20 @@ std::vector<DirectionPair> PairDirections(
     const std::vector<VanishingDirection>& directions2,
     const std::vector<FeatureMatch>& line_matches);
 
+/// Pairs of vanishing directions that no matched line connects, which may be
+/// one direction in space nonetheless: of the most meaningful four of either
+/// view, those that are in none of the `connected` pairs. Where two views look
+/// along one wall, its lines turn up in both even if none of them is matched.
+/// With n1 and n2 directions to choose from, horizontal as most are, a wrong
+/// rotation brings two together to within their deviation sigma with
+/// probability
+///   n1 n2 sigma sqrt(2 pi) / pi,
+/// the agreement_digits of which are kept where there are any.
+std::vector<DirectionPair> PossibleDirections(
+    const std::vector<VanishingDirection>& directions1,
+    const std::vector<VanishingDirection>& directions2,
+    const std::vector<DirectionPair>& connected);
+
 /// The disagreement of a pair under a rotation in its own standard deviations:
 ///   e = B^T (+-R direction1 - direction2),  B = TangentBasis(direction2),
 ///   m = W e,  W^T W = (B^T (R C1 R^T + C2) B)^-1,
@@ -46,7 +63,8 @@ Vec2 DirectionResidual(const DirectionPair& pair, const Mat3& rotation,
                        Eigen::Matrix<double, 2, 3>* jacobian = nullptr);
 
 /// What a rotation has against it, in decimal digits: for every pair
-///   min(|m|^2 / (2 ln 10), min(num_matches, 10)).
+///   min(|m|^2 / (2 ln 10), min(num_matches, 10)),
+/// or at most the agreement_digits of a possible one.
 /// A pair whose directions disagree can still be a false one, if all of its
 /// matches are wrong; the chance of one is taken as a tenth, and matches beyond
 /// ten, parallel neighbours as they are, as no further evidence.
