@@ -124,6 +124,14 @@ void BindSummaries(py::module_& module) {
       .def_readonly("views", &ReplacedDirection::views)
       .def_readonly("error_deg", &ReplacedDirection::error_deg);
 
+  py::class_<ReconsideredPose>(
+      module, "ReconsideredPose",
+      "A relative pose of few matches that got another motion, which the rest "
+      "of the scene and its own matches bear out together.")
+      .def_readonly("views", &ReconsideredPose::views)
+      .def_readonly("rotation_deg", &ReconsideredPose::rotation_deg)
+      .def_readonly("gained_digits", &ReconsideredPose::gained_digits);
+
   py::class_<KindAdjustment>(module, "KindAdjustment",
                              "One kind of residual in the bundle adjustment.")
       .def_readonly("landmarks", &KindAdjustment::landmarks)
@@ -254,6 +262,9 @@ void BindSolve(py::module_& module) {
       .def_property_readonly(
           "replaced_directions",
           [](const Solution& s) { return s.poses().matches.replaced; })
+      .def_property_readonly(
+          "reconsidered_poses",
+          [](const Solution& s) { return s.summary.solve->reconsidered; })
       .def_property_readonly(
           "untold_edges",
           [](const Solution& s) { return s.poses().matches.untold; },

@@ -109,7 +109,9 @@ TEST(SceneInUse, HasOnlyWhatTheSolutionUses) {
   Scene scene = Simulate(options)->scene;
   RelativePose& wrong = scene.relative_poses.at({3, 5});
   wrong.rotation = RotationFromAngleAxis(Vec3(0, 1, 0)) * wrong.rotation;
-  const auto in_use = SceneInUse(scene, SolveOptions(), RunContext());
+  SolveOptions as_measured;
+  as_measured.reconsider_poses = false;
+  const auto in_use = SceneInUse(scene, as_measured, RunContext());
   ASSERT_TRUE(in_use);
   EXPECT_EQ(in_use->relative_poses.count({3, 5}), 0u);
   EXPECT_EQ(in_use->relative_poses.count({3, 4}), 1u);

@@ -47,6 +47,9 @@ class SolveTest(unittest.TestCase):
             self.assertGreater(replaced.error_deg, 10)
         self.assertEqual(solution.kept_outliers, [])
         self.assertEqual(solution.contests, [])
+        for pose in solution.reconsidered_poses:
+            self.assertGreaterEqual(pose.gained_digits, 1)
+            self.assertGreater(pose.rotation_deg, 0)
         self.assertLess(solution.evaluation.position.max, 0.02)
 
     def test_truth_may_be_a_dictionary(self):

@@ -76,6 +76,7 @@ Result<SolveResult> MergeModels(Scene* scene,
   TrustPieces(models, checks, pieces, scene);
   SolveOptions merging = options;
   merging.reuse_ratios = true;
+  merging.reconsider_poses = false;  // those of the pieces are given
 
   SolveResult result;
   LOWLAP_ASSIGN_OR_RETURN(auto start,

@@ -12,6 +12,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/check_directions.h"
 #include "lowlap/pipeline/internal/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/reconsider_poses.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -59,18 +60,27 @@ std::vector<ViewTriplet> BelievedTriplets(const Scene& scene,
       ViewGraph(scene).WithoutPairs(PairsOf(rotations.outliers)));
 }
 
-// The ratios of the triplets, in their order; those in `known` are not
-// estimated again, unless one of their relative poses is among the replaced
-// motions.
-Result<std::vector<ScaleRatio>> CompleteRatios(
-    const Scene& scene, const std::vector<ViewTriplet>& triplets,
-    std::vector<ScaleRatio> known,
-    const std::vector<HypothesisDecision>& motions,
-    const ScaleEstimator& estimator, const RunContext& context) {
+// The relative poses that are no longer what the scene came with.
+std::set<ViewPair> ReplacedPoses(const SolveStart& start) {
   std::set<ViewPair> replaced;
-  for (const HypothesisDecision& motion : motions) {
+  for (const HypothesisDecision& motion : start.motions) {
     if (motion.replaced) replaced.insert(motion.views);
   }
+  for (const ReconsideredPose& pose : start.reconsidered) {
+    replaced.insert(pose.views);
+  }
+  for (const ReplacedDirection& pose : start.rotations.matches.replaced) {
+    replaced.insert(pose.views);
+  }
+  return replaced;
+}
+
+// The ratios of the triplets, in their order; those in `known` are not
+// estimated again, unless one of their relative poses is among the replaced.
+Result<std::vector<ScaleRatio>> CompleteRatios(
+    const Scene& scene, const std::vector<ViewTriplet>& triplets,
+    std::vector<ScaleRatio> known, const std::set<ViewPair>& replaced,
+    const ScaleEstimator& estimator, const RunContext& context) {
   const auto is_replaced = [&](ViewId a, ViewId b) {
     return replaced.count({std::min(a, b), std::max(a, b)}) > 0;
   };
@@ -130,6 +140,10 @@ Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
   LOWLAP_ASSIGN_OR_RETURN(start.motions,
                           DecideHypotheses(scene, *options.scale_estimator,
                                            options.poses, context));
+  if (options.reconsider_poses) {
+    LOWLAP_ASSIGN_OR_RETURN(start.reconsidered,
+                            ReconsiderPoses(scene, options.poses, context));
+  }
   LOWLAP_ASSIGN_OR_RETURN(
       start.rotations, AverageSceneRotations(*scene, options.poses, context));
   AddMatchVerdicts(std::move(matches), &start.rotations);
@@ -147,8 +161,8 @@ Result<RatioSummary> EstimateBelievedRatios(Scene* scene,
   LOWLAP_ASSIGN_OR_RETURN(
       scene->scale_ratios,
       CompleteRatios(*scene, BelievedTriplets(*scene, start.rotations),
-                     std::move(known), start.motions, *options.scale_estimator,
-                     context));
+                     std::move(known), ReplacedPoses(start),
+                     *options.scale_estimator, context));
   return SummarizeRatios(scene->scale_ratios);
 }
 
@@ -232,6 +246,7 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
       result.ratios,
       EstimateBelievedRatios(scene, start, options, context, stages));
   result.motions = std::move(start.motions);
+  result.reconsidered = std::move(start.reconsidered);
   LOWLAP_ASSIGN_OR_RETURN(
       result.poses,
       ComposePoses(scene, start.rotations, options.poses, context, stages));

@@ -29,6 +29,9 @@ struct SolveOptions {
   /// choice of a motion changes one of their relative poses. For solving parts
   /// of one scene, with the same estimator.
   bool reuse_ratios = false;
+  /// Whether relative poses of few matches may take another motion
+  /// (ReconsiderPoses).
+  bool reconsider_poses = true;
 
   Status Validate() const;
 };
@@ -52,9 +55,19 @@ struct StructurePositions {
 
 StructurePositions PositionsOf(const Scene& scene);
 
+/// A relative pose that got another motion, which the rest of the scene and its
+/// own matches bear out together.
+struct ReconsideredPose {
+  ViewPair views;
+  double rotation_deg = 0;  // between the two
+  /// By how much more speaks for the new one, in decimal digits.
+  double gained_digits = 0;
+};
+
 struct SolveResult {
   /// One for every relative pose that came with alternatives, by views.
   std::vector<HypothesisDecision> motions;
+  std::vector<ReconsideredPose> reconsidered;  // by views
   RatioSummary ratios;
   PoseSummary poses;
   StructureSummary structure;
@@ -68,12 +81,15 @@ struct SolveResult {
 /// What every strategy of composing poses starts from.
 struct SolveStart {
   std::vector<HypothesisDecision> motions;
+  std::vector<ReconsideredPose> reconsidered;
   SceneRotations rotations;
 };
 
 /// The first stage of SolveScene: holds the relative poses against their
 /// matches (CheckDirections), settles their alternatives (DecideHypotheses),
-/// averages the rotations and chooses the relative poses to believe.
+/// looks at those of few matches again in the light of the others
+/// (ReconsiderPoses), averages the rotations and chooses the relative poses to
+/// believe.
 Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
                                  const RunContext& context, StageLog* stages);
 

@@ -261,6 +261,11 @@ class ReplacedDirection:
     views: Pair
     error_deg: float
 
+class ReconsideredPose:
+    views: Pair
+    rotation_deg: float
+    gained_digits: float
+
 class KindAdjustment:
     landmarks: int
     observations_used: int
@@ -289,6 +294,7 @@ class Solution:
     outlier_edges: List[OutlierEdge]
     kept_outliers: List[OutlierEdge]
     replaced_directions: List[ReplacedDirection]
+    reconsidered_poses: List[ReconsideredPose]
     untold_edges: List[Pair]
     contests: List[Contest]
     weak_ratios: List[Triplet]

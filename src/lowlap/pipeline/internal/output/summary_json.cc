@@ -171,6 +171,13 @@ Json MotionsJson(const std::vector<HypothesisDecision>& motions) {
 Json SolveJson(const SolveResult& solve) {
   Json json;
   json["ambiguous_motions"] = MotionsJson(solve.motions);
+  json["reconsidered_poses"] = Json::array();
+  for (const ReconsideredPose& pose : solve.reconsidered) {
+    json["reconsidered_poses"].push_back(
+        {{"views", pose.views},
+         {"rotation_deg", pose.rotation_deg},
+         {"gained_digits", pose.gained_digits}});
+  }
   json["ratios"] = {{"triplets", solve.ratios.num_triplets},
                     {"meaningful", solve.ratios.num_meaningful},
                     {"not_meaningful", solve.ratios.num_not_meaningful},
