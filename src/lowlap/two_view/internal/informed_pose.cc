@@ -65,7 +65,8 @@ InformedPose InformPose(const TwoViewInput& input, const RelativePose& pose,
     PoseCandidate other = search.Finish(*motion);
     if (other.score > best.score) best = std::move(other);
   }
-  if (!std::isfinite(best.support.log10_nfa) || !(best.score > before)) {
+  // Wrong matches allow any motion, also that of the prior.
+  if (!(best.support.log10_nfa < 0) || !(best.score > before)) {
     return result;
   }
   result.gained_digits = best.score - before;
