@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/adjustment/refined_intrinsics.h"
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
 
@@ -65,18 +66,6 @@ struct StructureOptions {
   Status Validate() const;
 };
 
-/// Which parts of an intrinsic are unknowns.
-struct IntrinsicRefinement {
-  bool focal = false;  // fx and fy by one factor
-  bool principal_point = false;
-  bool distortion = false;
-  bool aspect_ratio = false;  // fy / fx
-
-  bool Any() const {
-    return focal || principal_point || distortion || aspect_ratio;
-  }
-};
-
 struct AdjustmentOptions {
   /// Kinds that are off have no influence; their landmarks follow the poses.
   bool use_points = true;
@@ -88,6 +77,9 @@ struct AdjustmentOptions {
   /// Hold baselines to the measured scale ratios, likewise: without them a
   /// scale that little structure carries on may go anywhere.
   bool use_scale_ratios = true;
+  /// Hold rotations to the directions of parallel lines, which all views share
+  /// and which do not drift.
+  bool use_directions = true;
   CoplanarTies coplanar_ties = CoplanarTies::kPlanes;
   AdjustedCoplanarResidual coplanar_residual =
       AdjustedCoplanarResidual::kTransfer;

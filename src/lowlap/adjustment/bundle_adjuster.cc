@@ -152,6 +152,7 @@ class Adjuster {
     // Before the observations are settled, a rough optimum will do.
     const double rough = std::max(options_.function_tolerance, kRoughTolerance);
     EstimateNoise();
+    LOWLAP_RETURN_IF_ERROR(FindDirections());
     if (options_.use_lines && options_.use_coplanar) {
       SelectPairs(options_, cameras_, noise_.coplanar.threshold_px, true,
                   &state_);
@@ -176,6 +177,7 @@ class Adjuster {
       at_rest = changed <= options_.outlier_round_tolerance;
       if (at_rest) break;
       summary_.outlier_rounds = round;
+      state_.directions = GroupDirections(sights_, cameras_);
       LOWLAP_RETURN_IF_ERROR(
           Solve("round " + std::to_string(round), false, rough));
     }
@@ -277,6 +279,18 @@ class Adjuster {
     noise_ = EstimateAllNoise(cameras_, state_, options_);
   }
 
+  // Seen through a calibration that moves they would be others.
+  Status FindDirections() {
+    if (!options_.use_directions || !options_.use_lines ||
+        options_.MovesIntrinsics()) {
+      return {};
+    }
+    LOWLAP_ASSIGN_OR_RETURN(sights_,
+                            FindDirectionSights(scene_, cameras_, context_));
+    state_.directions = GroupDirections(sights_, cameras_);
+    return {};
+  }
+
   // The planes of the structure as it is; those before, should there be none.
   Status LinkPlanes() {
     LOWLAP_ASSIGN_OR_RETURN(
@@ -327,6 +341,7 @@ class Adjuster {
   const Scene& scene_;
   CameraSet cameras_;
   StructureState state_;
+  std::vector<DirectionSight> sights_;
   AdjustmentSummary summary_;
   NoiseLevels noise_;
   KindRmse initial_{};

@@ -5,6 +5,7 @@
 
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
+#include "lowlap/directions/vanishing_options.h"
 #include "lowlap/features/feature_options.h"
 #include "lowlap/matching/match_options.h"
 #include "lowlap/pipeline/stage_log.h"

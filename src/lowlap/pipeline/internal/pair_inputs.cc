@@ -1,6 +1,6 @@
 #include "lowlap/pipeline/internal/pair_inputs.h"
 
-#include "lowlap/two_view/internal/directions/vanishing_directions.h"
+#include "lowlap/directions/internal/vanishing_directions.h"
 
 namespace lowlap {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "lowlap/scene/relative_pose.h"
-#include "lowlap/two_view/internal/directions/parallel_directions.h"
+#include "lowlap/two_view/internal/parallel_directions.h"
 #include "lowlap/two_view/internal/pose_search.h"
 #include "lowlap/two_view/internal/relative_pose_estimator.h"
 #include "lowlap/two_view/internal/shuffled_matches.h"

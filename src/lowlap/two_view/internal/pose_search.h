@@ -6,8 +6,8 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/rigid_transform.h"
 #include "lowlap/robust/internal/a_contrario.h"
-#include "lowlap/two_view/internal/directions/parallel_directions.h"
 #include "lowlap/two_view/internal/kernels/essential_kernel.h"
+#include "lowlap/two_view/internal/parallel_directions.h"
 #include "lowlap/two_view/internal/refine_relative_pose.h"
 #include "lowlap/two_view/internal/relative_pose_estimator.h"
 

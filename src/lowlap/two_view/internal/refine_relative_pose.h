@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/two_view/internal/directions/parallel_directions.h"
 #include "lowlap/two_view/internal/kernels/point_pairs.h"
+#include "lowlap/two_view/internal/parallel_directions.h"
 
 namespace lowlap {
 

@@ -4,10 +4,10 @@
 #include <vector>
 
 #include "lowlap/core/result.h"
+#include "lowlap/directions/internal/vanishing_directions.h"
 #include "lowlap/geometry/types.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/relative_pose.h"
-#include "lowlap/two_view/internal/directions/vanishing_directions.h"
 #include "lowlap/two_view/two_view_options.h"
 
 namespace lowlap {

@@ -17,6 +17,7 @@ constexpr int kPoseSize = 4 + 3;
 constexpr int kPointSize = 3;
 constexpr int kLineSize = 6;
 constexpr int kPlaneSize = 4;
+constexpr int kDirectionSize = 3;
 
 // Ceres counts the owners of what it owns in a tree, for every residual.
 ceres::Problem::Options OwnNothing() {
@@ -48,6 +49,7 @@ ProblemBuilder::ProblemBuilder(const AdjustmentOptions& options,
   AddPairs();
   AddPlanes();
   AddPriors();
+  AddDirections();
   AddPrincipalPoints();
   SetManifolds();
   SplitBlocks();
@@ -78,6 +80,10 @@ double* ProblemBuilder::PlaneBlock(std::size_t plane) {
   return PointBlock(state_->points.size()) + kPlaneSize * plane;
 }
 
+double* ProblemBuilder::DirectionBlock(std::size_t direction) {
+  return PlaneBlock(state_->planes.size()) + kDirectionSize * direction;
+}
+
 bool ProblemBuilder::AllFinite() const {
   return std::all_of(blocks_.begin(), blocks_.end(),
                      [](double value) { return std::isfinite(value); });
@@ -88,7 +94,8 @@ void ProblemBuilder::CopyIntoBlocks() {
                      kMaxIntrinsicParameters * cameras_->intrinsics.size() +
                      kLineSize * state_->lines.size() +
                      kPointSize * state_->points.size() +
-                     kPlaneSize * state_->planes.size(),
+                     kPlaneSize * state_->planes.size() +
+                     kDirectionSize * state_->directions.size(),
                  0);
   for (std::size_t n = 0; n < cameras_->poses.size(); ++n) {
     const PoseState& pose = cameras_->poses[n];
@@ -111,6 +118,9 @@ void ProblemBuilder::CopyIntoBlocks() {
   for (const int n : selection_.planes) {
     Eigen::Map<Vec4>(PlaneBlock(n)) << state_->planes[n].normal,
         state_->planes[n].offset;
+  }
+  for (std::size_t n = 0; n < state_->directions.size(); ++n) {
+    Eigen::Map<Vec3>(DirectionBlock(n)) = state_->directions[n].direction;
   }
 }
 
@@ -203,49 +213,6 @@ void ProblemBuilder::AddPairs() {
   }
 }
 
-void ProblemBuilder::AddPlanes() {
-  // Of what is close to a plane and not on it no threshold tells: the loss
-  // bends early, at half the thickness.
-  constexpr double kLossScale = 0.5;
-  losses_.push_back(std::make_unique<ceres::CauchyLoss>(kLossScale));
-  ceres::LossFunction* loss = losses_.back().get();
-  // The first camera that sees the landmark.
-  const auto pose_of = [&](const auto& track) -> int {
-    const auto used =
-        std::find_if(track.candidates.begin(), track.candidates.end(),
-                     [](const auto& candidate) { return candidate.used; });
-    return cameras_->views[used->view].pose;
-  };
-  for (const int p : selection_.planes) {
-    const PlaneState& plane = state_->planes[p];
-    const auto place_at = [&](const PlaneTie& tie, const Vec3& place,
-                              int pose) {
-      return PlaceOnPlane(plane.anchor, 1 / (tie.looseness * plane.thickness),
-                          (place - cameras_->poses[pose].center).norm());
-    };
-    for (const PlaneTie& tie : plane.points) {
-      const PointTrackState& point = state_->points[tie.landmark];
-      if (!point.IsLandmark()) continue;
-      const int pose = pose_of(point);
-      AddResiduals(
-          std::make_unique<PointOnPlaneCost>(
-              place_at(tie, point.position, pose)),
-          loss, {PointBlock(tie.landmark), PlaneBlock(p), CenterBlock(pose)});
-    }
-    for (const PlaneTie& tie : plane.lines) {
-      const LineTrackState& line = state_->lines[tie.landmark];
-      if (!line.IsLandmark()) continue;
-      const int pose = pose_of(line);
-      AddResiduals(
-          std::make_unique<LineOnPlaneCost>(
-              place_at(tie, line.point + line.low * line.direction, pose),
-              place_at(tie, line.point + line.high * line.direction, pose),
-              line.low, line.high),
-          loss, {LineBlock(tie.landmark), PlaneBlock(p), CenterBlock(pose)});
-    }
-  }
-}
-
 void ProblemBuilder::AddPrincipalPoints() {
   for (std::size_t n = 0; n < cameras_->intrinsics.size(); ++n) {
     const IntrinsicState& intrinsic = cameras_->intrinsics[n];
@@ -258,42 +225,6 @@ void ProblemBuilder::AddPrincipalPoints() {
   }
 }
 
-void ProblemBuilder::AddPriors() {
-  // In standard deviations; a false measurement loses its hold.
-  constexpr double kLossScale = 3;
-  losses_.push_back(std::make_unique<ceres::CauchyLoss>(kLossScale));
-  ceres::LossFunction* loss = losses_.back().get();
-  std::vector<int> component_of(cameras_->poses.size(), -1);
-  for (std::size_t n = 0; n < components_.size(); ++n) {
-    for (const int pose : components_[n].poses) {
-      component_of[pose] = static_cast<int>(n);
-    }
-  }
-  // Whether one component holds all; the centre of a pose without structure is
-  // none of the unknowns.
-  const auto in_one = [&](std::initializer_list<int> poses) {
-    const int component = component_of[*poses.begin()];
-    return component >= 0 &&
-           std::all_of(poses.begin(), poses.end(), [&](int pose) {
-             return component_of[pose] == component;
-           });
-  };
-  for (const RelativePosePrior& prior : state_->priors) {
-    if (!in_one({prior.first, prior.second})) continue;
-    AddResiduals(std::make_unique<RelativePoseCost>(prior.measured), loss,
-                 {RotationBlock(prior.first), CenterBlock(prior.first),
-                  RotationBlock(prior.second), CenterBlock(prior.second)});
-  }
-  for (const ScaleRatioPrior& prior : state_->ratio_priors) {
-    if (!in_one({prior.first, prior.middle, prior.last})) continue;
-    AddResiduals(std::make_unique<ScaleRatioCost>(prior.log_ratio,
-                                                  prior.log_ratio_stddev),
-                 loss,
-                 {CenterBlock(prior.first), CenterBlock(prior.middle),
-                  CenterBlock(prior.last)});
-  }
-}
-
 void ProblemBuilder::SetManifolds() {
   for (const int n : selection_.lines) {
     problem_.SetManifold(LineBlock(n), &line_manifold_);
@@ -301,6 +232,11 @@ void ProblemBuilder::SetManifolds() {
   for (const int n : selection_.planes) {
     if (problem_.HasParameterBlock(PlaneBlock(n))) {
       problem_.SetManifold(PlaneBlock(n), &plane_manifold_);
+    }
+  }
+  for (std::size_t n = 0; n < state_->directions.size(); ++n) {
+    if (problem_.HasParameterBlock(DirectionBlock(n))) {
+      problem_.SetManifold(DirectionBlock(n), &sphere_manifold_);
     }
   }
   for (const Component& component : components_) {
@@ -349,6 +285,9 @@ void ProblemBuilder::SplitBlocks() {
     keep(IntrinsicBlock(n));
   }
   for (const int n : selection_.planes) keep(PlaneBlock(n));
+  for (std::size_t n = 0; n < state_->directions.size(); ++n) {
+    keep(DirectionBlock(n));
+  }
   // Two lines of a pair share residuals: only one of them may be eliminated.
   std::vector<std::vector<int>> partners(state_->lines.size());
   for (const int n : selection_.pairs) {
@@ -395,6 +334,10 @@ void ProblemBuilder::TakeResults() {
     PlaneState& plane = state_->planes[n];
     plane.normal = Eigen::Map<Vec3>(PlaneBlock(n)).normalized();
     plane.offset = PlaneBlock(n)[3];
+  }
+  for (std::size_t n = 0; n < state_->directions.size(); ++n) {
+    state_->directions[n].direction =
+        Eigen::Map<Vec3>(DirectionBlock(n)).normalized();
   }
 }
 

@@ -49,6 +49,9 @@ class ProblemBuilder {
   void AddPairs();
   void AddPlanes();
   void AddPriors();
+  void AddDirections();
+  /// Index of each pose's component; -1 for a pose without structure.
+  std::vector<int> ComponentOfPoses() const;
   void AddPrincipalPoints();
   void SetManifolds();
   void SplitBlocks();
@@ -57,6 +60,7 @@ class ProblemBuilder {
   double* PointBlock(std::size_t point);
   double* LineBlock(std::size_t line);
   double* PlaneBlock(std::size_t plane);
+  double* DirectionBlock(std::size_t direction);
   void CopyIntoBlocks();
   void AddResiduals(std::unique_ptr<ceres::CostFunction> cost,
                     ceres::LossFunction* loss,

@@ -5,6 +5,7 @@
 
 #include "lowlap/adjustment/internal/costs/relative_pose_prior.h"
 #include "lowlap/adjustment/internal/costs/scale_ratio_prior.h"
+#include "lowlap/adjustment/internal/directions/scene_directions.h"
 #include "lowlap/adjustment/internal/structure/line_track.h"
 #include "lowlap/adjustment/internal/structure/noise_scale.h"
 #include "lowlap/adjustment/internal/structure/point_track.h"
@@ -49,6 +50,7 @@ struct StructureState {
   std::vector<PlaneState> planes;
   std::vector<RelativePosePrior> priors;
   std::vector<ScaleRatioPrior> ratio_priors;
+  std::vector<SceneDirection> directions;
 
   /// Whether both lines of the pair are landmarks.
   bool HasLines(const PairState& pair) const {

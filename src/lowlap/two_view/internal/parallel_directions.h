@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "lowlap/core/ids.h"
+#include "lowlap/directions/internal/vanishing_directions.h"
 #include "lowlap/geometry/types.h"
-#include "lowlap/two_view/internal/directions/vanishing_directions.h"
 
 namespace lowlap {
 

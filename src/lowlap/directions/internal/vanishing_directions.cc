@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/directions/vanishing_directions.h"
+#include "lowlap/directions/internal/vanishing_directions.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

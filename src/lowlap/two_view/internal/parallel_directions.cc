@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/directions/parallel_directions.h"
+#include "lowlap/two_view/internal/parallel_directions.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

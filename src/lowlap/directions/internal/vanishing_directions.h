@@ -2,9 +2,9 @@
 
 #include <vector>
 
+#include "lowlap/directions/vanishing_options.h"
 #include "lowlap/geometry/types.h"
 #include "lowlap/scene/features.h"
-#include "lowlap/two_view/two_view_options.h"
 
 namespace lowlap {
 
