@@ -24,7 +24,9 @@ enum class AdjustedCoplanarResidual {
 
 /// What the coplanar kind holds together in the adjustment.
 enum class CoplanarTies {
-  /// The pairs of lines of the ratios (the paper's, section 5).
+  /// The pairs of lines of the ratios (the paper's, section 5), and nothing
+  /// else
+  /// that the whole scene shares.
   kPairs,
   /// Those at first; at the end the planes of the scene with all that is on
   /// them, and the pairs only where there are no planes.
@@ -78,7 +80,8 @@ struct AdjustmentOptions {
   /// scale that little structure carries on may go anywhere.
   bool use_scale_ratios = true;
   /// Hold rotations to the directions of parallel lines, which all views share
-  /// and which do not drift.
+  /// and which do not drift. Not with CoplanarTies::kPairs, the paper's
+  /// adjustment, nor while intrinsics move.
   bool use_directions = true;
   CoplanarTies coplanar_ties = CoplanarTies::kPlanes;
   AdjustedCoplanarResidual coplanar_residual =

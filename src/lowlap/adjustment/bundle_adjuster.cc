@@ -282,6 +282,7 @@ class Adjuster {
   // Seen through a calibration that moves they would be others.
   Status FindDirections() {
     if (!options_.use_directions || !options_.use_lines ||
+        options_.coplanar_ties == CoplanarTies::kPairs ||
         options_.MovesIntrinsics()) {
       return {};
     }
