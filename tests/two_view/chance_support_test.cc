@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/chance_support.h"
+#include "lowlap/two_view/internal/search/chance_support.h"
 
 #include <gtest/gtest.h>
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lowlap/two_view/internal/planar_motion.h"
-#include "lowlap/two_view/internal/same_pose.h"
+#include "lowlap/two_view/internal/search/same_pose.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {

@@ -1,10 +1,10 @@
-#include "lowlap/two_view/internal/pose_search.h"
+#include "lowlap/two_view/internal/search/pose_search.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "lowlap/two_view/internal/same_pose.h"
+#include "lowlap/two_view/internal/search/same_pose.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {

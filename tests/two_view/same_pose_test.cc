@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/same_pose.h"
+#include "lowlap/two_view/internal/search/same_pose.h"
 
 #include <gtest/gtest.h>
 

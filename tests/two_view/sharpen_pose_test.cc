@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/sharpen_pose.h"
+#include "lowlap/two_view/internal/search/sharpen_pose.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lowlap/two_view/internal/planar_motion.h"
-#include "lowlap/two_view/internal/same_pose.h"
+#include "lowlap/two_view/internal/search/same_pose.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {

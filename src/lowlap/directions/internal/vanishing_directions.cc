@@ -234,6 +234,12 @@ class Finder {
 
 }  // namespace
 
+Mat3 WidenedCovariance(const VanishingDirection& direction, double stddev_rad) {
+  const Mat3 across =
+      Mat3::Identity() - direction.direction * direction.direction.transpose();
+  return direction.covariance + stddev_rad * stddev_rad * across;
+}
+
 std::vector<VanishingDirection> FindVanishingDirections(
     const NormalizedFeatures& features, const VanishingOptions& options) {
   std::vector<VanishingDirection> directions;

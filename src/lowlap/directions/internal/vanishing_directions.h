@@ -17,6 +17,10 @@ struct VanishingDirection {
   double log10_nfa = 0;
 };
 
+/// The covariance with a deviation across the direction added, in radians: by
+/// how much lines that share it are not parallel.
+Mat3 WidenedCovariance(const VanishingDirection& direction, double stddev_rad);
+
 /// Vanishing directions without any assumption on the angles between them.
 ///
 /// A direction d fits a segment with end points a, b and midpoint m if an end

@@ -1,5 +1,8 @@
 #include "lowlap/pipeline/internal/pair_inputs.h"
 
+#include <set>
+
+#include "lowlap/core/internal/parallel.h"
 #include "lowlap/directions/internal/vanishing_directions.h"
 
 namespace lowlap {
@@ -10,34 +13,34 @@ PairInputs::PairInputs(const Scene& scene) {
     if (intrinsic == nullptr) continue;
     const Vec2 size_px(intrinsic->width_px, intrinsic->height_px);
     if (!(size_px.minCoeff() > 0)) continue;
-    views_[view] = {NormalizeFeatures(features, *intrinsic), size_px,
-                    std::nullopt};
+    ViewMeasurements& measurements = views_[view];
+    measurements.features = NormalizeFeatures(features, *intrinsic);
+    measurements.image_size_px = size_px;
   }
 }
 
-void PairInputs::FindDirectionsOf(ViewId view) {
-  const auto found = views_.find(view);
-  if (found == views_.end() || found->second.directions) return;
-  found->second.directions =
-      FindVanishingDirections(found->second.features, VanishingOptions());
+Status PairInputs::FindDirections(const std::vector<ViewPair>& pairs,
+                                  const RunContext& context) {
+  std::set<ViewId> views;
+  for (const ViewPair& pair : pairs) views.insert({pair.first, pair.second});
+  std::vector<ViewMeasurements*> to_find;
+  for (const ViewId view : views) {
+    const auto found = views_.find(view);
+    if (found != views_.end()) to_find.push_back(&found->second);
+  }
+  return ParallelFor(context, "directions", to_find.size(), [&](std::size_t n) {
+    to_find[n]->directions =
+        FindVanishingDirections(to_find[n]->features, VanishingOptions());
+  });
 }
 
 std::optional<TwoViewInput> PairInputs::Of(const RelativePose& pose) const {
   const auto first = views_.find(pose.views.first);
   const auto second = views_.find(pose.views.second);
   if (first == views_.end() || second == views_.end()) return std::nullopt;
-  TwoViewInput input;
-  input.views = pose.views;
-  input.features1 = &first->second.features;
-  input.features2 = &second->second.features;
+  TwoViewInput input = InputOf(pose.views, first->second, second->second);
   input.point_matches = pose.point_inliers;
   input.line_matches = pose.line_inliers;
-  if (first->second.directions) input.directions1 = &*first->second.directions;
-  if (second->second.directions) {
-    input.directions2 = &*second->second.directions;
-  }
-  input.image_size1_px = first->second.image_size_px;
-  input.image_size2_px = second->second.image_size_px;
   return input;
 }
 

@@ -4,10 +4,10 @@
 #include <optional>
 #include <vector>
 
-#include "lowlap/core/ids.h"
-#include "lowlap/scene/features.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
 #include "lowlap/scene/scene.h"
-#include "lowlap/two_view/internal/relative_pose_estimator.h"
+#include "lowlap/two_view/internal/pair_estimator.h"
 
 namespace lowlap {
 
@@ -17,20 +17,17 @@ class PairInputs {
   /// Views without an intrinsic, an image size or features are left out.
   explicit PairInputs(const Scene& scene);
 
-  /// Finds the vanishing directions of a view, if it is in.
-  void FindDirectionsOf(ViewId view);
+  /// Finds the vanishing directions of the views of these pairs; without them
+  /// lines say nothing. Errors: kCancelled.
+  Status FindDirections(const std::vector<ViewPair>& pairs,
+                        const RunContext& context);
 
-  /// The inliers of a pose as matches, with the directions that were found.
-  /// Refers to this object; nullopt where a view is left out.
+  /// The inliers of a pose as matches. Refers to this object; nullopt where a
+  /// view is left out.
   std::optional<TwoViewInput> Of(const RelativePose& pose) const;
 
  private:
-  struct View {
-    NormalizedFeatures features;
-    Vec2 image_size_px = Vec2::Zero();
-    std::optional<std::vector<VanishingDirection>> directions;
-  };
-  std::map<ViewId, View> views_;
+  std::map<ViewId, ViewMeasurements> views_;
 };
 
 }  // namespace lowlap

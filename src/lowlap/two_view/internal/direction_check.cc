@@ -8,9 +8,9 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/a_contrario_ransac.h"
-#include "lowlap/two_view/internal/chance_support.h"
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
-#include "lowlap/two_view/internal/pose_search.h"
+#include "lowlap/two_view/internal/search/chance_support.h"
+#include "lowlap/two_view/internal/search/pose_search.h"
 #include "lowlap/two_view/internal/shuffled_matches.h"
 #include "lowlap/two_view/internal/translation_evidence.h"
 

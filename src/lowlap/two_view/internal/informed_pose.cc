@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lowlap/core/internal/random.h"
-#include "lowlap/two_view/internal/pose_from_search.h"
-#include "lowlap/two_view/internal/pose_search.h"
+#include "lowlap/two_view/internal/search/pose_from_search.h"
+#include "lowlap/two_view/internal/search/pose_search.h"
 #include "lowlap/two_view/internal/shuffled_matches.h"
 
 namespace lowlap {

@@ -36,8 +36,9 @@ struct InformedPose {
 /// the translation of two-point samples, both refined with the prior. The one
 /// of the greatest score (PoseCandidate), less PriorPenalty, wins. Covariance
 /// and inliers are those with the prior; the evidence (log10_nfa) stays that of
-/// the matches alone. Where too few matches are usable, the pose comes back as
-/// it was.
+/// the matches alone. Where too few matches are usable, or chance explains
+/// that they fit the new motion (log10 NFA >= 0), the pose comes back as it
+/// was.
 InformedPose InformPose(const TwoViewInput& input, const RelativePose& pose,
                         const RotationPrior& prior, std::uint64_t seed);
 

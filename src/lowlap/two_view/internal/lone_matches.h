@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
 
 namespace lowlap {
 

@@ -8,27 +8,10 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/validation.h"
-#include "lowlap/two_view/internal/same_pose.h"
+#include "lowlap/two_view/internal/search/same_pose.h"
 
 namespace lowlap {
 namespace {
-
-TwoViewInput MakeInput(const ViewPair& views, const ViewMeasurements& first,
-                       const ViewMeasurements& second) {
-  TwoViewInput input;
-  input.views = views;
-  input.features1 = &first.features;
-  input.features2 = &second.features;
-  input.directions1 = &first.directions;
-  input.directions2 = &second.directions;
-  if (!first.point_covariances.empty() && !second.point_covariances.empty()) {
-    input.point_covariances1 = &first.point_covariances;
-    input.point_covariances2 = &second.point_covariances;
-  }
-  input.image_size1_px = first.image_size_px;
-  input.image_size2_px = second.image_size_px;
-  return input;
-}
 
 // Adds the matches whose points have none yet.
 void AddMatches(const std::vector<FeatureMatch>& extra,
@@ -154,12 +137,29 @@ ViewMeasurements MeasureView(const ViewFeatures& features,
   return view;
 }
 
+TwoViewInput InputOf(const ViewPair& views, const ViewMeasurements& first,
+                     const ViewMeasurements& second) {
+  TwoViewInput input;
+  input.views = views;
+  input.features1 = &first.features;
+  input.features2 = &second.features;
+  input.directions1 = &first.directions;
+  input.directions2 = &second.directions;
+  if (!first.point_covariances.empty() && !second.point_covariances.empty()) {
+    input.point_covariances1 = &first.point_covariances;
+    input.point_covariances2 = &second.point_covariances;
+  }
+  input.image_size1_px = first.image_size_px;
+  input.image_size2_px = second.image_size_px;
+  return input;
+}
+
 PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
                           const ViewMeasurements& second,
                           const PairMatches& putative,
                           const PairOptions& options, std::uint64_t seed) {
   PairEstimate estimate;
-  TwoViewInput input = MakeInput(views, first, second);
+  TwoViewInput input = InputOf(views, first, second);
   if (options.use_points) input.point_matches = putative.points;
   if (options.use_lines) input.line_matches = putative.lines;
   auto result = EstimateRelativePose(input, options.two_view, seed);
@@ -232,7 +232,7 @@ RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,
                         const ViewMeasurements& second,
                         const PairOptions& options,
                         std::vector<FeatureMatch>* lone_matches) {
-  TwoViewInput input = MakeInput(pose.views, first, second);
+  TwoViewInput input = InputOf(pose.views, first, second);
   if (options.use_points) input.point_matches = pose.point_inliers;
   if (options.use_lines) input.line_matches = pose.line_inliers;
   RelativePose refined = Improve(input, pose, options.two_view, lone_matches);

@@ -34,6 +34,11 @@ ViewMeasurements MeasureView(const ViewFeatures& features,
                              const DetectedFeatures* detected,
                              const VanishingOptions& options);
 
+/// What is known of a pair before its geometry, without matches. It refers to
+/// the measurements.
+TwoViewInput InputOf(const ViewPair& views, const ViewMeasurements& first,
+                     const ViewMeasurements& second);
+
 struct PairEstimate {
   std::optional<RelativePose> pose;
   std::string reason;  // why there is none

@@ -16,7 +16,7 @@ constexpr int kMinVotesForAll = 8;
 constexpr int kMaxDigits = 10;
 constexpr std::size_t kMaxPossible = 4;
 /// By how much lines of different walls that count as parallel are not.
-constexpr double kWallStddevDeg = 0.3;
+const double kWallStddevRad = RadFromDeg(0.3);
 
 // The direction of every segment that has one.
 std::map<FeatureIndex, std::size_t> DirectionOfSegment(
@@ -30,18 +30,11 @@ std::map<FeatureIndex, std::size_t> DirectionOfSegment(
   return result;
 }
 
-// The covariance, with what walls deviate from a direction that they share.
-Mat3 WidenedCovariance(const VanishingDirection& direction) {
-  const double stddev = RadFromDeg(kWallStddevDeg);
-  const Mat3 across =
-      Mat3::Identity() - direction.direction * direction.direction.transpose();
-  return direction.covariance + stddev * stddev * across;
-}
-
 // Of one view: to within their deviations.
 bool AreOne(const VanishingDirection& a, const VanishingDirection& b) {
-  const DirectionPair pair{a.direction, b.direction, WidenedCovariance(a),
-                           WidenedCovariance(b), 0};
+  const DirectionPair pair{a.direction, b.direction,
+                           WidenedCovariance(a, kWallStddevRad),
+                           WidenedCovariance(b, kWallStddevRad), 0};
   return DirectionResidual(pair, Mat3::Identity()).norm() <=
          kDirectionLossScale;
 }
@@ -158,8 +151,9 @@ std::vector<DirectionPair> PossibleDirections(
   std::vector<DirectionPair> pairs;
   for (const VanishingDirection& d1 : free1) {
     for (const VanishingDirection& d2 : free2) {
-      DirectionPair pair{d1.direction, d2.direction, WidenedCovariance(d1),
-                         WidenedCovariance(d2), 0};
+      DirectionPair pair{d1.direction, d2.direction,
+                         WidenedCovariance(d1, kWallStddevRad),
+                         WidenedCovariance(d2, kWallStddevRad), 0};
       const double stddev =
           std::sqrt((pair.covariance1 + pair.covariance2).trace());
       pair.agreement_digits =

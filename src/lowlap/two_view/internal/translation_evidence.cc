@@ -6,8 +6,8 @@
 
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/log_combinatorics.h"
-#include "lowlap/two_view/internal/chance_support.h"
-#include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/search/chance_support.h"
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
 
 namespace lowlap {
 namespace {

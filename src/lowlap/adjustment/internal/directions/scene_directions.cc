@@ -16,8 +16,6 @@
 namespace lowlap {
 namespace {
 
-constexpr double kMaxLog10Nfa = -5;
-constexpr double kParallelStddevDeg = 0.1;
 constexpr double kPoseStddevDeg = 0.5;
 constexpr double kReach = 3;
 
@@ -29,13 +27,13 @@ Vec3 InWorld(const DirectionSight& sight, const CameraSet& cameras) {
 double Deviation(const DirectionSight& sight, const Vec3& in_world,
                  double pose_stddev_rad, const CameraSet& cameras) {
   const Vec3 in_camera = cameras.poses[sight.pose].cam_from_world * in_world;
-  const auto basis = TangentBasis(sight.direction);
-  const Mat2 covariance = basis.transpose() * sight.covariance * basis +
-                          pose_stddev_rad * pose_stddev_rad * Mat2::Identity();
   // Beyond 45 degrees the tangent plane says less and less.
   if (std::abs(in_camera.dot(sight.direction)) < std::sqrt(0.5)) {
     return kInfinity;
   }
+  const auto basis = TangentBasis(sight.direction);
+  const Mat2 covariance = basis.transpose() * sight.covariance * basis +
+                          pose_stddev_rad * pose_stddev_rad * Mat2::Identity();
   const Vec2 error = basis.transpose() * in_camera;
   return std::sqrt(error.dot(covariance.inverse() * error));
 }
@@ -91,16 +89,14 @@ Result<std::vector<DirectionSight>> FindDirectionSights(
         const CameraView& view = cameras.views[n];
         const auto features = scene.features.find(view.id);
         if (features == scene.features.end()) return;
-        const double stddev = RadFromDeg(kParallelStddevDeg);
+        const VanishingOptions options;
+        const double stddev = RadFromDeg(options.parallel_stddev_deg);
         for (const VanishingDirection& found : FindVanishingDirections(
                  NormalizeFeatures(features->second,
                                    cameras.intrinsics[view.intrinsic].value),
-                 VanishingOptions())) {
-          if (found.log10_nfa > kMaxLog10Nfa) continue;
-          const Mat3 across =
-              Mat3::Identity() - found.direction * found.direction.transpose();
+                 options)) {
           of_view[n].push_back({view.pose, found.direction,
-                                found.covariance + stddev * stddev * across,
+                                WidenedCovariance(found, stddev),
                                 found.log10_nfa});
         }
       });

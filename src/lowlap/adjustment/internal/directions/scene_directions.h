@@ -22,10 +22,10 @@ struct SceneDirection {
   std::vector<DirectionSight> sights;
 };
 
-/// The vanishing directions of all cameras (FindVanishingDirections) with a
-/// log10 NFA below -5, the most meaningful first. To their covariances come 0.1
-/// degrees across: lines that people build parallel are not quite. Errors:
-/// kCancelled.
+/// The vanishing directions of all cameras (FindVanishingDirections), the most
+/// meaningful first. To their covariances comes parallel_stddev_deg
+/// (VanishingOptions) across: the walls of a scene differ as lines of one wall
+/// do. Errors: kCancelled.
 Result<std::vector<DirectionSight>> FindDirectionSights(
     const Scene& scene, const CameraSet& cameras, const RunContext& context);
 

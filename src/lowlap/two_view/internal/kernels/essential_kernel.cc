@@ -5,7 +5,7 @@
 
 #include "lowlap/geometry/internal/epipolar.h"
 #include "lowlap/two_view/internal/kernels/five_point.h"
-#include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
 
 namespace lowlap {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lowlap/two_view/internal/kernels/essential_kernel.h"
-#include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
 
 namespace lowlap {
 

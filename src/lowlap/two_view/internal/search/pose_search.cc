@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/pose_search.h"
+#include "lowlap/two_view/internal/search/pose_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +9,11 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/a_contrario_ransac.h"
 #include "lowlap/robust/internal/median_deviation.h"
-#include "lowlap/two_view/internal/chance_support.h"
 #include "lowlap/two_view/internal/kernels/five_point.h"
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
-#include "lowlap/two_view/internal/same_pose.h"
-#include "lowlap/two_view/internal/sharpen_pose.h"
+#include "lowlap/two_view/internal/search/chance_support.h"
+#include "lowlap/two_view/internal/search/same_pose.h"
+#include "lowlap/two_view/internal/search/sharpen_pose.h"
 
 namespace lowlap {
 namespace {

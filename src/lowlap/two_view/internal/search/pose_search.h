@@ -8,8 +8,8 @@
 #include "lowlap/robust/internal/a_contrario.h"
 #include "lowlap/two_view/internal/kernels/essential_kernel.h"
 #include "lowlap/two_view/internal/parallel_directions.h"
-#include "lowlap/two_view/internal/refine_relative_pose.h"
 #include "lowlap/two_view/internal/relative_pose_estimator.h"
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
 
 namespace lowlap {
 

@@ -4,8 +4,8 @@
 
 #include "lowlap/scene/relative_pose.h"
 #include "lowlap/two_view/internal/parallel_directions.h"
-#include "lowlap/two_view/internal/pose_search.h"
 #include "lowlap/two_view/internal/relative_pose_estimator.h"
+#include "lowlap/two_view/internal/search/pose_search.h"
 #include "lowlap/two_view/internal/shuffled_matches.h"
 
 namespace lowlap {

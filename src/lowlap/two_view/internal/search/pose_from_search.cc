@@ -1,11 +1,11 @@
-#include "lowlap/two_view/internal/pose_from_search.h"
+#include "lowlap/two_view/internal/search/pose_from_search.h"
 
 #include <algorithm>
 #include <iterator>
 #include <utility>
 
 #include "lowlap/two_view/internal/lone_matches.h"
-#include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
 
 namespace lowlap {
 namespace {

@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/sharpen_pose.h"
+#include "lowlap/two_view/internal/search/sharpen_pose.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "lowlap/robust/internal/a_contrario_ransac.h"
-#include "lowlap/two_view/internal/refine_relative_pose.h"
-#include "lowlap/two_view/internal/same_pose.h"
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
+#include "lowlap/two_view/internal/search/same_pose.h"
 
 namespace lowlap {
 namespace {

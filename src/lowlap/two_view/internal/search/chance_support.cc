@@ -1,9 +1,9 @@
-#include "lowlap/two_view/internal/chance_support.h"
+#include "lowlap/two_view/internal/search/chance_support.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
 
 namespace lowlap {
 namespace {

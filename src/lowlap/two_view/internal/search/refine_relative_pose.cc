@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/refine_relative_pose.h"
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
 
 #include <cmath>
 
