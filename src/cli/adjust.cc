@@ -20,6 +20,7 @@ struct Flags {
   std::string output;
   std::vector<std::string> features = {"points", "lines", "coplanar"};
   std::string coplanar_ties = "planes";
+  bool directions = AdjustmentOptions{}.use_directions;
   bool retriangulate = false;
   std::string refine_intrinsics;
   double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;
@@ -32,6 +33,7 @@ Result<int> Adjust(const Flags& flags) {
   LOWLAP_RETURN_IF_ERROR(SetAdjustedFeatures(flags.features, &options));
   LOWLAP_ASSIGN_OR_RETURN(options.coplanar_ties,
                           ParseCoplanarTies(flags.coplanar_ties));
+  options.use_directions = flags.directions;
   options.principal_point_stddev = flags.principal_point_stddev;
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   // A folder that cannot be written is found before the work.
@@ -118,6 +120,7 @@ void AddAdjust(CLI::App* program, Action* action) {
       .SeparatedBy(',')
       .ShowDefault();
   AddCoplanarTiesFlag(command, &flags->coplanar_ties);
+  AddDirectionsFlag(command, &flags->directions);
   AddFlag(command, "--retriangulate", flags->retriangulate,
           "Build the structure anew from the tracks first");
   AddRefinementFlag(command, &flags->refine_intrinsics);

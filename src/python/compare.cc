@@ -139,11 +139,10 @@ void BindCompare(py::module_& module) {
       "truth: as `gt` of solve(). strategies: a text as that of `lowlap\n"
       "compare --strategies`, or a list of texts and TranslationAverager;\n"
       "None: all of lowlap's. Options: reference, output; features,\n"
-      "coplanar_points, criterion, nfa, threshold; adjust_features, "
-      "coplanar_ties, "
-      "no_adjust,\n"
-      "principal_point_stddev; matchdir, match_file, images, exclude: as of\n"
-      "measure(); threads, seed, progress, log.");
+      "coplanar_points, criterion, nfa, threshold; adjust_features,\n"
+      "coplanar_ties, directions, no_adjust, principal_point_stddev;\n"
+      "matchdir, match_file, images, exclude: as of measure();\n"
+      "threads, seed, progress, log.");
 }
 
 }  // namespace lowlap::python

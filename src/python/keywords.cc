@@ -108,6 +108,7 @@ SolveArguments TakeComparedOptions(Keywords* keywords) {
   std::string ties = "planes";
   keywords->Take("coplanar_ties", &ties);
   options.adjustment.coplanar_ties = ValueOf(ParseCoplanarTies(ties));
+  keywords->Take("directions", &options.adjustment.use_directions);
   keywords->Take("principal_point_stddev",
                  &options.adjustment.principal_point_stddev);
   bool no_adjust = false;

@@ -86,8 +86,8 @@ struct SolveArguments {
   std::string output;
 };
 
-/// Those of TakeScaleOptions, adjust_features, coplanar_ties, no_adjust and
-/// principal_point_stddev.
+/// Those of TakeScaleOptions, adjust_features, coplanar_ties, directions,
+/// no_adjust and principal_point_stddev.
 SolveArguments TakeComparedOptions(Keywords* keywords);
 /// The same, strategy, refine_intrinsics, gt and output.
 SolveArguments TakeSolveArguments(Keywords* keywords, Call* call);

@@ -126,9 +126,8 @@ void BindMerge(py::module_& module) {
       "  images, exclude.\n"
       "Other options: exclude, and those of solve(): features,\n"
       "coplanar_points, criterion, nfa, threshold, strategy, adjust_features,\n"
-      "coplanar_ties, no_adjust, refine_intrinsics, principal_point_stddev, "
-      "gt, output,\n"
-      "threads, seed, progress, log.");
+      "coplanar_ties, directions, no_adjust, refine_intrinsics,\n"
+      "principal_point_stddev, gt, output, threads, seed, progress, log.");
 }
 
 }  // namespace lowlap::python

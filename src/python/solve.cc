@@ -149,6 +149,10 @@ void BindSummaries(py::module_& module) {
       .def_readonly("points", &AdjustmentSummary::points)
       .def_readonly("lines", &AdjustmentSummary::lines)
       .def_readonly("coplanar", &AdjustmentSummary::coplanar)
+      .def_readonly("planes", &AdjustmentSummary::planes)
+      .def_readonly("landmarks_on_planes",
+                    &AdjustmentSummary::landmarks_on_planes)
+      .def_readonly("directions", &AdjustmentSummary::directions)
       .def_readonly("iterations", &AdjustmentSummary::iterations)
       .def_readonly("outlier_rounds", &AdjustmentSummary::outlier_rounds)
       .def_readonly("converged", &AdjustmentSummary::converged);
@@ -161,9 +165,9 @@ constexpr char kSolveDoc[] =
     "  features, coplanar_points, criterion, nfa, threshold: the scale "
     "ratios;\n"
     "  strategy: NAME[:key=value,...] or a TranslationAverager;\n"
-    "  adjust_features, coplanar_ties, no_adjust, refine_intrinsics (True, or "
-    "parts),\n"
-    "  principal_point_stddev: the bundle adjustment;\n"
+    "  adjust_features, coplanar_ties, directions, no_adjust,\n"
+    "  refine_intrinsics (True, or parts), principal_point_stddev: the bundle\n"
+    "  adjustment;\n"
     "  gt: true cameras to evaluate against, never used for solving;\n"
     "  output: a folder for what the command writes;\n"
     "  matchdir, match_file, images, exclude: what goes with a path, as of\n"

@@ -83,6 +83,25 @@ TEST_F(Cli, SimulateSolveAndTheFilesThatComeOut) {
   EXPECT_THAT(inspected.output, HasSubstr("views 8"));
 }
 
+TEST_F(Cli, DirectionsHoldTheAdjustmentUnlessToldNotTo) {
+  const std::string room = Path("room.lowlap"), solved = Path("solved");
+  ASSERT_EQ(Lowlap("simulate --views 6 --noise 0.3 -o " + room).exit_code, 0);
+  ASSERT_EQ(Lowlap("solve " + room + " -o " + solved).exit_code, 0);
+  for (const std::string& command :
+       {"solve " + room, "adjust " + solved + "/scene.lowlap"}) {
+    const auto summary_of = [&](const std::string& flags) {
+      const Outcome outcome = Lowlap(command + flags + " -o " + Path("out"));
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+      return ReadText(Path("out/summary.json"));
+    };
+    const auto without = HasSubstr("\"directions\": 0");
+    EXPECT_THAT(summary_of(""), Not(without));
+    EXPECT_THAT(summary_of(" --directions"), Not(without));
+    EXPECT_THAT(summary_of(" --no-directions"), without);
+    EXPECT_THAT(summary_of(" --directions --coplanar-ties pairs"), without);
+  }
+}
+
 TEST_F(Cli, ThreadsDoNotChangeTheUnadjustedResult) {
   ASSERT_EQ(Lowlap("simulate --views 6 --noise 1 -o " + Path("room.lowlap"))
                 .exit_code,

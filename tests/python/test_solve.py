@@ -37,6 +37,15 @@ class SolveTest(unittest.TestCase):
                           "adjustment"])
         self.assertIn("8 of 8", repr(solution))
 
+    def test_ties_of_the_adjustment_are_as_asked(self):
+        held = lowlap.solve(self.scene).adjustment
+        self.assertGreater(held.planes, 0)
+        self.assertGreater(held.directions, 0)
+        without = lowlap.solve(self.scene, directions=False).adjustment
+        self.assertEqual((without.planes, without.directions), (held.planes, 0))
+        pairs = lowlap.solve(self.scene, coplanar_ties="pairs").adjustment
+        self.assertEqual((pairs.planes, pairs.directions), (0, 0))
+
     def test_says_which_directions_their_matches_contradict(self):
         scene, truth = lowlap.simulate(views=9, points=30, lines=50, noise=0.5,
                                        pairs="window:2", wrong_directions=0.2,

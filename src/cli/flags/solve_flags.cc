@@ -169,6 +169,7 @@ void AddAdjustFlags(CLI::App* command, SolveFlags* flags) {
       .SeparatedBy(',')
       .ShowDefault();
   AddCoplanarTiesFlag(command, &flags->coplanar_ties);
+  AddDirectionsFlag(command, &flags->directions);
   AddPrincipalPointFlag(command, &flags->principal_point_stddev);
   AddFlag(command, "--no-adjust", flags->no_adjust,
           "Stop before the bundle adjustment");
@@ -182,6 +183,13 @@ void AddCoplanarTiesFlag(CLI::App* command, std::string* ties) {
             "both")
       .Must(Check::OneOf({"pairs", "planes", "both"}))
       .ShowDefault();
+}
+
+void AddDirectionsFlag(CLI::App* command, bool* directions) {
+  AddFlag(command, "--directions,!--no-directions", *directions,
+          "Whether the directions of parallel lines hold rotations in the "
+          "bundle adjustment; never with --coplanar-ties pairs, nor while "
+          "intrinsics move");
 }
 
 void AddPrincipalPointFlag(CLI::App* command, double* stddev) {
@@ -249,6 +257,7 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
       SetAdjustedFeatures(flags.adjust_features, &options.adjustment));
   LOWLAP_ASSIGN_OR_RETURN(options.adjustment.coplanar_ties,
                           ParseCoplanarTies(flags.coplanar_ties));
+  options.adjustment.use_directions = flags.directions;
   options.adjustment.principal_point_stddev = flags.principal_point_stddev;
   options.adjust = !flags.no_adjust;
   LOWLAP_RETURN_IF_ERROR(options.Validate());

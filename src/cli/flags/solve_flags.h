@@ -34,6 +34,7 @@ struct SolveFlags {
   std::string strategy = "graph";
   std::vector<std::string> adjust_features = {"points", "lines", "coplanar"};
   std::string coplanar_ties = "planes";
+  bool directions = AdjustmentOptions{}.use_directions;
   bool no_adjust = false;
   std::string refine_intrinsics;
   double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;
@@ -46,7 +47,10 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
 
 /// --coplanar-ties
 void AddCoplanarTiesFlag(CLI::App* command, std::string* ties);
-/// --adjust-features, --coplanar-ties, --principal-point-stddev, --no-adjust.
+/// --directions
+void AddDirectionsFlag(CLI::App* command, bool* directions);
+/// --adjust-features, --coplanar-ties, --directions, --principal-point-stddev,
+/// --no-adjust.
 void AddAdjustFlags(CLI::App* command, SolveFlags* flags);
 /// --principal-point-stddev
 void AddPrincipalPointFlag(CLI::App* command, double* stddev);

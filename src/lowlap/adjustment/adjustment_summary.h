@@ -92,6 +92,8 @@ struct AdjustmentSummary {
   /// With CoplanarTies other than kPairs.
   std::size_t planes = 0;
   std::size_t landmarks_on_planes = 0;
+  /// Those that held rotations.
+  std::size_t directions = 0;
 
   /// How far the errors of points follow their shapes (0: they are round). The
   /// errors of points are whitened with it, here and in `points`.

@@ -217,6 +217,7 @@ class Adjuster {
     CountPairs(state_.pairs, scene_.coplanar_pairs.size(), &summary_.coplanar);
     summary_.initial_cost = summary_.solves.front().initial_cost;
     summary_.final_cost = summary_.solves.back().final_cost;
+    summary_.directions = state_.directions.size();
     summary_.components = last_.components;
     summary_.center_covariances = last_.center_covariances;
     std::set<PoseId> adjusted;

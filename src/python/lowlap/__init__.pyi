@@ -281,6 +281,9 @@ class AdjustmentSummary:
     points: KindAdjustment
     lines: KindAdjustment
     coplanar: KindAdjustment
+    planes: int
+    landmarks_on_planes: int
+    directions: int
     iterations: int
     outlier_rounds: int
     converged: bool
@@ -315,8 +318,8 @@ class Solution:
 def solve(
     scene: SceneOrPath, *, features: Words = ..., coplanar_points: bool = ...,
     criterion: str = ..., nfa: str = ..., threshold: float = ...,
-    adjust_features: Words = ..., coplanar_ties: str = ..., principal_point_stddev: float = ...,
-    no_adjust: bool = ..., strategy: Strategy = ...,
+    adjust_features: Words = ..., coplanar_ties: str = ..., directions: bool = ...,
+    principal_point_stddev: float = ..., no_adjust: bool = ..., strategy: Strategy = ...,
     refine_intrinsics: Union[bool, Words] = ..., gt: Truth = ..., output: Path = ...,
     matchdir: Path = ..., match_file: Path = ..., images: Path = ..., exclude: Words = ...,
     threads: int = ..., seed: int = ..., progress: Optional[Progress] = ...,
@@ -329,20 +332,20 @@ def merge(
     refine_points: bool = ..., cache: Path = ..., features: Words = ...,
     coplanar_points: bool = ..., criterion: str = ..., nfa: str = ...,
     threshold: float = ..., adjust_features: Words = ..., coplanar_ties: str = ...,
-    principal_point_stddev: float = ..., no_adjust: bool = ..., strategy: Strategy = ...,
-    refine_intrinsics: Union[bool, Words] = ..., gt: Truth = ..., output: Path = ...,
-    threads: int = ..., seed: int = ..., progress: Optional[Progress] = ...,
-    log: Optional[Log] = ...) -> Solution: ...
+    directions: bool = ..., principal_point_stddev: float = ..., no_adjust: bool = ...,
+    strategy: Strategy = ..., refine_intrinsics: Union[bool, Words] = ..., gt: Truth = ...,
+    output: Path = ..., threads: int = ..., seed: int = ...,
+    progress: Optional[Progress] = ..., log: Optional[Log] = ...) -> Solution: ...
 def run(
     images: Path, intrinsics: Union[None, Path, Scene, ArrayLike] = ..., *,
     focal: float = ..., pairs: str = ..., matcher: str = ..., exclude: Words = ...,
     two_view: Words = ..., refine_points: bool = ..., cache: Path = ...,
     features: Words = ..., coplanar_points: bool = ..., criterion: str = ...,
     nfa: str = ..., threshold: float = ..., adjust_features: Words = ..., coplanar_ties: str = ...,
-    principal_point_stddev: float = ..., no_adjust: bool = ..., strategy: Strategy = ...,
-    refine_intrinsics: Union[bool, Words] = ..., gt: Truth = ..., output: Path = ...,
-    threads: int = ..., seed: int = ..., progress: Optional[Progress] = ...,
-    log: Optional[Log] = ...) -> Solution: ...
+    directions: bool = ..., principal_point_stddev: float = ..., no_adjust: bool = ...,
+    strategy: Strategy = ..., refine_intrinsics: Union[bool, Words] = ..., gt: Truth = ...,
+    output: Path = ..., threads: int = ..., seed: int = ...,
+    progress: Optional[Progress] = ..., log: Optional[Log] = ...) -> Solution: ...
 def scales(
     scene: SceneOrPath, *, features: Words = ..., coplanar_points: bool = ...,
     criterion: str = ..., nfa: str = ..., threshold: float = ..., matchdir: Path = ...,
@@ -423,10 +426,11 @@ def compare(
     strategies: Union[None, str, Sequence[Strategy]] = ..., *, reference: str = ...,
     output: Path = ..., features: Words = ..., coplanar_points: bool = ...,
     criterion: str = ..., nfa: str = ..., threshold: float = ...,
-    adjust_features: Words = ..., coplanar_ties: str = ..., principal_point_stddev: float = ...,
-    no_adjust: bool = ..., matchdir: Path = ..., match_file: Path = ..., images: Path = ...,
-    exclude: Words = ..., threads: int = ..., seed: int = ...,
-    progress: Optional[Progress] = ..., log: Optional[Log] = ...) -> Comparison: ...
+    adjust_features: Words = ..., coplanar_ties: str = ..., directions: bool = ...,
+    principal_point_stddev: float = ..., no_adjust: bool = ..., matchdir: Path = ...,
+    match_file: Path = ..., images: Path = ..., exclude: Words = ..., threads: int = ...,
+    seed: int = ..., progress: Optional[Progress] = ...,
+    log: Optional[Log] = ...) -> Comparison: ...
 
 # A view graph in memory
 

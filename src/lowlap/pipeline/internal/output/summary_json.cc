@@ -219,6 +219,7 @@ Json SolveJson(const SolveResult& solve) {
         {"coplanar", AdjustedKindJson(a.coplanar)},
         {"planes", a.planes},
         {"landmarks_on_planes", a.landmarks_on_planes},
+        {"directions", a.directions},
         {"calibration_preferences", PreferencesJson(a)}};
   }
   return json;
