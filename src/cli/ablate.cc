@@ -62,8 +62,9 @@ void AddAblate(CLI::App* program, Action* action) {
   auto flags = std::make_shared<Flags>();
   CLI::App* command = AddCommand(
       program, "ablate",
-      "Position errors with fixed inlier thresholds and without, and by kind "
-      "of feature: the paper's experiments on any scene with true cameras");
+      "Position errors with fixed inlier thresholds and without, by kind of "
+      "feature (the paper's experiments), and by what holds the bundle "
+      "adjustment, on any scene with true cameras");
   AddSceneInputFlags(command, &flags->input);
   AddTruthFlag(command, &flags->ground_truth).Required();
   AddOption(command, "-o,--output,--outdir", flags->output,

@@ -76,17 +76,18 @@ TEST_F(CompareCommand, AFileInPlaceOfTheOutputFolderIsNamed) {
   }
 }
 
-TEST_F(CompareCommand, AblationPrintsBothTables) {
+TEST_F(CompareCommand, AblationPrintsItsTables) {
   const Outcome ablated =
       OnRoom("ablate", "--gt " + Path("truth.lowlap") +
                            " --thresholds 1,4 -o " + Path("out"));
   ASSERT_EQ(ablated.exit_code, 0) << ablated.output;
   for (const char* part :
        {"1 px", "4 px", "a contrario", "points + lines", "coplanar",
-        "all + adjustment", "mean position error", "6/6"}) {
+        "all + adjustment", "mean position error", "6/6", "pairs",
+        "planes + directions"}) {
     EXPECT_THAT(ablated.output, HasSubstr(part));
   }
-  EXPECT_EQ(FilesIn("out"), 4u);
+  EXPECT_EQ(FilesIn("out"), 5u);
 }
 
 TEST_F(CompareCommand, AblationNeedsTruthAndPositiveThresholds) {

@@ -7,7 +7,9 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -55,7 +57,12 @@ TEST(Ablation, HasTheCasesOfThePaper) {
   EXPECT_THAT(NamesOf(ablation->features),
               testing::ElementsAre("points", "lines", "points + lines",
                                    "coplanar", "all", "all + adjustment"));
-  for (const auto* cases : {&ablation->criteria, &ablation->features}) {
+  EXPECT_THAT(
+      NamesOf(ablation->ties),
+      testing::ElementsAre("before adjustment", "none", "pairs", "planes",
+                           "directions", "planes + directions"));
+  for (const auto* cases :
+       {&ablation->criteria, &ablation->features, &ablation->ties}) {
     for (const AblationCase& entry : *cases) {
       SCOPED_TRACE(entry.name);
       EXPECT_FALSE(entry.failure);
@@ -65,7 +72,7 @@ TEST(Ablation, HasTheCasesOfThePaper) {
       EXPECT_GT(entry.abs_log_ratio.count, 0);
     }
   }
-  // The shared case, and what is varied in the others.
+  // The shared cases, and what is varied in the others.
   const AblationCase& all = Find(ablation->features, "all");
   EXPECT_EQ(all.errors.position.mean,
             Find(ablation->criteria, "a contrario").errors.position.mean);
@@ -75,6 +82,64 @@ TEST(Ablation, HasTheCasesOfThePaper) {
   const AblationCase& adjusted = Find(ablation->features, "all + adjustment");
   EXPECT_TRUE(adjusted.adjusted);
   EXPECT_LT(adjusted.errors.position.mean, all.errors.position.mean);
+  EXPECT_EQ(Find(ablation->ties, "before adjustment").errors.position.mean,
+            all.errors.position.mean);
+  EXPECT_EQ(Find(ablation->ties, "planes + directions").errors.position.mean,
+            adjusted.errors.position.mean);
+}
+
+TEST(Ablation, AdjustmentsAreHeldByWhatTheyName) {
+  const SyntheticScene room = NoisyRoom();
+  AblationOptions options;
+  options.thresholds_px = {};
+  // Every case sets its own ties.
+  options.solve.adjustment.use_directions = false;
+  options.solve.adjustment.coplanar_ties = CoplanarTies::kPairs;
+  const auto ablation =
+      Ablate(room.scene, room.true_poses, options, RunContext());
+  ASSERT_TRUE(ablation) << ablation.error().ToString();
+  struct Held {
+    bool pairs, planes, directions;
+  };
+  const std::map<std::string, Held> expected = {
+      {"none", {false, false, false}},
+      {"pairs", {true, false, false}},
+      {"planes", {false, true, false}},
+      {"directions", {false, false, true}},
+      {"planes + directions", {false, true, true}}};
+  std::set<double> errors;
+  for (const auto& [name, held] : expected) {
+    SCOPED_TRACE(name);
+    const AblationCase& entry = Find(ablation->ties, name);
+    EXPECT_TRUE(entry.adjusted);
+    EXPECT_EQ(entry.adjustment.coplanar.observations_used > 0, held.pairs);
+    EXPECT_EQ(entry.adjustment.planes > 0, held.planes);
+    EXPECT_EQ(entry.adjustment.directions > 0, held.directions);
+    errors.insert(entry.errors.position.mean);
+  }
+  EXPECT_EQ(errors.size(), expected.size());
+}
+
+// Ratios, poses and structure that the cases share are those of a solution.
+TEST(Ablation, AdjustmentsAreThoseOfTheWholeSolution) {
+  const SyntheticScene room = NoisyRoom();
+  AblationOptions options;
+  options.thresholds_px = {};
+  const auto ablation =
+      Ablate(room.scene, room.true_poses, options, RunContext());
+  ASSERT_TRUE(ablation) << ablation.error().ToString();
+  const auto error_of_solution = [&](const SolveOptions& solve) {
+    Scene scene = room.scene;
+    StageLog stages;
+    EXPECT_TRUE(SolveScene(&scene, solve, RunContext(), &stages));
+    return EvaluatePoses(scene, room.true_poses).position.mean;
+  };
+  SolveOptions solve;
+  EXPECT_NEAR(Find(ablation->ties, "planes + directions").errors.position.mean,
+              error_of_solution(solve), 1e-9);
+  solve.adjustment.coplanar_ties = CoplanarTies::kPairs;
+  EXPECT_NEAR(Find(ablation->ties, "pairs").errors.position.mean,
+              error_of_solution(solve), 1e-9);
 }
 
 // Kinds that see nothing are cases without a solution, not errors.
@@ -107,7 +172,7 @@ TEST(Ablation, TablesHoldEveryCase) {
       Ablate(room.scene, room.true_poses, options, RunContext());
   ASSERT_TRUE(ablation) << ablation.error().ToString();
   const auto records = ReadCsv(ToCsv(*ablation));
-  ASSERT_EQ(records.size(), 2u + 6u);
+  ASSERT_EQ(records.size(), 2u + 6u + 6u);
   EXPECT_EQ(records[0].at("case"), "2.5 px");
   EXPECT_EQ(records[0].at("criterion"), "fixed threshold");
   EXPECT_EQ(records[0].at("threshold_px"), "2.5");
@@ -116,12 +181,24 @@ TEST(Ablation, TablesHoldEveryCase) {
   EXPECT_EQ(records[7].at("adjusted"), "yes");
   EXPECT_NEAR(std::atof(records[2].at("position_error_mean").c_str()),
               ablation->features[0].errors.position.mean, 1e-8);
+  EXPECT_EQ(records[8].at("table"), "ties");
+  EXPECT_EQ(records[8].at("adjusted"), "no");
+  EXPECT_EQ(records[8].at("planes"), "");
+  EXPECT_EQ(records[10].at("case"), "pairs");
+  EXPECT_EQ(records[10].at("planes"), "0");
+  EXPECT_EQ(
+      records[10].at("coplanar_pairs"),
+      std::to_string(ablation->ties[2].adjustment.coplanar.observations_used));
   const auto json = nlohmann::json::parse(ToJson(*ablation));
   EXPECT_EQ(json.at("criteria").size(), 2u);
   EXPECT_EQ(json.at("features").at(5).at("case"), "all + adjustment");
+  EXPECT_FALSE(json.at("ties").at(0).contains("held_by"));
+  EXPECT_EQ(json.at("ties").at(4).at("held_by").at("directions"),
+            ablation->ties[4].adjustment.directions);
   const std::string text = ToText(*ablation);
-  for (const char* part : {"2.5 px", "a contrario", "points + lines",
-                           "mean position error", "cameras placed", "8/8"}) {
+  for (const char* part :
+       {"2.5 px", "a contrario", "points + lines", "mean position error",
+        "cameras placed", "8/8", "planes + directions"}) {
     EXPECT_THAT(text, HasSubstr(part));
   }
 }
@@ -133,6 +210,11 @@ TEST(Ablation, OptionsAndTruthAreChecked) {
   auto ablation = Ablate(room.scene, room.true_poses, options, RunContext());
   ASSERT_FALSE(ablation);
   EXPECT_EQ(ablation.error().code, ErrorCode::kInvalidArgument);
+  options = {};
+  options.solve.adjustment.principal_point_stddev = 1e-3;
+  ablation = Ablate(room.scene, room.true_poses, options, RunContext());
+  ASSERT_FALSE(ablation);
+  EXPECT_THAT(ablation.error().message, HasSubstr("intrinsics must be held"));
   GroundTruth two = room.true_poses;
   while (two.size() > 2) two.erase(two.begin());
   ablation = Ablate(room.scene, two, {}, RunContext());
@@ -147,9 +229,10 @@ TEST(Ablation, FilesAreWrittenOrTheFolderIsNamed) {
   Ablation ablation;
   ablation.criteria.resize(1);
   ablation.features.resize(1);
+  ablation.ties.resize(1);
   ASSERT_TRUE(WriteAblation(ablation, folder.string()));
-  for (const char* name :
-       {"ablate.csv", "ablate.json", "criteria.svg", "features.svg"}) {
+  for (const char* name : {"ablate.csv", "ablate.json", "criteria.svg",
+                           "features.svg", "ties.svg"}) {
     EXPECT_TRUE(fs::exists(folder / name)) << name;
   }
   std::ofstream(folder / "file") << "in the way";

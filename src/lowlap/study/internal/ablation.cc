@@ -1,11 +1,14 @@
 #include "lowlap/study/internal/ablation.h"
 
+#include <array>
 #include <cstddef>
+#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/core/internal/requirement.h"
 #include "lowlap/evaluation/internal/relative_errors.h"
 #include "lowlap/report/internal/table_text.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
@@ -26,6 +29,22 @@ std::vector<Features> FeatureCases() {
           {"coplanar", {"coplanar"}},
           {"all", EvidenceRegistry::BuiltIn().Features()}};
 }
+
+// What holds the end of the bundle adjustment.
+struct Ties {
+  const char* name;
+  bool use_coplanar;
+  CoplanarTies coplanar;
+  bool use_directions;
+};
+
+// The last are those of AdjustmentOptions.
+constexpr std::array<Ties, 5> kTies = {
+    {{"none", false, CoplanarTies::kPlanes, false},
+     {"pairs", true, CoplanarTies::kPairs, false},
+     {"planes", true, CoplanarTies::kPlanes, false},
+     {"directions", false, CoplanarTies::kPlanes, true},
+     {"planes + directions", true, CoplanarTies::kPlanes, true}}};
 
 AblationCase MakeCase(std::string name, const Features& features,
                       ScaleCriterion criterion, ScaleOptions scale) {
@@ -60,24 +79,29 @@ class Runner {
     return scene;
   }
 
-  /// The bundle adjustment of a solved case.
-  AblationCase Adjust(const AblationCase& solved, Scene scene) const {
-    AblationCase entry = solved;
-    entry.name += " + adjustment";
+  /// The structure of a solved case, for all its adjustments.
+  void AddStructure(AblationCase* entry, Scene* scene) const {
+    RunStage("structure", entry, [&]() -> Status {
+      LOWLAP_RETURN_IF_ERROR(
+          BuildStructure(scene, options_.structure, context_));
+      return {};
+    });
+  }
+
+  /// The bundle adjustment of a case with structure.
+  AblationCase Adjust(AblationCase entry, const Ties& ties, Scene scene) const {
+    entry.name = ties.name;
     entry.adjusted = true;
-    if (entry.failure) return entry;
-    StageLog stages;
-    SolveOptions options = options_;
-    options.adjust = true;
-    const auto refined = RefineSolution(&scene, options, context_, &stages);
-    if (refined) {
+    AdjustmentOptions options = options_.adjustment;
+    options.use_coplanar = ties.use_coplanar;
+    options.coplanar_ties = ties.coplanar;
+    options.use_directions = ties.use_directions;
+    RunStage("adjustment", &entry, [&]() -> Status {
+      LOWLAP_ASSIGN_OR_RETURN(entry.adjustment,
+                              AdjustScene(&scene, options, context_));
       entry.errors = EvaluatePoses(scene, truth_);
-    } else {
-      entry.failure = refined.error();
-      entry.errors = {};
-      entry.num_placed = 0;
-    }
-    for (const StageCost& cost : stages.stages()) entry.costs.push_back(cost);
+      return {};
+    });
     return entry;
   }
 
@@ -96,12 +120,34 @@ class Runner {
     return {};
   }
 
+  // A stage after the poses: where it fails, there is no solution.
+  static void RunStage(const char* name, AblationCase* entry,
+                       const std::function<Status()>& stage) {
+    if (entry->failure) return;
+    StageLog stages;
+    Status status;
+    {
+      const StageLog::Scope scope(&stages, name);
+      status = stage();
+    }
+    entry->costs.push_back(stages.stages().front());
+    if (status) return;
+    entry->failure = status.error();
+    entry->errors = {};
+    entry->num_placed = 0;
+  }
+
   const Scene& scene_;
   const SolveStart& start_;
   const GroundTruth& truth_;
   const SolveOptions& options_;
   const RunContext& context_;
 };
+
+AblationCase Named(const char* name, AblationCase entry) {
+  entry.name = name;
+  return entry;
+}
 
 bool IsCancelled(const AblationCase& entry) {
   return entry.failure && entry.failure->code == ErrorCode::kCancelled;
@@ -112,6 +158,11 @@ bool IsCancelled(const AblationCase& entry) {
 Status AblationOptions::Validate() const {
   LOWLAP_RETURN_IF_ERROR(solve.Validate());
   LOWLAP_RETURN_IF_ERROR(scale.Validate());
+  LOWLAP_RETURN_IF_ERROR(
+      Require({{solve.adjustment.use_lines,
+                "ablation: lines must be used in the adjustment"},
+               {!solve.adjustment.MovesIntrinsics(),
+                "ablation: intrinsics must be held"}}));
   for (const double threshold_px : thresholds_px) {
     if (!(threshold_px > 0)) {
       return MakeError(ErrorCode::kInvalidArgument,
@@ -156,7 +207,7 @@ Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
 
   const Runner runner(start_scene, start, truth, options.solve, context);
   const std::size_t total =
-      ablation.criteria.size() + ablation.features.size() + 1;
+      ablation.criteria.size() + ablation.features.size() + kTies.size();
   std::size_t done = 0;
   Scene solved;
   for (std::vector<AblationCase>* table :
@@ -170,13 +221,20 @@ Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
     }
   }
   // The last case is the one with all features.
-  ablation.criteria.push_back(ablation.features.back());
-  ablation.criteria.back().name = "a contrario";
-  ablation.features.push_back(
-      runner.Adjust(ablation.features.back(), std::move(solved)));
-  if (IsCancelled(ablation.features.back())) {
-    return tl::unexpected<Error>(*ablation.features.back().failure);
+  ablation.criteria.push_back(Named("a contrario", ablation.features.back()));
+  ablation.ties.push_back(Named("before adjustment", ablation.features.back()));
+  AblationCase built = ablation.features.back();
+  runner.AddStructure(&built, &solved);
+  if (IsCancelled(built)) return tl::unexpected<Error>(*built.failure);
+  for (const Ties& ties : kTies) {
+    if (!context.Progress("cases", done++, total)) {
+      return MakeError(ErrorCode::kCancelled, "stopped", {}, "cases");
+    }
+    ablation.ties.push_back(runner.Adjust(built, ties, solved));
+    const AblationCase& entry = ablation.ties.back();
+    if (IsCancelled(entry)) return tl::unexpected<Error>(*entry.failure);
   }
+  ablation.features.push_back(Named("all + adjustment", ablation.ties.back()));
   context.Progress("cases", total, total);
   return ablation;
 }

@@ -16,8 +16,9 @@
 namespace lowlap {
 
 struct AblationOptions {
-  /// What is not varied: strategy and adjustment, and of the scale options all
-  /// but criterion, threshold and kinds of features.
+  /// What is not varied: strategy, adjustment without its ties (coplanar kind
+  /// and directions), and of the scale options all but criterion, threshold and
+  /// kinds of features.
   SolveOptions solve;
   ScaleOptions scale;
   /// Inlier thresholds to set against the a-contrario criterion, pixels.
@@ -26,9 +27,11 @@ struct AblationOptions {
   Status Validate() const;
 };
 
-/// One way to estimate the scale ratios, and the cameras that come of it.
+/// One way to estimate the scale ratios and to adjust, and the cameras that
+/// come of it.
 struct AblationCase {
-  std::string name;  // "0.5 px", "a contrario", "points", "all + adjustment"
+  /// "0.5 px", "a contrario", "points", "all + adjustment", "planes"
+  std::string name;
   ScaleOptions scale;
   bool adjusted = false;
   /// The case has no solution; what follows the ratios is empty then.
@@ -37,6 +40,7 @@ struct AblationCase {
   ErrorStatistics abs_log_ratio;  // of the meaningful ratios, to the truth
   int num_placed = 0;
   PoseEvaluation errors;
+  AdjustmentSummary adjustment;  // empty if there was none
   std::vector<StageCost> costs;
 };
 
@@ -47,33 +51,40 @@ struct Ablation {
   /// Points, lines, both, coplanar pairs, all, all with bundle adjustment; a
   /// contrario.
   std::vector<AblationCase> features;
+  /// All features, a contrario: before the bundle adjustment, and after it
+  /// without ties, and with coplanar pairs (as in the paper), planes,
+  /// directions, planes and directions.
+  std::vector<AblationCase> ties;
 };
 
 /// The experiments of Salaün, Marlet, Monasse 2017, section 6 (table 1), on any
 /// scene with true cameras: position errors before bundle adjustment for fixed
 /// inlier thresholds against the a-contrario criterion, and for each kind of
-/// feature. Motions, rotations and the choice of relative poses are found once;
-/// ratios and poses anew in each case. The truth enters no solution. Every
-/// ratio, however it was found, is refined on the features that agree with it
-/// (RefineOnInliers), which takes away most of what a threshold does in the
-/// paper, where the best sample stands.
+/// feature. Besides, the errors after it by what holds it in the end (its
+/// ties). Motions, rotations and the choice of relative poses are found once;
+/// ratios and poses anew for each threshold and kind, and the adjustment alone
+/// for each kind of ties. The truth enters no solution. Every ratio, however it
+/// was found, is refined on the features that agree with it (RefineOnInliers),
+/// which takes away most of what a threshold does in the paper, where the best
+/// sample stands.
 ///
 /// A case without a solution is an entry with its reason. All but the costs are
-/// the same for any number of threads. Errors: kInvalidArgument (options),
+/// the same for any number of threads. Errors: kInvalidArgument (options; an
+/// adjustment without lines or with free intrinsics, where ties do nothing),
 /// kInsufficientData (fewer than three views with a truth), those of
 /// StartSolution, kCancelled.
 Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
                         const AblationOptions& options,
                         const RunContext& context);
 
-/// The two tables for people.
+/// The three tables for people.
 std::string ToText(const Ablation& ablation);
-/// One record per case; times last, in columns that end in "_s". The case that
-/// both tables share is in both.
+/// One record per case; times last, in columns that end in "_s". A case that
+/// tables share is in each.
 std::string ToCsv(const Ablation& ablation);
-/// The same as an object of two lists; times are in objects named "cost".
+/// The same as an object of three lists; times are in objects named "cost".
 std::string ToJson(const Ablation& ablation);
-/// The two tables as bars: (file name, SVG document).
+/// The tables as bars: (file name, SVG document).
 Result<std::vector<std::pair<std::string, std::string>>> DrawAblation(
     const Ablation& ablation);
 /// Makes the folder and writes ablate.csv, ablate.json and the plots into it,

@@ -1,3 +1,4 @@
+#include <functional>
 #include <utility>
 
 #include "lowlap/core/internal/propagate.h"
@@ -34,35 +35,94 @@ bool IsFixed(const AblationCase& entry) {
   return entry.scale.criterion == ScaleCriterion::kFixedThreshold;
 }
 
+// The adjustment of a case; nullptr if there was none.
+const AdjustmentSummary* AdjustmentOf(const AblationCase& entry) {
+  return entry.adjusted && !entry.failure ? &entry.adjustment : nullptr;
+}
+
+// What a row of a table says of a case.
+struct Row {
+  std::string name;
+  std::function<std::string(const AblationCase&)> cell;
+};
+
+Row PositionRow(const char* name, double ErrorStatistics::*member) {
+  return {name, [member](const AblationCase& entry) {
+            const auto errors = PositionErrors(entry);
+            return errors ? NumberText((*errors).*member, 4) : "-";
+          }};
+}
+
+Row CountRow(const char* name,
+             std::size_t (*count)(const AdjustmentSummary& adjustment)) {
+  return {name, [count](const AblationCase& entry) {
+            const AdjustmentSummary* adjustment = AdjustmentOf(entry);
+            return adjustment != nullptr ? std::to_string(count(*adjustment))
+                                         : "-";
+          }};
+}
+
+std::vector<Row> ErrorRows(int num_views) {
+  return {PositionRow("mean position error", &ErrorStatistics::mean),
+          PositionRow("median", &ErrorStatistics::median),
+          PositionRow("max", &ErrorStatistics::max),
+          {"cameras placed", [num_views](const AblationCase& entry) {
+             return std::to_string(entry.num_placed) + "/" +
+                    std::to_string(num_views);
+           }}};
+}
+
+std::vector<Row> RatioRows() {
+  return {{"ratios used",
+           [](const AblationCase& entry) {
+             return std::to_string(entry.ratios.num_meaningful) + "/" +
+                    std::to_string(entry.ratios.num_triplets);
+           }},
+          {"median error of a ratio (%)", [](const AblationCase& entry) {
+             return entry.abs_log_ratio.count > 0
+                        ? NumberText(100 * entry.abs_log_ratio.median, 3)
+                        : "-";
+           }}};
+}
+
+std::size_t NumPairs(const AdjustmentSummary& adjustment) {
+  return adjustment.coplanar.observations_used;
+}
+std::size_t NumPlanes(const AdjustmentSummary& adjustment) {
+  return adjustment.planes;
+}
+std::size_t NumDirections(const AdjustmentSummary& adjustment) {
+  return adjustment.directions;
+}
+
+// At the end of the adjustment.
+std::vector<Row> TieRows() {
+  return {{"mean rotation error (deg)",
+           [](const AblationCase& entry) {
+             return PositionErrors(entry)
+                        ? NumberText(entry.errors.rotation_deg.mean, 4)
+                        : "-";
+           }},
+          CountRow("coplanar pairs", NumPairs),
+          CountRow("planes", NumPlanes),
+          CountRow("directions", NumDirections)};
+}
+
 // A column per case, as in the paper.
 std::string CaseTable(const std::string& title,
-                      const std::vector<AblationCase>& cases, int num_views) {
+                      const std::vector<AblationCase>& cases, int num_views,
+                      const std::vector<Row>& further_rows) {
   TextTable table;
   table.columns = {title};
-  table.rows = {{"mean position error"},
-                {"median"},
-                {"max"},
-                {"cameras placed"},
-                {"ratios used"},
-                {"median error of a ratio (%)"}};
+  std::vector<Row> rows = ErrorRows(num_views);
+  rows.insert(rows.end(), further_rows.begin(), further_rows.end());
+  for (const Row& row : rows) table.rows.push_back({row.name});
   std::string failures;
   for (const AblationCase& entry : cases) {
     table.columns.push_back(entry.name);
-    const auto errors = PositionErrors(entry);
-    const auto cell = [&](double ErrorStatistics::*member) {
-      return errors ? NumberText((*errors).*member, 4) : std::string("-");
-    };
-    table.rows[0].push_back(cell(&ErrorStatistics::mean));
-    table.rows[1].push_back(cell(&ErrorStatistics::median));
-    table.rows[2].push_back(cell(&ErrorStatistics::max));
-    table.rows[3].push_back(std::to_string(entry.num_placed) + "/" +
-                            std::to_string(num_views));
-    table.rows[4].push_back(std::to_string(entry.ratios.num_meaningful) + "/" +
-                            std::to_string(entry.ratios.num_triplets));
-    table.rows[5].push_back(
-        entry.abs_log_ratio.count > 0
-            ? NumberText(100 * entry.abs_log_ratio.median, 3)
-            : "-");
+    for (std::size_t n = 0; n < rows.size(); ++n) {
+      table.rows[n].push_back(rows[n].cell(entry));
+    }
     if (entry.failure) {
       failures += entry.name + ": " + entry.failure->ToString() + "\n";
     }
@@ -98,6 +158,11 @@ void AddRecords(const char* name, const std::vector<AblationCase>& cases,
             : "",
         entry.abs_log_ratio.count > 0 ? NumberText(entry.abs_log_ratio.max, 9)
                                       : ""};
+    const AdjustmentSummary* adjustment = AdjustmentOf(entry);
+    for (const auto count : {NumPairs, NumPlanes, NumDirections}) {
+      row.push_back(adjustment != nullptr ? std::to_string(count(*adjustment))
+                                          : "");
+    }
     AddCostCells(entry.costs, Stages(), &row);
     table->rows.push_back(std::move(row));
   }
@@ -122,6 +187,11 @@ Json CasesJson(const std::vector<AblationCase>& cases) {
                       {"meaningful", entry.ratios.num_meaningful},
                       {"abs_log_error_median", entry.abs_log_ratio.median},
                       {"abs_log_error_max", entry.abs_log_ratio.max}};
+    if (const AdjustmentSummary* adjustment = AdjustmentOf(entry)) {
+      json["held_by"] = {{"coplanar_pairs", NumPairs(*adjustment)},
+                         {"planes", NumPlanes(*adjustment)},
+                         {"directions", NumDirections(*adjustment)}};
+    }
     json["cost"] = ToStudyJson(entry.costs);
     list.push_back(std::move(json));
   }
@@ -150,10 +220,13 @@ BarPlot CaseBars(const std::string& title, const std::string& note,
 
 std::string ToText(const Ablation& ablation) {
   return CaseTable("All features, before adjustment", ablation.criteria,
-                   ablation.num_views) +
+                   ablation.num_views, RatioRows()) +
          "\n" +
          CaseTable("A contrario, before adjustment", ablation.features,
-                   ablation.num_views) +
+                   ablation.num_views, RatioRows()) +
+         "\n" +
+         CaseTable("All features, adjustment held by", ablation.ties,
+                   ablation.num_views, TieRows()) +
          "\npositions in the unit of the true cameras, of the cameras placed, "
          "after a similarity\nalignment\n";
 }
@@ -176,10 +249,14 @@ std::string ToCsv(const Ablation& ablation) {
                    "triplets",
                    "meaningful_ratios",
                    "abs_log_ratio_error_median",
-                   "abs_log_ratio_error_max"};
+                   "abs_log_ratio_error_max",
+                   "coplanar_pairs",
+                   "planes",
+                   "directions"};
   AddCostColumns(Stages(), &table);
   AddRecords("criteria", ablation.criteria, ablation.num_views, &table);
   AddRecords("features", ablation.features, ablation.num_views, &table);
+  AddRecords("ties", ablation.ties, ablation.num_views, &table);
   return ToCsv(table);
 }
 
@@ -188,6 +265,7 @@ std::string ToJson(const Ablation& ablation) {
   json["views"] = ablation.num_views;
   json["criteria"] = CasesJson(ablation.criteria);
   json["features"] = CasesJson(ablation.features);
+  json["ties"] = CasesJson(ablation.ties);
   return DumpText(json);
 }
 
@@ -200,7 +278,9 @@ Result<std::vector<std::pair<std::string, std::string>>> DrawAblation(
        {"features.svg",
         CaseBars("Kinds of features",
                  "A contrario, before bundle adjustment but for the last",
-                 ablation.features)}});
+                 ablation.features)},
+       {"ties.svg", CaseBars("What holds the bundle adjustment",
+                             "All features, a contrario", ablation.ties)}});
 }
 
 Status WriteAblation(const Ablation& ablation, const std::string& folder) {
