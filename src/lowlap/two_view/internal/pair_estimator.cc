@@ -8,6 +8,7 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/validation.h"
+#include "lowlap/two_view/internal/repeat_evidence.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
 
 namespace lowlap {
@@ -105,6 +106,14 @@ void UseGuidedMatches(const ViewMeasurements& first,
   *pose = Improve(*input, *pose, options.two_view, lone_matches);
 }
 
+std::string RepeatReason(const EvidenceBeyondRepeats& evidence) {
+  return Format(
+      "%d of %d points and crossings of lines belong to a pattern that repeats "
+      "in its photograph; the others bear no motion out (log10 NFA %.1f)",
+      evidence.num_repeated, evidence.num_repeated + evidence.num_others,
+      evidence.log10_nfa);
+}
+
 }  // namespace
 
 Status PairOptions::Validate() const {
@@ -134,6 +143,8 @@ ViewMeasurements MeasureView(const ViewFeatures& features,
   for (const Keypoint& keypoint : detected->keypoints) {
     view.point_covariances.push_back(keypoint.covariance);
   }
+  view.repeats = RepeatedPattern::Find(
+      {detected->keypoints, detected->point_descriptors, view.features});
   return view;
 }
 
@@ -149,6 +160,8 @@ TwoViewInput InputOf(const ViewPair& views, const ViewMeasurements& first,
     input.point_covariances1 = &first.point_covariances;
     input.point_covariances2 = &second.point_covariances;
   }
+  input.repeats1 = &first.repeats;
+  input.repeats2 = &second.repeats;
   input.image_size1_px = first.image_size_px;
   input.image_size2_px = second.image_size_px;
   return input;
@@ -168,6 +181,14 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
     return estimate;
   }
   RelativePose& pose = result->pose;
+  if (const auto evidence =
+          FindEvidenceBeyondRepeats(input, pose, options.two_view)) {
+    pose.log10_nfa = std::max(pose.log10_nfa, evidence->log10_nfa);
+    if (!(pose.log10_nfa < 0)) {
+      estimate.reason = RepeatReason(*evidence);
+      return estimate;
+    }
+  }
   for (const RelativePose& other : result->alternatives) {
     pose.alternatives.push_back(MotionOf(other));
   }

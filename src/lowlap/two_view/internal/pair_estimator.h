@@ -21,13 +21,15 @@ struct ViewMeasurements {
   NormalizedFeatures features;
   std::vector<VanishingDirection> directions;
   std::vector<Mat2> point_covariances;         // empty: unknown
+  RepeatedPattern repeats;                     // without `detected`: empty
   const DetectedFeatures* detected = nullptr;  // not owned; null: see below
   Vec2 image_size_px = Vec2::Zero();
 };
 
 /// With `detected`, what the detectors know of the same features (same order),
-/// the shapes of the points' errors count, and pairs can be matched again under
-/// their first pose. Null: matches are all there is.
+/// the shapes of the points' errors count, what repeats is told from what does
+/// not, and pairs can be matched again under their first pose. Null: matches
+/// are all there is.
 ViewMeasurements MeasureView(const ViewFeatures& features,
                              const Intrinsic& intrinsic,
                              const Vec2& image_size_px,
@@ -58,7 +60,8 @@ struct PairEstimate {
 /// these (ImproveRelativePose), and its alternatives; keep the line matches
 /// that are plausible under it. Where two poses explain what the pair sees, the
 /// other is kept as an alternative. A pair whose direction is undetermined has
-/// none.
+/// none, nor has one that only patterns bear out that repeat
+/// (EvidenceBeyondRepeats): log10_nfa is that of the others.
 PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
                           const ViewMeasurements& second,
                           const PairMatches& putative,

@@ -6,6 +6,7 @@
 #include "lowlap/core/result.h"
 #include "lowlap/directions/internal/vanishing_directions.h"
 #include "lowlap/geometry/types.h"
+#include "lowlap/matching/internal/repeats/repeated_pattern.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/relative_pose.h"
 #include "lowlap/two_view/two_view_options.h"
@@ -26,6 +27,9 @@ struct TwoViewInput {
   /// Of the views' segments (FindVanishingDirections); null: lines say nothing.
   const std::vector<VanishingDirection>* directions1 = nullptr;
   const std::vector<VanishingDirection>* directions2 = nullptr;
+  /// What repeats in the views; null: nothing is known of it.
+  const RepeatedPattern* repeats1 = nullptr;
+  const RepeatedPattern* repeats2 = nullptr;
   Vec2 image_size1_px = Vec2::Zero();  // width, height
   Vec2 image_size2_px = Vec2::Zero();
 };

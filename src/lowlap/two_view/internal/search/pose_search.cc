@@ -146,13 +146,19 @@ PoseRefinementOptions PoseSearch::RefinementOptions(
   return options;
 }
 
+AContrarioScore PoseSearch::SupportOf(
+    const RigidTransform& cam2_from_cam1) const {
+  return ScoreAgainstChance(
+      kernel_,
+      MakeLadder(kernel_, EssentialKernel::kMaxModels, law_, max_threshold_px_),
+      cam2_from_cam1);
+}
+
 PoseCandidate PoseSearch::Finish(const RigidTransform& cam2_from_cam1) const {
-  const AContrarioLadder ladder =
-      MakeLadder(kernel_, EssentialKernel::kMaxModels, law_, max_threshold_px_);
   PoseCandidate candidate;
   candidate.pose = WithMostVisible(cam2_from_cam1);
   for (int round = 0; round < 6; ++round) {
-    candidate.support = ScoreAgainstChance(kernel_, ladder, candidate.pose);
+    candidate.support = SupportOf(candidate.pose);
     const RigidTransform refined =
         RefineRelativePose(candidate.pose, kernel_.pairs(),
                            kernel_.VisibleWithinThreshold(
@@ -164,7 +170,7 @@ PoseCandidate PoseSearch::Finish(const RigidTransform& cam2_from_cam1) const {
     candidate.pose = refined;
     if (change < 1e-9) break;
   }
-  candidate.support = ScoreAgainstChance(kernel_, ladder, candidate.pose);
+  candidate.support = SupportOf(candidate.pose);
   candidate.inliers = kernel_.VisibleWithinThreshold(
       candidate.pose, candidate.support.threshold);
   candidate.direction_penalty =

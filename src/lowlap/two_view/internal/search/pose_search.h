@@ -48,6 +48,9 @@ class PoseSearch {
   /// What speaks for a motion as it is (PoseCandidate::score).
   double ScoreOf(const RigidTransform& cam2_from_cam1) const;
 
+  /// What the points say for a motion as it is, against chance.
+  AContrarioScore SupportOf(const RigidTransform& cam2_from_cam1) const;
+
   /// A motion brought to its optimum: the signs that see most inliers, then
   /// threshold, inliers and refinement in turn until they agree.
   PoseCandidate Finish(const RigidTransform& cam2_from_cam1) const;

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/core/ids.h"
+#include "lowlap/geometry/types.h"
+#include "lowlap/matching/internal/points/guided_point_matching.h"
+
+namespace lowlap {
+
+/// What of one photograph is a pattern that repeats on a plane: the tiles of a
+/// floor, the windows of a facade, goods in a shelf. Where a match of one copy
+/// is right, the match of the next copy would be just as good.
+class RepeatedPattern {
+ public:
+  /// Nothing repeats.
+  RepeatedPattern() = default;
+
+  /// Translations within planes (ConjugateTranslation) that take points of the
+  /// photograph to others that look alike, one after the other, while they are
+  /// meaningful: that k of n points have one of their alike places where the
+  /// translation takes them, and p the share of places drawn at random that
+  /// has,
+  ///   NFA = M^2 C(n, k) C(k, 2) p^(k - 2)
+  /// with M alike places, of which two give a translation, must be below 1.
+  /// Points along one line are left out: an edge looks alike all along. Of many
+  /// points those of the largest scales are looked at. Panoramas, and points
+  /// at infinity, have no patterns.
+  static RepeatedPattern Find(const PointView& view);
+
+  bool IsEmpty() const { return members_.empty(); }
+  /// Of the view that it was found in: whether the pattern covers its point.
+  bool HasPoint(FeatureIndex point) const {
+    return !IsEmpty() && has_point_[point];
+  }
+  /// Whether a point at `x` (z = 1) of the scale `scale_px` belongs to the
+  /// pattern: a point of the pattern and it lie in each other's windows, so
+  /// that both show much of the same.
+  bool Covers(const Vec3& x, double scale_px) const;
+
+ private:
+  struct Member {
+    Vec2 place_px = Vec2::Zero();  // from the principal point, undistorted
+    double scale_px = 0;
+  };
+  double focal_px_ = 1;
+  std::vector<Member> members_;
+  std::vector<bool> has_point_;
+};
+
+}  // namespace lowlap

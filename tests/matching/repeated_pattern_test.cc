@@ -1,0 +1,128 @@
+#include "lowlap/matching/internal/repeats/repeated_pattern.h"
+
+#include <gtest/gtest.h>
+
+#include "lowlap/matching/internal/repeats/alike_places.h"
+#include "tests/matching/pattern_view.h"
+
+namespace lowlap {
+namespace {
+
+using testing::AddOthers;
+using testing::AddPattern;
+using testing::ObliqueCamera;
+using testing::PatternView;
+using testing::RandomDescriptor;
+
+constexpr int kColumns = 7, kRows = 5, kMotif = 3;
+constexpr int kInPattern = kColumns * kRows * kMotif;
+
+PatternView EmptyView() {
+  PatternView view;
+  view.features.focal_px = 1000;
+  return view;
+}
+
+PatternView TiledView(int num_others, std::uint64_t seed) {
+  PatternView view = EmptyView();
+  Random random(seed);
+  AddPattern(kColumns, kRows, kMotif, 0.3, ObliqueCamera(), &random, &view);
+  AddOthers(num_others, &random, &view);
+  return view;
+}
+
+int CountIn(const RepeatedPattern& pattern, int begin, int end) {
+  int count = 0;
+  for (int n = begin; n < end; ++n) count += pattern.HasPoint(n) ? 1 : 0;
+  return count;
+}
+
+TEST(RepeatedPattern, HoldsTheCopiesAndFewOfTheRest) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const PatternView view = TiledView(60, seed);
+    const RepeatedPattern pattern = RepeatedPattern::Find(view.View());
+    EXPECT_FALSE(pattern.IsEmpty());
+    EXPECT_GT(CountIn(pattern, 0, kInPattern), kInPattern / 2);
+    // Those within a window of 12 px of a copy.
+    EXPECT_LT(CountIn(pattern, kInPattern, kInPattern + 60), 20);
+  }
+}
+
+TEST(RepeatedPattern, IsEmptyWhereNothingRepeats) {
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    PatternView view = EmptyView();
+    Random random(seed);
+    AddOthers(400, &random, &view);
+    EXPECT_TRUE(RepeatedPattern::Find(view.View()).IsEmpty());
+  }
+  EXPECT_TRUE(RepeatedPattern::Find(EmptyView().View()).IsEmpty());
+  EXPECT_FALSE(RepeatedPattern().HasPoint(0));
+}
+
+TEST(RepeatedPattern, AnEdgeThatLooksAlikeAllAlongIsNone) {
+  PatternView view = EmptyView();
+  Random random(4);
+  const PointDescriptor descriptor = RandomDescriptor(&random);
+  for (int n = 0; n < 60; ++n) {
+    const double share = n / 60.0;
+    view.Add(Vec3(-0.5 + share, -0.3 + 0.4 * share, 1),
+             testing::Resembling(descriptor, &random), 2);
+  }
+  AddOthers(200, &random, &view);
+  EXPECT_TRUE(RepeatedPattern::Find(view.View()).IsEmpty());
+}
+
+TEST(RepeatedPattern, CoversWhatLooksThroughTheSameWindow) {
+  const PatternView view = TiledView(0, 5);
+  const RepeatedPattern pattern = RepeatedPattern::Find(view.View());
+  int member = 0;
+  while (!pattern.HasPoint(member)) ++member;
+  const Vec3 place = view.features.points[member];
+  const double px = 1 / view.features.focal_px;
+  EXPECT_TRUE(pattern.Covers(place, 2));
+  EXPECT_TRUE(pattern.Covers(place + Vec3(5 * px, 0, 0), 2));
+  // Another thing beside it, seen in detail.
+  EXPECT_FALSE(pattern.Covers(Vec3(10, 10, 1), 100));
+  const PatternView alone = TiledView(0, 5);
+  EXPECT_FALSE(pattern.Covers(place + Vec3(0, 5 * px, 0), 0.1));
+}
+
+TEST(RepeatedPattern, TheSameForTheSameView) {
+  const PatternView view = TiledView(100, 6);
+  const RepeatedPattern a = RepeatedPattern::Find(view.View());
+  const RepeatedPattern b = RepeatedPattern::Find(view.View());
+  for (int n = 0; n < kInPattern + 100; ++n) {
+    EXPECT_EQ(a.HasPoint(n), b.HasPoint(n)) << n;
+  }
+}
+
+TEST(RepeatedPattern, RaysWithoutAnImageHaveNone) {
+  PatternView view = TiledView(0, 7);
+  for (Vec3& x : view.features.points) x.setZero();
+  EXPECT_TRUE(RepeatedPattern::Find(view.View()).IsEmpty());
+}
+
+TEST(FindAlikePlaces, JoinsCopiesOutsideTheirWindowsOnly) {
+  PatternView view = EmptyView();
+  Random random(8);
+  const PointDescriptor descriptor = RandomDescriptor(&random);
+  view.Add(Vec3(0, 0, 1), descriptor, 2);
+  view.Add(Vec3(0.008, 0, 1), descriptor, 2);  // in the same window
+  view.Add(Vec3(0.3, 0.1, 1), descriptor, 2);
+  view.Add(Vec3(-0.3, 0.2, 1), descriptor, 8);  // another size
+  view.Add(Vec3(-0.4, -0.2, 1), RandomDescriptor(&random), 2);
+  const auto places = FindAlikePlaces(view.View(), {0, 1, 2, 3, 4});
+  bool is_joined = false;
+  for (const AlikePlaces& place : places) {
+    if (place.first == 0) {
+      EXPECT_EQ(place.second, 2);
+      is_joined = true;
+    }
+    EXPECT_NE(place.first, 3);
+    EXPECT_NE(place.second, 3);
+  }
+  EXPECT_TRUE(is_joined);
+}
+
+}  // namespace
+}  // namespace lowlap

@@ -1,0 +1,122 @@
+#include "lowlap/two_view/internal/repeat_evidence.h"
+
+#include <gtest/gtest.h>
+
+#include "lowlap/two_view/internal/pair_estimator.h"
+#include "tests/matching/pattern_view.h"
+
+namespace lowlap {
+namespace {
+
+using testing::ObliqueCamera;
+using testing::PatternView;
+
+constexpr int kColumns = 9, kRows = 7, kMotif = 5;
+constexpr int kInPattern = kColumns * kRows * kMotif;
+
+/// Two views of a wall with a pattern and of `num_others` points before it,
+/// each of which is matched.
+struct TiledPair {
+  PatternView view1, view2;
+  RepeatedPattern repeats1, repeats2;
+  RigidTransform cam2_from_cam1;
+  std::vector<FeatureMatch> matches;
+
+  explicit TiledPair(int num_others) {
+    const RigidTransform cam1 = ObliqueCamera();
+    cam2_from_cam1 = {RotationFromAngleAxis({0.02, -0.1, 0.01}),
+                      Vec3(0.9, 0.1, 0.2)};
+    const RigidTransform cam2 = cam2_from_cam1 * cam1;
+    Random random(1);
+    for (PatternView* view : {&view1, &view2}) {
+      view->features.focal_px = 1000;
+      Random motif(2);
+      testing::AddPattern(kColumns, kRows, kMotif, 0.3,
+                          view == &view1 ? cam1 : cam2, &motif, view);
+    }
+    for (int n = 0; n < num_others; ++n) {
+      const Vec3 point(random.Uniform(-2, 2), random.Uniform(-1.5, 1.5),
+                       random.Uniform(2.5, 4.5));
+      const PointDescriptor descriptor = testing::RandomDescriptor(&random);
+      view1.Add(cam1 * point, descriptor, 2);
+      view2.Add(cam2 * point, descriptor, 2);
+    }
+    for (int n = 0; n < kInPattern + num_others; ++n) {
+      const auto index = static_cast<FeatureIndex>(n);
+      matches.push_back({index, index});
+    }
+    repeats1 = RepeatedPattern::Find(view1.View());
+    repeats2 = RepeatedPattern::Find(view2.View());
+  }
+
+  TwoViewInput Input() const {
+    TwoViewInput input;
+    input.views = {0, 1};
+    input.features1 = &view1.features;
+    input.features2 = &view2.features;
+    input.point_matches = matches;
+    input.repeats1 = &repeats1;
+    input.repeats2 = &repeats2;
+    input.image_size1_px = input.image_size2_px = Vec2(1600, 1200);
+    return input;
+  }
+
+  RelativePose TruePose() const {
+    RelativePose pose;
+    pose.views = {0, 1};
+    pose.rotation = cam2_from_cam1.rotation;
+    pose.direction = cam2_from_cam1.translation.normalized();
+    pose.point_threshold_px = 1;
+    return pose;
+  }
+};
+
+TEST(EvidenceBeyondRepeats, IsWhatTheOtherMatchesSay) {
+  const TiledPair pair(60);
+  const auto evidence =
+      FindEvidenceBeyondRepeats(pair.Input(), pair.TruePose(), {});
+  ASSERT_TRUE(evidence);
+  EXPECT_GT(evidence->num_repeated, kInPattern / 2);
+  EXPECT_GT(evidence->num_others, 30);
+  EXPECT_EQ(evidence->num_repeated + evidence->num_others,
+            static_cast<int>(pair.matches.size()));
+  EXPECT_LT(evidence->log10_nfa, -20);
+  // Of another motion they say nothing.
+  RelativePose wrong = pair.TruePose();
+  wrong.rotation = RotationFromAngleAxis({0, 0.3, 0.2}) * wrong.rotation;
+  EXPECT_GT(FindEvidenceBeyondRepeats(pair.Input(), wrong, {})->log10_nfa, 0);
+}
+
+TEST(EvidenceBeyondRepeats, IsNoneOfAPatternAlone) {
+  const TiledPair pair(0);
+  TwoViewInput input = pair.Input();
+  // The copies that were found: any number of them.
+  std::vector<FeatureMatch> found;
+  for (const FeatureMatch& match : input.point_matches) {
+    if (pair.repeats1.HasPoint(match.first)) found.push_back(match);
+  }
+  ASSERT_GT(found.size(), 50u);
+  input.point_matches = found;
+  const auto evidence = FindEvidenceBeyondRepeats(input, pair.TruePose(), {});
+  ASSERT_TRUE(evidence);
+  EXPECT_EQ(evidence->num_others, 0);
+  EXPECT_TRUE(std::isinf(evidence->log10_nfa));
+  // Without what is known of the patterns the same matches are a pose.
+  input.repeats1 = input.repeats2 = nullptr;
+  const auto pose = EstimateRelativePose(input, {}, 1);
+  ASSERT_TRUE(pose);
+  EXPECT_LT(pose->pose.log10_nfa, -20);
+}
+
+TEST(EvidenceBeyondRepeats, IsNotAskedForWhereNoMatchRepeats) {
+  const TiledPair pair(60);
+  TwoViewInput input = pair.Input();
+  const RepeatedPattern nothing;
+  input.repeats1 = input.repeats2 = &nothing;
+  EXPECT_FALSE(FindEvidenceBeyondRepeats(input, pair.TruePose(), {}));
+  input.repeats1 = nullptr;
+  EXPECT_FALSE(FindEvidenceBeyondRepeats(input, pair.TruePose(), {}));
+}
+
+}  // namespace
+}  // namespace lowlap
