@@ -11,6 +11,8 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/report/internal/table_text.h"
+#include "lowlap/study/internal/look_alikes/study.h"
+#include "lowlap/study/internal/look_alikes/trial_json.h"
 #include "lowlap/study/internal/result_log.h"
 #include "lowlap/study/internal/robustness/output.h"
 #include "lowlap/study/internal/robustness/study.h"
@@ -28,6 +30,8 @@ struct Flags {
   RobustnessOptions options;
   bool trust = false;
   int num_scenes = TrustStudy().num_scenes;
+  bool look_alikes = false;
+  int num_pairs = LookAlikeStudy().num_pairs;
   std::string output;
 };
 
@@ -109,8 +113,34 @@ Result<int> StudyTrust(const Flags& flags) {
   return 0;
 }
 
+Result<int> StudyLookAlikes(const Flags& flags) {
+  LookAlikeStudy study;
+  study.num_pairs = flags.num_pairs;
+  const RunContext context = MakeContext(flags.common);
+  const auto log = OpenTrials(
+      flags,
+      "version " LOWLAP_VERSION "\nlook-alikes, pairs " +
+          std::to_string(study.num_pairs) + " from " +
+          std::to_string(flags.common.seed) + "\n",
+      [&](const std::string& record) { return AddJsonLine(record, &study); });
+  if (!log) return tl::unexpected<Error>(log.error());
+  TellTrials(study.trials.size(), context);
+  LOWLAP_RETURN_IF_ERROR(RunLookAlikeStudy(
+      context,
+      [&](const LookAlikeKey& key, const LookAlikeTrial& trial) {
+        return log->Append(ToJsonLine(key, trial));
+      },
+      &study));
+  LOWLAP_RETURN_IF_ERROR(WriteTextFiles(LookAlikeFiles(study), flags.output));
+  std::printf("%s\nwritten to %s: summary.txt pairs.csv\n",
+              ToAlignedText(LookAlikeTable(study)).c_str(),
+              flags.output.c_str());
+  return 0;
+}
+
 Result<int> StudyAndWrite(const Flags& flags) {
   if (flags.trust) return StudyTrust(flags);
+  if (flags.look_alikes) return StudyLookAlikes(flags);
   LOWLAP_ASSIGN_OR_RETURN(auto study, PlanRobustnessStudy(flags.options));
   LOWLAP_RETURN_IF_ERROR(Complete(flags, MakeContext(flags.common), &study));
   LOWLAP_RETURN_IF_ERROR(WriteRobustness(study, flags.output));
@@ -167,6 +197,19 @@ void AddRobustness(CLI::App* program, Action* action) {
             "Simulations of each of its three families")
       .ShowDefault()
       .Needs(trust);
+  const Option look_alikes =
+      AddFlag(command, "--look-alikes", flags->look_alikes,
+              "Another study: photographs are rendered of places that have "
+              "tiles, windows or shelves in common and nothing else; counted "
+              "are the pairs that a relative pose joins, and those of one "
+              "place for comparison")
+          .Excludes(scenario)
+          .Excludes(quick)
+          .Excludes(trust);
+  AddOption(command, "--pairs", flags->num_pairs,
+            "Pairs of different places, and of one, for each pattern")
+      .ShowDefault()
+      .Needs(look_alikes);
   AddCommonFlags(command, &flags->common);
   RunWhenChosen(command, flags, StudyAndWrite, action);
 }

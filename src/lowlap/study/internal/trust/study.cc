@@ -1,9 +1,10 @@
 #include "lowlap/study/internal/trust/study.h"
 
-#include <mutex>
+#include <optional>
+#include <utility>
 #include <vector>
 
-#include "lowlap/core/internal/parallel.h"
+#include "lowlap/study/internal/run_trials.h"
 
 namespace lowlap {
 
@@ -23,28 +24,17 @@ Status RunTrustStudy(
       if (study->trials.count(key) == 0) missing.push_back(key);
     }
   }
-  Status failed;
-  std::mutex mutex;
-  RunContext watched = context;
-  watched.progress = [&](const std::string& stage, std::size_t count,
-                         std::size_t total) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    return failed.has_value() && context.Progress(stage, count, total);
-  };
-  const Status status = ParallelFor(
-      watched, "solving scenes", missing.size(), [&](std::size_t n) {
-        const TrustKey& key = missing[n];
+  return RunTrials<TrustKey, TrustTrial>(
+      context, "solving scenes", missing,
+      [](const TrustKey& key) -> std::optional<TrustTrial> {
         RunContext alone;
         alone.num_threads = 1;
         alone.seed = key.second;
-        const auto trial = RunTrustTrial(key.first, key.second, alone);
-        if (!trial) return;
-        const std::lock_guard<std::mutex> lock(mutex);
-        if (!failed) return;
-        study->trials[key] = *trial;
-        if (done) failed = done(key, *trial);
-      });
-  return failed ? status : failed;
+        auto trial = RunTrustTrial(key.first, key.second, alone);
+        if (!trial) return std::nullopt;
+        return std::move(*trial);
+      },
+      done, &study->trials);
 }
 
 }  // namespace lowlap

@@ -1,0 +1,133 @@
+#include "lowlap/study/internal/look_alikes/study.h"
+
+#include <cmath>
+#include <optional>
+
+#include "lowlap/features/internal/features.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/matching/internal/matching.h"
+#include "lowlap/study/internal/run_trials.h"
+#include "lowlap/two_view/internal/pair_estimator.h"
+
+namespace lowlap {
+namespace {
+
+constexpr double kRight_deg = 2;
+std::optional<LookAlikeTrial> RunTrial(const LookAlikeKey& key) {
+  const auto& [kind, is_same_place, seed] = key;
+  const PhotographPair photographs =
+      MakePhotographPair(kind, is_same_place, seed);
+  LookAlikeTrial trial;
+  std::array<DetectedFeatures, 2> detected;
+  std::array<ViewMeasurements, 2> views;
+  for (std::size_t n = 0; n < 2; ++n) {
+    auto features = DetectFeatures(photographs.images[n], FeatureOptions());
+    if (!features) {
+      trial.reason = features.error().message;
+      return trial;
+    }
+    detected[n] = std::move(*features);
+    const Intrinsic& intrinsic = photographs.intrinsic;
+    views[n] = MeasureView(detected[n].features, intrinsic,
+                           Vec2(intrinsic.width_px, intrinsic.height_px),
+                           &detected[n], VanishingOptions());
+  }
+  const PairEstimate estimate = EstimatePair(
+      {ViewId(0), ViewId(1)}, views[0], views[1],
+      MatchPair(detected[0], detected[1], MatchOptions()), PairOptions(), seed);
+  trial.is_accepted = estimate.pose.has_value();
+  trial.reason = estimate.reason;
+  if (!trial.is_accepted) return trial;
+  trial.log10_nfa = estimate.pose->log10_nfa;
+  if (is_same_place) {
+    const RigidTransform& truth = photographs.cam2_from_cam1;
+    trial.rotation_error_deg = DegFromRad(
+        RotationAngleBetween(estimate.pose->rotation, truth.rotation));
+    trial.direction_error_deg =
+        DegFromRad(AngleBetween(estimate.pose->direction, truth.translation));
+  }
+  return trial;
+}
+
+std::string OfHow(int count, int total) {
+  return std::to_string(count) + " of " + std::to_string(total);
+}
+
+std::string PairsCsv(const LookAlikeStudy& study) {
+  TextTable table;
+  table.columns = {"kind",
+                   "same_place",
+                   "seed",
+                   "accepted",
+                   "log10_nfa",
+                   "rotation_error_deg",
+                   "direction_error_deg",
+                   "reason"};
+  for (const auto& [key, trial] : study.trials) {
+    const auto& [kind, is_same_place, seed] = key;
+    const bool is_judged = is_same_place && trial.is_accepted;
+    table.rows.push_back(
+        {RepeatedKindName(kind), is_same_place ? "1" : "0",
+         std::to_string(seed), trial.is_accepted ? "1" : "0",
+         trial.is_accepted ? NumberText(trial.log10_nfa, 6) : "",
+         is_judged ? NumberText(trial.rotation_error_deg, 6) : "",
+         is_judged ? NumberText(trial.direction_error_deg, 6) : "",
+         trial.reason});
+  }
+  return ToCsv(table);
+}
+
+}  // namespace
+
+Status RunLookAlikeStudy(
+    const RunContext& context,
+    const std::function<Status(const LookAlikeKey&, const LookAlikeTrial&)>&
+        done,
+    LookAlikeStudy* study) {
+  if (study->num_pairs < 1) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "the number of pairs must be positive");
+  }
+  std::vector<LookAlikeKey> missing;
+  for (const RepeatedKind kind : kRepeatedKinds) {
+    for (const bool is_same_place : {false, true}) {
+      for (int n = 0; n < study->num_pairs; ++n) {
+        const LookAlikeKey key = {kind, is_same_place,
+                                  context.seed + static_cast<std::uint64_t>(n)};
+        if (study->trials.count(key) == 0) missing.push_back(key);
+      }
+    }
+  }
+  return RunTrials<LookAlikeKey, LookAlikeTrial>(
+      context, "photographing", missing, RunTrial, done, &study->trials);
+}
+
+TextTable LookAlikeTable(const LookAlikeStudy& study) {
+  TextTable table;
+  table.columns = {"what repeats", "different places: accepted",
+                   "one place: accepted", "of these within 2 degrees"};
+  for (const RepeatedKind kind : kRepeatedKinds) {
+    int pairs[2] = {0, 0}, accepted[2] = {0, 0}, right = 0;
+    for (const auto& [key, trial] : study.trials) {
+      if (std::get<0>(key) != kind) continue;
+      const int same = std::get<1>(key) ? 1 : 0;
+      ++pairs[same];
+      accepted[same] += trial.is_accepted ? 1 : 0;
+      right += same == 1 && trial.is_accepted &&
+                       trial.rotation_error_deg < kRight_deg
+                   ? 1
+                   : 0;
+    }
+    table.rows.push_back({RepeatedKindName(kind), OfHow(accepted[0], pairs[0]),
+                          OfHow(accepted[1], pairs[1]), std::to_string(right)});
+  }
+  return table;
+}
+
+std::vector<std::pair<std::string, std::string>> LookAlikeFiles(
+    const LookAlikeStudy& study) {
+  return {{"pairs.csv", PairsCsv(study)},
+          {"summary.txt", ToAlignedText(LookAlikeTable(study))}};
+}
+
+}  // namespace lowlap
