@@ -23,8 +23,8 @@ Result<int> RunSimulation(const Flags& flags) {
   if (!kind) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "unknown kind of scene '" + flags.kind +
-                         "'; known: room, corridor, ring, planar, collinear, "
-                         "pure_rotation, twins");
+                         "'; known: room, corridor, ring, cloud, planar, "
+                         "collinear, pure_rotation, twins");
   }
   SyntheticOptions options = flags.options;
   options.kind = *kind;
@@ -53,7 +53,7 @@ void AddSimulate(CLI::App* program, Action* action) {
                                  "Make a synthetic scene whose truth is known");
   ShowDefaultsFromHereOn(command);
   AddOption(command, "--kind", flags->kind,
-            "room, corridor, ring; degenerate: planar, collinear, "
+            "room, corridor, ring, cloud; degenerate: planar, collinear, "
             "pure_rotation, twins");
   AddOption(command, "-o,--output", flags->output, "Scene file to write")
       .Required();
@@ -91,6 +91,11 @@ void AddSimulate(CLI::App* program, Action* action) {
   AddOption(command, "--twin-baseline", o.twin_baseline_m,
             "Twins: distance of every odd view from the one before "
             "it, in metres");
+  AddOption(command, "--wall-bulge", o.wall_bulge_m,
+            "How far the middle of every wall bows out, in metres");
+  AddOption(command, "--box-offset", o.box_offset_m,
+            "How far the front of a box, in the middle of every wall, is "
+            "before it, in metres");
   AddFlag(command, "--look-outwards", o.look_outwards,
           "Rooms: look at the wall behind the camera's back");
   AddCommonFlags(command, &flags->common);

@@ -37,6 +37,8 @@ std::pair<std::shared_ptr<Scene>, std::shared_ptr<Scene>> SimulateScene(
   keywords.Take("wrong_directions", &options.wrong_direction_share);
   keywords.Take("off_line", &options.off_line_m);
   keywords.Take("twin_baseline", &options.twin_baseline_m);
+  keywords.Take("wall_bulge", &options.wall_bulge_m);
+  keywords.Take("box_offset", &options.box_offset_m);
   keywords.Take("look_outwards", &options.look_outwards);
   keywords.Take("seed", &options.seed);
   keywords.Finish();
@@ -55,7 +57,8 @@ void BindSimulation(py::module_& module) {
       "lines, trifocal_points, trifocal_lines, noise, wrong_points,\n"
       "wrong_lines, wrong_candidates, broken_lines, rotation_noise,\n"
       "direction_noise, pose_noise_of_points, wrong_directions,\n"
-      "off_line, twin_baseline, look_outwards, seed.");
+      "off_line, twin_baseline, wall_bulge, box_offset, look_outwards,\n"
+      "seed.");
 }
 
 }  // namespace lowlap::python

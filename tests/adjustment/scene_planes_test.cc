@@ -13,8 +13,10 @@ namespace {
 
 using ::testing::Each;
 using ::testing::Field;
+using ::testing::IsEmpty;
 using testing::IsOk;
 using ::testing::Le;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 constexpr double kStddev = PlaneLandmarks::kStddev;
@@ -51,6 +53,23 @@ TEST(FindPlanes, FacetsOfDifferentPairsAreOnePlane) {
   const double height =
       planes[0].anchor.z() + planes[0].offset * planes[0].normal.z();
   EXPECT_NEAR(height, 1, kStddev);
+}
+
+// Ties to a wall hold to what it bows to.
+TEST(FindPlanes, ABowedWallBowsItsPlane) {
+  PlaneLandmarks landmarks(1);
+  for (int n = 0; n < 200; ++n) {
+    Vec3 point = landmarks.OnFloor(1);
+    point.z() += 0.01 * point.x() * point.x();
+    landmarks.AddPoint(point);
+  }
+  for (int n = 0; n < 50; ++n) landmarks.AddPoint(landmarks.InCloud());
+  const std::vector<PlaneState> planes = Find(landmarks);
+  ASSERT_THAT(planes, Not(IsEmpty()));
+  const PlaneState& plane = planes.front();
+  const double bow = 4 * plane.bend(0, 0) * plane.normal.z();
+  EXPECT_NEAR(bow, 0.04, 0.01);
+  EXPECT_NEAR(4 * plane.bend(1, 1) * plane.normal.z(), 0, 0.01);
 }
 
 // By less than drift may leave, by far more than the floor is thick.

@@ -121,8 +121,8 @@ TEST_P(EveryKind, WithoutNoiseEverythingIsExact) {
 INSTANTIATE_TEST_SUITE_P(
     All, EveryKind,
     ::testing::Values(SyntheticKind::kRoom, SyntheticKind::kCorridor,
-                      SyntheticKind::kRing, SyntheticKind::kPlanar,
-                      SyntheticKind::kCollinear),
+                      SyntheticKind::kRing, SyntheticKind::kCloud,
+                      SyntheticKind::kPlanar, SyntheticKind::kCollinear),
     [](const auto& kind) { return SyntheticKindName(kind.param); });
 
 TEST(Simulate, BaselinesAndRatiosAreThoseOfTheCentres) {

@@ -54,6 +54,8 @@ TEST(SyntheticOptions, EveryBadValueIsNamed) {
   expect_named("off_line_m", [=](Options* o) { o->off_line_m = nan; });
   expect_named("twin_baseline_m",
                [](Options* o) { o->twin_baseline_m = -0.1; });
+  expect_named("wall_bulge_m", [](Options* o) { o->wall_bulge_m = -0.1; });
+  expect_named("box_offset_m", [=](Options* o) { o->box_offset_m = nan; });
   expect_named("width_px", [](Options* o) { o->width_px = 0; });
   expect_named("focal_px", [](Options* o) { o->focal_px = 0; });
   expect_named("focal_px", [](Options* o) {
@@ -72,8 +74,9 @@ TEST(SyntheticOptions, EveryBadValueIsNamed) {
 TEST(SyntheticKind, NamesComeBack) {
   for (const SyntheticKind kind :
        {SyntheticKind::kRoom, SyntheticKind::kCorridor, SyntheticKind::kRing,
-        SyntheticKind::kPlanar, SyntheticKind::kCollinear,
-        SyntheticKind::kPureRotation, SyntheticKind::kTwins}) {
+        SyntheticKind::kCloud, SyntheticKind::kPlanar,
+        SyntheticKind::kCollinear, SyntheticKind::kPureRotation,
+        SyntheticKind::kTwins}) {
     EXPECT_EQ(SyntheticKindFromName(SyntheticKindName(kind)), kind);
   }
   EXPECT_EQ(SyntheticKindFromName("garden"), std::nullopt);

@@ -167,8 +167,9 @@ class Adjuster {
                        options_.coplanar_ties != CoplanarTies::kPairs;
     bool at_rest = options_.max_outlier_rounds == 0;
     for (int round = 1; round <= options_.max_outlier_rounds; ++round) {
-      LOWLAP_ASSIGN_OR_RETURN(const double changed,
+      LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes,
                               Update(round <= kRoundsWithNewPairs));
+      const double changed = changes.Share();
       if (with_planes && changed <= kToleranceBeforePlanes) {
         LOWLAP_RETURN_IF_ERROR(LinkPlanes());
         if (!state_.planes.empty()) break;
@@ -313,8 +314,10 @@ class Adjuster {
       LOWLAP_RETURN_IF_ERROR(
           Solve("planes " + std::to_string(round), false, kPlaneTolerance));
       if (options_.max_outlier_rounds == 0) continue;
-      LOWLAP_ASSIGN_OR_RETURN(const double changed, Update(false));
-      *at_rest = changed <= options_.outlier_round_tolerance;
+      LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes, Update(false));
+      // With the ties, one on the verge may change sides for ever.
+      *at_rest = changes.changed <= 1 ||
+                 changes.Share() <= options_.outlier_round_tolerance;
     }
     summary_.planes = state_.planes.size();
     for (const PlaneState& plane : state_.planes) {
@@ -323,19 +326,14 @@ class Adjuster {
     return {};
   }
 
-  // The share of the observations whose use changed.
-  Result<double> Update(bool take_new_pairs) {
+  Result<ObservationChanges> Update(bool take_new_pairs) {
     // Segments are undistorted with the intrinsics of the last solve.
     if (options_.MovesIntrinsics()) RefreshRays(scene_, cameras_, &state_);
     LOWLAP_RETURN_IF_ERROR(
         FollowPoses(options_, noise_.lines, context_, cameras_, &state_));
     EstimateNoise();
-    LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes,
-                            UpdateObservations(options_, noise_, take_new_pairs,
-                                               context_, cameras_, &state_));
-    return changes.total > 0 ? static_cast<double>(changes.changed) /
-                                   static_cast<double>(changes.total)
-                             : 0.0;
+    return UpdateObservations(options_, noise_, take_new_pairs, context_,
+                              cameras_, &state_);
   }
 
   const AdjustmentOptions& options_;

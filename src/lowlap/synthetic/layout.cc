@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
@@ -220,6 +221,25 @@ void AddRing(const SyntheticOptions& options, Random* random, World* world) {
   }
 }
 
+void AddBoxes(double offset_m, World* world) {
+  const std::size_t num_planes = world->planes.size();
+  for (std::size_t n = 0; n < num_planes; ++n) {
+    Vec4 front = world->planes[n];
+    front.w() -= offset_m;
+    world->planes.push_back(front);
+  }
+  for (Wall& wall : world->walls) {
+    wall.box_offset = offset_m;
+    wall.box_plane = wall.plane + static_cast<int>(num_planes);
+  }
+}
+
+// Without planes there are no straight edges either.
+void DropPlanes(World* world) {
+  world->planes.clear();
+  world->lines.clear();
+}
+
 // A wall 4 m in front of the cameras, in sections of 4 m.
 void AddPlanar(const SyntheticOptions& options, Random* random, World* world) {
   constexpr double kSection = 4.0, kStep = 0.7;
@@ -267,6 +287,11 @@ World BuildLayout(const SyntheticOptions& options) {
       AddRoom(&random, &world);
       AddRoomCameras(options, &random, &world);
       break;
+    case SyntheticKind::kCloud:
+      AddRoom(&random, &world);
+      AddRoomCameras(options, &random, &world);
+      DropPlanes(&world);
+      break;
     case SyntheticKind::kPureRotation:
       AddRoom(&random, &world);
       AddRoomCameras(options, &random, &world);
@@ -290,6 +315,11 @@ World BuildLayout(const SyntheticOptions& options) {
     case SyntheticKind::kPlanar:
       AddPlanar(options, &random, &world);
       break;
+  }
+  if (options.box_offset_m > 0) AddBoxes(options.box_offset_m, &world);
+  if (options.wall_bulge_m > 0) {
+    for (Wall& wall : world.walls) wall.bulge = options.wall_bulge_m;
+    DropPlanes(&world);
   }
   return world;
 }

@@ -9,10 +9,11 @@
 namespace lowlap {
 namespace {
 
-constexpr std::array<std::pair<SyntheticKind, const char*>, 7> kNames = {{
+constexpr std::array<std::pair<SyntheticKind, const char*>, 8> kNames = {{
     {SyntheticKind::kRoom, "room"},
     {SyntheticKind::kCorridor, "corridor"},
     {SyntheticKind::kRing, "ring"},
+    {SyntheticKind::kCloud, "cloud"},
     {SyntheticKind::kPlanar, "planar"},
     {SyntheticKind::kCollinear, "collinear"},
     {SyntheticKind::kPureRotation, "pure_rotation"},
@@ -82,7 +83,9 @@ Status SyntheticOptions::Validate() const {
                           {direction_noise_deg, "direction_noise_deg"},
                           {pose_noise_factor, "pose_noise_factor"},
                           {off_line_m, "off_line_m"},
-                          {twin_baseline_m, "twin_baseline_m"}}));
+                          {twin_baseline_m, "twin_baseline_m"},
+                          {wall_bulge_m, "wall_bulge_m"},
+                          {box_offset_m, "box_offset_m"}}));
   if (width_px < 16 || height_px < 16) {
     return Invalid("width_px and height_px must be at least 16");
   }

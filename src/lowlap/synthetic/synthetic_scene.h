@@ -11,12 +11,13 @@
 
 namespace lowlap {
 
-/// The worlds that can be simulated; all are metric (metres) and made of planar
-/// walls that carry points and lines.
+/// The worlds that can be simulated; all are metric (metres), and all but the
+/// cloud are made of walls that carry points and lines.
 enum class SyntheticKind {
   kRoom,      // a crooked box of 6 x 4.5 x 2.7 m, cameras on a loop inside it
   kCorridor,  // 5 m of walls per section; cameras walk along it and turn
   kRing,      // cameras on a circle look at boxes in its middle
+  kCloud,  // the room without walls: all is strewn over the space before them
   // Degenerate worlds:
   kPlanar,        // one wall and nothing else
   kCollinear,     // the room, with all centres on one straight line
@@ -24,8 +25,8 @@ enum class SyntheticKind {
   kTwins,         // the room, every odd view next to the one before it
 };
 
-/// "room", "corridor", "ring", "planar", "collinear", "pure_rotation",
-/// "twins".
+/// "room", "corridor", "ring", "cloud", "planar", "collinear",
+/// "pure_rotation", "twins".
 const char* SyntheticKindName(SyntheticKind kind);
 std::optional<SyntheticKind> SyntheticKindFromName(const std::string& name);
 
@@ -50,6 +51,11 @@ struct SyntheticOptions {
   /// kTwins: distance of an odd view from the one before it, in metres.
   double twin_baseline_m = 0.0;
 
+  /// How far the middle of every wall bows out: part of a cylinder, whose only
+  /// lines are its rulings (upright ones on upright walls).
+  double wall_bulge_m = 0.0;
+  /// How far the front of a box, in the middle of every wall, is before it.
+  double box_offset_m = 0.0;
   int points_per_wall = 100;
   int lines_per_wall = 160;
   /// Share of the points (lines) that may be seen by three views or more. The

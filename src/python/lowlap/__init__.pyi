@@ -141,8 +141,8 @@ def simulate(
     wrong_candidates: float = ..., broken_lines: float = ...,
     rotation_noise: float = ..., direction_noise: float = ...,
     pose_noise_of_points: float = ..., wrong_directions: float = ...,
-    off_line: float = ..., twin_baseline: float = ..., look_outwards: bool = ...,
-    seed: int = ...) -> Tuple[Scene, Scene]: ...
+    off_line: float = ..., twin_baseline: float = ..., wall_bulge: float = ...,
+    box_offset: float = ..., look_outwards: bool = ..., seed: int = ...) -> Tuple[Scene, Scene]: ...
 
 # Evaluation
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "lowlap/scene/view.h"
@@ -16,8 +17,21 @@ struct Wall {
   Vec3 inward = Vec3::UnitZ();  // unit normal, towards the cameras
   int plane = 0;                // sections of one wall share it
   double clearance = 1.0;       // how far a line may be moved off, in metres
+  double bulge = 0;             // SyntheticOptions::wall_bulge_m
+  double box_offset = 0;        // SyntheticOptions::box_offset_m
+  int box_plane = -1;           // of the box's front
 
   Vec3 At(double a, double b) const { return origin + a * u + b * v; }
+  /// The box covers the middle three fifths in both directions.
+  bool HasBoxAt(double a, double b) const {
+    return box_offset > 0 && std::abs(a - 0.5) < 0.3 && std::abs(b - 0.5) < 0.3;
+  }
+  /// Of the bowed wall, or of the box before it.
+  Vec3 SurfaceAt(double a, double b) const {
+    const double before =
+        (HasBoxAt(a, b) ? box_offset : 0) - 4 * bulge * a * (1 - a);
+    return At(a, b) + before * inward;
+  }
 };
 
 struct WorldPoint {
@@ -50,9 +64,9 @@ struct World {
 /// Walls, edges and cameras of the options' kind.
 World BuildLayout(const SyntheticOptions& options);
 
-/// Points and lines on every wall. A share `off_wall` of the lines is moved off
-/// towards the cameras; for one seed, a greater share moves the same lines and
-/// more.
+/// Points and lines on every wall, or before it in a cloud. A share `off_wall`
+/// of the lines is moved off towards the cameras; for one seed, a greater share
+/// moves the same lines and more.
 void FillWalls(const SyntheticOptions& options, double off_wall, World* world);
 
 }  // namespace lowlap

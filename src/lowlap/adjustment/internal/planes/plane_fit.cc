@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "lowlap/core/internal/median.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/median_deviation.h"
 
 namespace lowlap {
@@ -74,6 +75,45 @@ double PlaneThickness(const std::vector<const FreeLandmark*>& members,
     (median_at(middle) > kMedianOfNorm<1> ? low : high) = middle;
   }
   return high;
+}
+
+Mat3 FitBend(const std::vector<PlaneMember>& members, const Plane& plane,
+             const Vec3& anchor, double thickness) {
+  using Vec6 = Eigen::Matrix<double, 6, 1>;
+  using Mat6 = Eigen::Matrix<double, 6, 6>;
+  const auto basis = TangentBasis(plane.normal);
+  double sum = 0, count = 0;
+  for (const PlaneMember& member : members) {
+    for (const FreePlace& place : member.landmark->places) {
+      sum += (basis.transpose() * (place.point - anchor)).squaredNorm();
+      ++count;
+    }
+  }
+  if (!(sum > 0)) return Mat3::Zero();
+  const double extent = std::sqrt(sum / count);
+  // The bend's three unknowns in thicknesses at the extent, of which the prior
+  // is the same whatever way the basis is turned; then the plane's.
+  Mat6 information = Mat6::Zero();
+  information.diagonal().head<3>().setOnes();
+  Vec6 gradient = Vec6::Zero();
+  for (const PlaneMember& member : members) {
+    for (const FreePlace& place : member.landmark->places) {
+      const Vec2 x = basis.transpose() * (place.point - anchor) / extent;
+      Vec6 row;
+      row << x.x() * x.x(), std::sqrt(2) * x.x() * x.y(), x.y() * x.y(), 1, x;
+      row *= thickness;
+      const double stddev = place.Stddev(plane.normal);
+      const double weight = 1 / (stddev * stddev + member.slack * member.slack);
+      information += weight * row * row.transpose();
+      gradient += weight * row * (plane.normal.dot(place.point) - plane.offset);
+    }
+  }
+  const Vec6 solved =
+      information.completeOrthogonalDecomposition().solve(gradient);
+  Mat2 along;
+  along << solved[0], solved[1] / std::sqrt(2), solved[1] / std::sqrt(2),
+      solved[2];
+  return thickness / (extent * extent) * basis * along * basis.transpose();
 }
 
 }  // namespace lowlap

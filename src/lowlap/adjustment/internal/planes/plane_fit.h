@@ -30,4 +30,18 @@ Plane FitPlane(const std::vector<const FreeLandmark*>& members,
 double PlaneThickness(const std::vector<const FreeLandmark*>& members,
                       const Plane& plane);
 
+/// A landmark that a plane holds, and what it may be off besides its own
+/// deviation.
+struct PlaneMember {
+  const FreeLandmark* landmark = nullptr;
+  double slack = 0;
+};
+
+/// How the members bow about the anchor, as PlaneState::bend. Least squares
+/// with the weights 1 / (stddev^2 + slack^2); the plane's tilt and offset are
+/// free, and what the bend amounts to over the members' extent is held to zero
+/// with the plane's thickness as its deviation.
+Mat3 FitBend(const std::vector<PlaneMember>& members, const Plane& plane,
+             const Vec3& anchor, double thickness);
+
 }  // namespace lowlap

@@ -128,7 +128,7 @@ class PlaneBuilder {
     state->normal = plane.normal;
     state->thickness = thickest;
     state->log10_nfa = facets.front()->log10_nfa;
-    std::size_t count = 0;
+    std::vector<PlaneMember> tied;
     const auto add = [&](int index, double looseness) {
       if (taken_[index] != 0) return;
       taken_[index] = 1;
@@ -136,14 +136,14 @@ class PlaneBuilder {
       (landmark.is_line ? state->lines : state->points)
           .push_back({landmark.index, looseness});
       state->anchor += landmark.Center();
-      ++count;
+      tied.push_back({&landmark, looseness * thickest});
     };
     for (const Facet* facet : facets) {
       const double off = std::hypot(facet->thickness,
                                     DistanceBetween(landmarks_, *facet, plane));
       for (const int member : facet->members) add(member, off / thickest);
     }
-    if (count < kMinTies) return false;
+    if (tied.size() < kMinTies) return false;
     const std::size_t part = PartOf(*facets.front(), parts_);
     for (std::size_t n = 0; n < landmarks_.size(); ++n) {
       if (parts_[n] != part) continue;
@@ -154,8 +154,9 @@ class PlaneBuilder {
         add(static_cast<int>(n), 1);
       }
     }
-    state->anchor /= static_cast<double>(count);
+    state->anchor /= static_cast<double>(tied.size());
     state->offset = plane.offset - plane.normal.dot(state->anchor);
+    state->bend = FitBend(tied, plane, state->anchor, thickest);
     return true;
   }
 

@@ -16,6 +16,10 @@ namespace lowlap {
 /// by many thicknesses pulls them from there, and is held the tighter the
 /// closer it comes. What is not on the plane at all, the front of a box before
 /// a wall, stays off where its cameras are known, and hardly pulls.
+///
+/// What a wall has beyond the errors of its members may be common to them all,
+/// and no number of ties averages it out: the plane bows with them, by about as
+/// much as it is thick.
 Result<std::vector<PlaneState>> FindPlanes(
     const std::vector<FreeLandmark>& landmarks, const RunContext& context);
 

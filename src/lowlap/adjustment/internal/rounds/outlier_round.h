@@ -22,6 +22,11 @@ NoiseLevels EstimateAllNoise(const CameraSet& cameras,
 struct ObservationChanges {
   std::size_t changed = 0;  // candidates and pairs whose use changed
   std::size_t total = 0;
+
+  double Share() const {
+    return total > 0 ? static_cast<double>(changed) / static_cast<double>(total)
+                     : 0.0;
+  }
 };
 
 /// Decides anew which candidates of the used kinds are in use: those within the

@@ -26,7 +26,10 @@ void ProblemBuilder::AddPlanes() {
     const PlaneState& plane = state_->planes[p];
     const auto place_at = [&](const PlaneTie& tie, const Vec3& place,
                               int pose) {
-      return PlaceOnPlane(plane.anchor, 1 / (tie.looseness * plane.thickness),
+      const Vec3 arm = place - plane.anchor;
+      const double bow = arm.dot(plane.bend * arm);
+      return PlaceOnPlane(plane.anchor + bow * plane.normal,
+                          1 / (tie.looseness * plane.thickness),
                           (place - cameras_->poses[pose].center).norm());
     };
     for (const PlaneTie& tie : plane.points) {

@@ -43,6 +43,8 @@ void MoveComponent(const Component& component, const Eigen::Quaterniond& turn,
     plane.normal = (turn * plane.normal).normalized();
     plane.anchor = place(plane.anchor);
     plane.offset *= scale;
+    plane.bend =
+        turn.toRotationMatrix() * plane.bend * turn.conjugate() / scale;
     plane.thickness *= scale;
   }
 }

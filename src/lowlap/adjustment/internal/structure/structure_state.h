@@ -30,12 +30,14 @@ struct PlaneTie {
 };
 
 /// A plane of the scene, normal . (x - anchor) = offset, and the landmarks that
-/// are tied to it.
+/// are tied to it, or to what it bows to.
 struct PlaneState {
   Vec3 normal = Vec3::UnitZ();  // unit
   Vec3 anchor = Vec3::Zero();
   double offset = 0;
   double thickness = 0;  // standard deviation of what is on it, world units
+  /// The wall is off the plane by a^T bend a along the normal, a = x - anchor.
+  Mat3 bend = Mat3::Zero();
   double log10_nfa = 0;
   std::vector<PlaneTie> points;
   std::vector<PlaneTie> lines;
