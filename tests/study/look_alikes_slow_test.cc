@@ -45,7 +45,7 @@ TEST(LookAlikeStudy, JoinsNoTwoPlacesAndGoesOnWhereItStopped) {
   for (const auto& [key, trial] : study.trials) {
     if (std::get<1>(key)) {
       same += trial.is_accepted ? 1 : 0;
-      if (trial.is_accepted) EXPECT_LT(trial.rotation_error_deg, 2);
+      EXPECT_LT(trial.rotation_error_deg, 2) << std::get<2>(key);
     } else {
       EXPECT_FALSE(trial.is_accepted)
           << RepeatedKindName(std::get<0>(key)) << ' ' << std::get<2>(key);
