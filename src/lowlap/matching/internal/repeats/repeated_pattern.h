@@ -16,16 +16,12 @@ class RepeatedPattern {
   /// Nothing repeats.
   RepeatedPattern() = default;
 
-  /// Translations within planes (ConjugateTranslation) that take points of the
-  /// photograph to others that look alike, one after the other, while they are
-  /// meaningful: that k of n points have one of their alike places where the
-  /// translation takes them, and p the share of places drawn at random that
-  /// has,
-  ///   NFA = M^2 C(n, k) C(k, 2) p^(k - 2)
-  /// with M alike places, of which two give a translation, must be below 1.
-  /// Points along one line are left out: an edge looks alike all along. Of many
-  /// points those of the largest scales are looked at. Panoramas, and points
-  /// at infinity, have no patterns.
+  /// Translations within planes that take points of the photograph to others
+  /// that look alike, one after the other, while they are meaningful
+  /// (TranslationSearch): the points that they take and those they take them
+  /// to. Points along one line are left out: an edge looks alike all along. Of
+  /// many points those of the largest scales are looked at. Panoramas, and
+  /// points at infinity, have no patterns.
   static RepeatedPattern Find(const PointView& view);
 
   bool IsEmpty() const { return members_.empty(); }
