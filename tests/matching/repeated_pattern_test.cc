@@ -65,7 +65,8 @@ TEST(RepeatedPattern, AnEdgeThatLooksAlikeAllAlongIsNone) {
   const PointDescriptor descriptor = RandomDescriptor(&random);
   for (int n = 0; n < 60; ++n) {
     const double share = n / 60.0;
-    view.Add(Vec3(-0.5 + share, -0.3 + 0.4 * share, 1),
+    const double across = random.Gaussian(1e-3);
+    view.Add(Vec3(-0.5 + share, -0.3 + 0.4 * share + across, 1),
              testing::Resembling(descriptor, &random), 2);
   }
   AddOthers(200, &random, &view);
@@ -81,9 +82,8 @@ TEST(RepeatedPattern, CoversWhatLooksThroughTheSameWindow) {
   const double px = 1 / view.features.focal_px;
   EXPECT_TRUE(pattern.Covers(place, 2));
   EXPECT_TRUE(pattern.Covers(place + Vec3(5 * px, 0, 0), 2));
-  // Another thing beside it, seen in detail.
   EXPECT_FALSE(pattern.Covers(Vec3(10, 10, 1), 100));
-  const PatternView alone = TiledView(0, 5);
+  // Another thing beside it, seen in detail.
   EXPECT_FALSE(pattern.Covers(place + Vec3(0, 5 * px, 0), 0.1));
 }
 

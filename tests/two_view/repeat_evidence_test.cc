@@ -2,30 +2,36 @@
 
 #include <gtest/gtest.h>
 
-#include "lowlap/two_view/internal/pair_estimator.h"
+#include "support/matchers.h"
 #include "tests/matching/pattern_view.h"
 
 namespace lowlap {
 namespace {
 
+using testing::IsError;
+using testing::IsOk;
 using testing::ObliqueCamera;
 using testing::PatternView;
 
 constexpr int kColumns = 9, kRows = 7, kMotif = 5;
 constexpr int kInPattern = kColumns * kRows * kMotif;
 
-/// Two views of a wall with a pattern and of `num_others` points before it,
-/// each of which is matched.
+RigidTransform SideStep() {
+  return {RotationFromAngleAxis({0.02, -0.1, 0.01}), Vec3(0.9, 0.1, 0.2)};
+}
+
+/// Two views of a wall with a pattern and of `num_others` points before it, at
+/// least `least_depth` deep in the room, each of which is matched.
 struct TiledPair {
   PatternView view1, view2;
   RepeatedPattern repeats1, repeats2;
   RigidTransform cam2_from_cam1;
   std::vector<FeatureMatch> matches;
 
-  explicit TiledPair(int num_others) {
+  explicit TiledPair(int num_others, const RigidTransform& motion = SideStep(),
+                     double least_depth = 2.5)
+      : cam2_from_cam1(motion) {
     const RigidTransform cam1 = ObliqueCamera();
-    cam2_from_cam1 = {RotationFromAngleAxis({0.02, -0.1, 0.01}),
-                      Vec3(0.9, 0.1, 0.2)};
     const RigidTransform cam2 = cam2_from_cam1 * cam1;
     Random random(1);
     for (PatternView* view : {&view1, &view2}) {
@@ -36,7 +42,7 @@ struct TiledPair {
     }
     for (int n = 0; n < num_others; ++n) {
       const Vec3 point(random.Uniform(-2, 2), random.Uniform(-1.5, 1.5),
-                       random.Uniform(2.5, 4.5));
+                       random.Uniform(least_depth, 5));
       const PointDescriptor descriptor = testing::RandomDescriptor(&random);
       view1.Add(cam1 * point, descriptor, 2);
       view2.Add(cam2 * point, descriptor, 2);
@@ -71,10 +77,16 @@ struct TiledPair {
   }
 };
 
+std::optional<EvidenceBeyondRepeats> Evidence(const TwoViewInput& input,
+                                              const RelativePose& pose) {
+  Random random(3);
+  return FindEvidenceBeyondRepeats(input, ShuffleMatches(input, random), pose,
+                                   {});
+}
+
 TEST(EvidenceBeyondRepeats, IsWhatTheOtherMatchesSay) {
   const TiledPair pair(60);
-  const auto evidence =
-      FindEvidenceBeyondRepeats(pair.Input(), pair.TruePose(), {});
+  const auto evidence = Evidence(pair.Input(), pair.TruePose());
   ASSERT_TRUE(evidence);
   EXPECT_GT(evidence->num_repeated, kInPattern / 2);
   EXPECT_GT(evidence->num_others, 30);
@@ -84,7 +96,7 @@ TEST(EvidenceBeyondRepeats, IsWhatTheOtherMatchesSay) {
   // Of another motion they say nothing.
   RelativePose wrong = pair.TruePose();
   wrong.rotation = RotationFromAngleAxis({0, 0.3, 0.2}) * wrong.rotation;
-  EXPECT_GT(FindEvidenceBeyondRepeats(pair.Input(), wrong, {})->log10_nfa, 0);
+  EXPECT_GT(Evidence(pair.Input(), wrong)->log10_nfa, 0);
 }
 
 TEST(EvidenceBeyondRepeats, IsNoneOfAPatternAlone) {
@@ -97,10 +109,12 @@ TEST(EvidenceBeyondRepeats, IsNoneOfAPatternAlone) {
   }
   ASSERT_GT(found.size(), 50u);
   input.point_matches = found;
-  const auto evidence = FindEvidenceBeyondRepeats(input, pair.TruePose(), {});
+  const auto evidence = Evidence(input, pair.TruePose());
   ASSERT_TRUE(evidence);
   EXPECT_EQ(evidence->num_others, 0);
   EXPECT_TRUE(std::isinf(evidence->log10_nfa));
+  EXPECT_THAT(EstimateRelativePose(input, {}, 1),
+              IsError(ErrorCode::kInsufficientData, "repeats"));
   // Without what is known of the patterns the same matches are a pose.
   input.repeats1 = input.repeats2 = nullptr;
   const auto pose = EstimateRelativePose(input, {}, 1);
@@ -113,9 +127,29 @@ TEST(EvidenceBeyondRepeats, IsNotAskedForWhereNoMatchRepeats) {
   TwoViewInput input = pair.Input();
   const RepeatedPattern nothing;
   input.repeats1 = input.repeats2 = &nothing;
-  EXPECT_FALSE(FindEvidenceBeyondRepeats(input, pair.TruePose(), {}));
+  EXPECT_FALSE(Evidence(input, pair.TruePose()));
   input.repeats1 = nullptr;
-  EXPECT_FALSE(FindEvidenceBeyondRepeats(input, pair.TruePose(), {}));
+  EXPECT_FALSE(Evidence(input, pair.TruePose()));
+}
+
+// A wall alone has two motions: neither counts for its pattern.
+TEST(EstimateRelativePose, CountsWhatRepeatsForNoneOfItsMotions) {
+  // Towards the slanted wall, with points of it that do not repeat.
+  const TiledPair pair(
+      60, {RotationFromAngleAxis({0.1, -0.1, 0}), Vec3(0, 0.3, -1)}, 5);
+  TwoViewInput input = pair.Input();
+  const auto discounted = EstimateRelativePose(input, {}, 1);
+  ASSERT_THAT(discounted, IsOk());
+  input.repeats1 = input.repeats2 = nullptr;
+  const auto plain = EstimateRelativePose(input, {}, 1);
+  ASSERT_THAT(plain, IsOk());
+  ASSERT_EQ(plain->geometry, TwoViewGeometry::kAmbiguousPlane);
+  ASSERT_EQ(discounted->alternatives.size(), 1u);
+  EXPECT_GT(discounted->pose.log10_nfa, 0.7 * plain->pose.log10_nfa);
+  EXPECT_LT(discounted->pose.log10_nfa, 0);
+  EXPECT_GT(discounted->alternatives[0].log10_nfa,
+            0.7 * plain->alternatives[0].log10_nfa);
+  EXPECT_LT(discounted->alternatives[0].log10_nfa, 0);
 }
 
 }  // namespace

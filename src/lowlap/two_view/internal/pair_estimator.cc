@@ -8,7 +8,6 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/validation.h"
-#include "lowlap/two_view/internal/repeat_evidence.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
 
 namespace lowlap {
@@ -106,14 +105,6 @@ void UseGuidedMatches(const ViewMeasurements& first,
   *pose = Improve(*input, *pose, options.two_view, lone_matches);
 }
 
-std::string RepeatReason(const EvidenceBeyondRepeats& evidence) {
-  return Format(
-      "%d of %d points and crossings of lines belong to a pattern that repeats "
-      "in its photograph; the others bear no motion out (log10 NFA %.1f)",
-      evidence.num_repeated, evidence.num_repeated + evidence.num_others,
-      evidence.log10_nfa);
-}
-
 }  // namespace
 
 Status PairOptions::Validate() const {
@@ -181,14 +172,6 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
     return estimate;
   }
   RelativePose& pose = result->pose;
-  if (const auto evidence =
-          FindEvidenceBeyondRepeats(input, pose, options.two_view)) {
-    pose.log10_nfa = std::max(pose.log10_nfa, evidence->log10_nfa);
-    if (!(pose.log10_nfa < 0)) {
-      estimate.reason = RepeatReason(*evidence);
-      return estimate;
-    }
-  }
   for (const RelativePose& other : result->alternatives) {
     pose.alternatives.push_back(MotionOf(other));
   }

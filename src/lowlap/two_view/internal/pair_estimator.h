@@ -60,8 +60,7 @@ struct PairEstimate {
 /// these (ImproveRelativePose), and its alternatives; keep the line matches
 /// that are plausible under it. Where two poses explain what the pair sees, the
 /// other is kept as an alternative. A pair whose direction is undetermined has
-/// none, nor has one that only patterns bear out that repeat
-/// (EvidenceBeyondRepeats): log10_nfa is that of the others.
+/// none, nor has one that only patterns bear out that repeat.
 PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
                           const ViewMeasurements& second,
                           const PairMatches& putative,

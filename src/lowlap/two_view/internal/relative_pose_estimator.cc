@@ -5,12 +5,14 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/two_view/internal/planar_motion.h"
+#include "lowlap/two_view/internal/repeat_evidence.h"
 #include "lowlap/two_view/internal/search/pose_from_search.h"
 #include "lowlap/two_view/internal/search/pose_search.h"
 #include "lowlap/two_view/internal/search/refine_relative_pose.h"
@@ -87,6 +89,40 @@ std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
       candidate.pose, plane.normal, pairs.x1[plane.inliers.front()]);
   if (!motion) return std::nullopt;
   return search.Finish(*motion);
+}
+
+// Lets the poses count for what does not repeat (FindEvidenceBeyondRepeats).
+Status DiscountRepeats(const TwoViewInput& input,
+                       const ShuffledMatches& matches,
+                       const TwoViewOptions& options, TwoViewResult* result) {
+  const auto evidence =
+      FindEvidenceBeyondRepeats(input, matches, result->pose, options);
+  if (!evidence) return {};
+  const auto is_meaningful = [](double log10_nfa, RelativePose* pose) {
+    pose->log10_nfa = std::max(pose->log10_nfa, log10_nfa);
+    return pose->log10_nfa < 0;
+  };
+  if (!is_meaningful(evidence->log10_nfa, &result->pose)) {
+    return MakeError(
+        ErrorCode::kInsufficientData,
+        Format("relative pose: %d of %d points and crossings of lines belong "
+               "to a pattern that repeats in its photograph; the others bear "
+               "no motion out (log10 NFA %.1f)",
+               evidence->num_repeated,
+               evidence->num_repeated + evidence->num_others,
+               evidence->log10_nfa));
+  }
+  std::vector<RelativePose> others;
+  for (RelativePose& other : result->alternatives) {
+    const auto of_other =
+        FindEvidenceBeyondRepeats(input, matches, other, options);
+    if (is_meaningful(of_other->log10_nfa, &other)) others.push_back(other);
+  }
+  if (others.size() < result->alternatives.size()) {
+    result->geometry = TwoViewGeometry::kPlanar;
+  }
+  result->alternatives = std::move(others);
+  return {};
 }
 
 }  // namespace
@@ -192,6 +228,9 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   if (result.geometry == TwoViewGeometry::kAmbiguousPlane) {
     result.alternatives.push_back(
         PoseFromSearch(input, matches, search, *other, nullptr));
+  }
+  if (result.HasDirection()) {
+    LOWLAP_RETURN_IF_ERROR(DiscountRepeats(input, matches, options, &result));
   }
   return result;
 }

@@ -89,8 +89,9 @@ struct TwoViewResult {
 /// loss whose scale follows the threshold. The sign of t and the choice of R
 /// come from the visibility (positive depths) of all inliers; matches behind a
 /// camera are no inliers. log10_nfa counts chance support as these very images
-/// give it (see ScoreAgainstChance). Two different places that look alike, as
-/// two equal facades do, still pass: only further views tell.
+/// give it (see ScoreAgainstChance), and of a pose only what does not repeat
+/// within its photograph (see FindEvidenceBeyondRepeats). Two different places
+/// that look alike without that still pass: only further views tell.
 ///
 /// `pose` carries rotation, direction, point inliers in the order of
 /// `point_matches`, log10_nfa, point_threshold_px and covariance; its line
@@ -98,7 +99,8 @@ struct TwoViewResult {
 /// result.
 ///
 /// Errors: kInsufficientData when fewer than 6 points and crossings are usable
-/// or no pose has log10 NFA < 0 (the message says which); kInvalidArgument for
+/// or no pose has log10 NFA < 0, with what repeats or without (the message says
+/// which); kInvalidArgument for
 /// matches that refer to features that do not exist, or empty images.
 Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
                                            const TwoViewOptions& options,

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "lowlap/core/internal/random.h"
 #include "lowlap/two_view/internal/search/pose_search.h"
-#include "lowlap/two_view/internal/shuffled_matches.h"
 
 namespace lowlap {
 namespace {
@@ -28,15 +26,12 @@ bool IsRepeated(const TwoViewInput& input, const ShuffledMatches& matches,
 }  // namespace
 
 std::optional<EvidenceBeyondRepeats> FindEvidenceBeyondRepeats(
-    const TwoViewInput& input, const RelativePose& pose,
-    const TwoViewOptions& options) {
+    const TwoViewInput& input, const ShuffledMatches& matches,
+    const RelativePose& pose, const TwoViewOptions& options) {
   if (input.repeats1 == nullptr || input.repeats2 == nullptr ||
       (input.repeats1->IsEmpty() && input.repeats2->IsEmpty())) {
     return std::nullopt;
   }
-  // No sample is drawn; the order only matters to the background of chance.
-  Random random(0);
-  const ShuffledMatches matches = ShuffleMatches(input, random);
   PointPairs others;
   others.focal1_px = matches.pairs.focal1_px;
   others.focal2_px = matches.pairs.focal2_px;

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "lowlap/two_view/internal/relative_pose_estimator.h"
+#include "lowlap/two_view/internal/shuffled_matches.h"
 
 namespace lowlap {
 
@@ -18,9 +19,10 @@ struct EvidenceBeyondRepeats {
 /// number of their matches says that the patterns are alike, and nothing of
 /// where the photographs were taken. So a pose counts for what the matches and
 /// crossings have for it of which neither side belongs to a pattern of its view
-/// (RepeatedPattern), against chance. nullopt: no match does.
+/// (RepeatedPattern), against chance. `matches` are those of the input.
+/// nullopt: nothing is known to repeat, or no match does.
 std::optional<EvidenceBeyondRepeats> FindEvidenceBeyondRepeats(
-    const TwoViewInput& input, const RelativePose& pose,
-    const TwoViewOptions& options);
+    const TwoViewInput& input, const ShuffledMatches& matches,
+    const RelativePose& pose, const TwoViewOptions& options);
 
 }  // namespace lowlap

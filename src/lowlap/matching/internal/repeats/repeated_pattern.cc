@@ -1,6 +1,5 @@
 #include "lowlap/matching/internal/repeats/repeated_pattern.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "lowlap/matching/internal/repeats/alike_places.h"
@@ -11,8 +10,6 @@ namespace {
 
 constexpr std::size_t kMaxPoints = 2000;
 constexpr int kMaxTranslations = 30;
-/// Points are along a line if they spread across it by less than this share.
-constexpr double kThin = 0.03;
 /// Of the rays with z = 1 those of the largest scales, ascending.
 std::vector<int> LargestPoints(const PointView& view) {
   std::vector<int> points;
@@ -29,19 +26,6 @@ std::vector<int> LargestPoints(const PointView& view) {
   return points;
 }
 
-bool IsThin(const std::vector<Vec2>& places) {
-  Vec2 mean = Vec2::Zero();
-  for (const Vec2& place : places) mean += place;
-  mean /= static_cast<double>(places.size());
-  Mat2 scatter = Mat2::Zero();
-  for (const Vec2& place : places) {
-    scatter += (place - mean) * (place - mean).transpose();
-  }
-  const Vec2 squared =
-      Eigen::SelfAdjointEigenSolver<Mat2>(scatter).eigenvalues();
-  return squared[0] < kThin * kThin * squared[1];
-}
-
 }  // namespace
 
 RepeatedPattern RepeatedPattern::Find(const PointView& view) {
@@ -52,14 +36,8 @@ RepeatedPattern RepeatedPattern::Find(const PointView& view) {
     const auto translation = search.Best();
     if (!translation) break;
     const std::vector<AlikePlaces> explained = search.Explained(*translation);
-    std::vector<Vec2> images;
     for (const AlikePlaces& places : explained) {
-      images.push_back(places.from.hnormalized());
-    }
-    if (!IsThin(images)) {
-      for (const AlikePlaces& places : explained) {
-        repeated.insert(repeated.end(), {places.first, places.second});
-      }
+      repeated.insert(repeated.end(), {places.first, places.second});
     }
     search.Remove(explained);
   }

@@ -19,9 +19,9 @@ class RepeatedPattern {
   /// Translations within planes that take points of the photograph to others
   /// that look alike, one after the other, while they are meaningful
   /// (TranslationSearch): the points that they take and those they take them
-  /// to. Points along one line are left out: an edge looks alike all along. Of
-  /// many points those of the largest scales are looked at. Panoramas, and
-  /// points at infinity, have no patterns.
+  /// to. An edge that looks alike all along is none: partners drawn at random
+  /// fit it as well. Of many points those of the largest scales are looked at.
+  /// Panoramas, and points at infinity, have no patterns.
   static RepeatedPattern Find(const PointView& view);
 
   bool IsEmpty() const { return members_.empty(); }
