@@ -25,6 +25,7 @@ out=$(realpath -m "${2:-out/room_with_a_phone}")
 cd "$(dirname "$0")/.."
 room=sfm_data/samples/room/images
 mkdir -p "$out/photographs"
+rm -f "$out/photographs"/{0003,0007,0008}.jpg  # of an earlier run
 cp "$room"/{0000,0001,0002,0004,0005,0006,0009,0010}.jpg "$out/photographs"
 
 echo "== the first eight photographs"

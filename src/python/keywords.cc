@@ -149,6 +149,7 @@ MeasurementOptions TakeMeasurementOptions(Keywords* keywords,
   MeasurementChoices choices;
   keywords->Take("matcher", &choices.matcher);
   keywords->TakeWords("two_view", &choices.two_view);
+  keywords->Take("max_tilt", &choices.max_tilt);
   RaiseIfError(SetChoices(choices, scale, &options));
   keywords->Take("refine_points", &options.refine_points);
   if (const py::object cache = keywords->Take("cache")) {

@@ -181,8 +181,8 @@ constexpr char kRunDoc[] =
     "intrinsics: the path of K.txt or of a scene file, a scene, or the 3x3\n"
     "calibration matrix; without it and `focal`: from EXIF data.\n"
     "Options, all by keyword, as the flags of `lowlap run`: those of solve(),\n"
-    "and focal, pairs, matcher, exclude, two_view, refine_points, cache (a\n"
-    "folder of features and matches to use again; none if not given).";
+    "and focal, pairs, matcher, exclude, two_view, max_tilt, refine_points,\n"
+    "cache (a folder of features and matches to use again; none if not given).";
 
 }  // namespace
 

@@ -24,10 +24,22 @@ TEST(MeasurementChoices, AreTheDefaultsUnlessSaidOtherwise) {
   EXPECT_TRUE(options.matching.match_lines);
 }
 
-TEST(MeasurementChoices, BothPassesOfMatchingAreOfOneKind) {
+TEST(MeasurementChoices, AllPassesOfMatchingAreOfOneKind) {
   const MeasurementOptions options = OptionsOf({"flann", {"points"}});
   EXPECT_EQ(options.matching.points.matcher, PointMatcher::kFlann);
   EXPECT_EQ(options.matching.relaxed_points.matcher, PointMatcher::kFlann);
+  EXPECT_EQ(options.matching.tilted_points.matcher, PointMatcher::kFlann);
+}
+
+TEST(MeasurementChoices, BoundTheTilt) {
+  MeasurementChoices choices;
+  EXPECT_EQ(OptionsOf(choices).features.tilts.max_tilt, TiltOptions().max_tilt);
+  choices.max_tilt = 2;
+  EXPECT_EQ(OptionsOf(choices).features.tilts.max_tilt, 2);
+  choices.max_tilt = 0.5;
+  MeasurementOptions options;
+  EXPECT_THAT(SetChoices(choices, {}, &options),
+              testing::IsError(ErrorCode::kInvalidArgument, "max_tilt"));
 }
 
 TEST(MeasurementChoices, LinesAreDetectedIfAnythingNeedsThem) {

@@ -17,6 +17,18 @@ struct PointOptions {
   Status Validate() const;
 };
 
+/// Images compressed along one direction, as surfaces appear in them that are
+/// turned away (DetectTiltedPoints).
+struct TiltOptions {
+  double max_tilt = 4;  // greatest compression; 1: none
+  /// Larger images are reduced for it.
+  int max_side_px = 1300;
+  /// Keypoints kept per tilted image, of which there are two dozen.
+  int max_points = 1000;
+
+  Status Validate() const;
+};
+
 struct LineOptions {
   /// Shorter segments are dropped; relative to (width + height) / 2.
   double min_length_ratio = 0.015;
@@ -32,6 +44,7 @@ struct FeatureOptions {
   bool detect_points = true;
   bool detect_lines = true;
   PointOptions points;
+  TiltOptions tilts;
   LineOptions lines;
   /// Images are processed in parallel only as far as this reaches: SIFT's scale
   /// space takes about 240 bytes per pixel (1.5 GB for 6 megapixels).

@@ -33,6 +33,21 @@ struct RelaxedPointOptions {
   Status Validate() const;
 };
 
+/// Points that surfaces show when they are looked at from aside.
+struct TiltedPointOptions {
+  /// Pairs with fewer matches are matched again; 0: none.
+  int starved_below = 100;
+  /// Views with so many pairs that have more are joined well enough.
+  int enough_pairs = 3;
+  /// Of one view so many pairs are matched again, those of most matches.
+  int max_partners = 12;
+  /// As in PointMatchOptions, over all looks of an image together.
+  double max_ratio = 0.8;
+  PointMatcher matcher = PointMatcher::kExact;
+
+  Status Validate() const;
+};
+
 struct LineMatchOptions {
   /// Greatest Hamming distance of two descriptors of 256 bits.
   int max_distance_bits = 90;
@@ -52,6 +67,7 @@ struct MatchOptions {
   bool match_lines = true;
   PointMatchOptions points;
   RelaxedPointOptions relaxed_points;
+  TiltedPointOptions tilted_points;
   LineMatchOptions lines;
 
   Status Validate() const;

@@ -12,6 +12,7 @@
 #include "lowlap/pipeline/internal/measure/cached_measurements.h"
 #include "lowlap/pipeline/internal/measure/image_measurements.h"
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
+#include "lowlap/pipeline/internal/measure/tilted_measurements.h"
 #include "lowlap/pipeline/internal/scene_reduction.h"
 
 namespace lowlap {
@@ -106,8 +107,14 @@ Result<ImageMeasurements> MatchImages(const Scene& scene,
                                        *cache, context)
                        : MatchFeatures(detected.features, pairs,
                                        options.matching, context));
-    if (cache) cache->Prune(options.max_cache_gb * 1e9);
   }
+  {
+    const StageLog::Scope scope(stages, "tilted views");
+    LOWLAP_RETURN_IF_ERROR(MatchStarvedPairs(scene, options,
+                                             cache ? &*cache : nullptr, context,
+                                             &detected, &matches));
+  }
+  if (cache) cache->Prune(options.max_cache_gb * 1e9);
   return ImageMeasurements{std::move(detected.features), std::move(matches),
                            std::move(detected.failed)};
 }

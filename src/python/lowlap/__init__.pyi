@@ -329,7 +329,7 @@ def merge(
     images: Path = ..., intrinsics: Union[None, Path, Scene, ArrayLike] = ...,
     focal: float = ..., matchdir: Path = ..., match_file: Path = ..., pairs: str = ...,
     matcher: str = ..., exclude: Words = ..., two_view: Words = ...,
-    refine_points: bool = ..., cache: Path = ..., features: Words = ...,
+    max_tilt: float = ..., refine_points: bool = ..., cache: Path = ..., features: Words = ...,
     coplanar_points: bool = ..., criterion: str = ..., nfa: str = ...,
     threshold: float = ..., adjust_features: Words = ..., coplanar_ties: str = ...,
     directions: bool = ..., principal_point_stddev: float = ..., no_adjust: bool = ...,
@@ -339,7 +339,7 @@ def merge(
 def run(
     images: Path, intrinsics: Union[None, Path, Scene, ArrayLike] = ..., *,
     focal: float = ..., pairs: str = ..., matcher: str = ..., exclude: Words = ...,
-    two_view: Words = ..., refine_points: bool = ..., cache: Path = ...,
+    two_view: Words = ..., max_tilt: float = ..., refine_points: bool = ..., cache: Path = ...,
     features: Words = ..., coplanar_points: bool = ..., criterion: str = ...,
     nfa: str = ..., threshold: float = ..., adjust_features: Words = ..., coplanar_ties: str = ...,
     directions: bool = ..., principal_point_stddev: float = ..., no_adjust: bool = ...,

@@ -16,21 +16,6 @@
 namespace lowlap {
 namespace {
 
-Status AddPoints(const GrayImage& image, const FeatureOptions& options,
-                 DetectedFeatures* detected) {
-  LOWLAP_ASSIGN_OR_RETURN(PointFeatures points,
-                          DetectPoints(image, options.points));
-  for (const Keypoint& keypoint : points.keypoints) {
-    detected->features.points_px.push_back(keypoint.position_px);
-    const Mat2& shape = keypoint.covariance;
-    detected->features.point_covariances.emplace_back(shape(0, 0), shape(0, 1),
-                                                      shape(1, 1));
-  }
-  detected->keypoints = std::move(points.keypoints);
-  detected->point_descriptors = std::move(points.descriptors);
-  return {};
-}
-
 Status AddLines(const GrayImage& image, const FeatureOptions& options,
                 DetectedFeatures* detected) {
   LOWLAP_ASSIGN_OR_RETURN(std::vector<LineSegment> segments,
@@ -61,12 +46,26 @@ Status AddUndistortedLines(const GrayImage& image, const Intrinsic& intrinsic,
 
 }  // namespace
 
+void AddPoints(const PointFeatures& points, DetectedFeatures* detected) {
+  for (const Keypoint& keypoint : points.keypoints) {
+    detected->features.points_px.push_back(keypoint.position_px);
+    const Mat2& shape = keypoint.covariance;
+    detected->features.point_covariances.emplace_back(shape(0, 0), shape(0, 1),
+                                                      shape(1, 1));
+    detected->keypoints.push_back(keypoint);
+  }
+  detected->point_descriptors.insert(detected->point_descriptors.end(),
+                                     points.descriptors.begin(),
+                                     points.descriptors.end());
+}
+
 Status FeatureOptions::Validate() const {
   if (!(max_memory_gb > 0 && std::isfinite(max_memory_gb))) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "max_memory_gb must be positive");
   }
   LOWLAP_RETURN_IF_ERROR(points.Validate());
+  LOWLAP_RETURN_IF_ERROR(tilts.Validate());
   return lines.Validate();
 }
 
@@ -84,7 +83,9 @@ Result<DetectedFeatures> DetectFeatures(const GrayImage& image,
   Status status = options.Validate();
   DetectedFeatures detected;
   if (status && options.detect_points) {
-    status = AddPoints(image, options, &detected);
+    LOWLAP_ASSIGN_OR_RETURN(const PointFeatures points,
+                            DetectPoints(image, options.points));
+    AddPoints(points, &detected);
   }
   if (status && options.detect_lines &&
       intrinsic.model != CameraModel::kSpherical) {

@@ -24,6 +24,9 @@ struct DetectedFeatures {
   std::vector<LineDescriptor> line_descriptors;
 };
 
+/// Adds points after those that are there.
+void AddPoints(const PointFeatures& points, DetectedFeatures* detected);
+
 Result<DetectedFeatures> DetectFeatures(const GrayImage& image,
                                         const FeatureOptions& options);
 

@@ -10,6 +10,7 @@ namespace lowlap {
 Status MatchOptions::Validate() const {
   LOWLAP_RETURN_IF_ERROR(points.Validate());
   LOWLAP_RETURN_IF_ERROR(relaxed_points.Validate());
+  LOWLAP_RETURN_IF_ERROR(tilted_points.Validate());
   return lines.Validate();
 }
 

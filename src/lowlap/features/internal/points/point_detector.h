@@ -32,6 +32,7 @@ struct Keypoint {
   double angle_rad = 0;             // dominant gradient direction, x to y
   /// Shape of the error of the position (LocalizationCovariance).
   Mat2 covariance = Mat2::Identity();
+  double tilt = 1;  // of the image that it was found in (TiltImage)
 };
 
 struct PointFeatures {
@@ -41,7 +42,7 @@ struct PointFeatures {
 
 /// Raised whenever keypoints or descriptors change for the same input and
 /// options: what is cached is then computed anew.
-inline constexpr int kPointDetectorVersion = 2;
+inline constexpr int kPointDetectorVersion = 3;
 
 /// SIFT keypoints (Lowe 2004, by OpenCV) with root-SIFT descriptors, sorted by
 /// position; the same for any number of threads. When there are more than

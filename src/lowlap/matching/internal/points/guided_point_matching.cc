@@ -50,7 +50,7 @@ std::vector<PolarPoint> ToPolar(const PointView& view, const Mat3& axes) {
   points.reserve(view.keypoints.size());
   for (std::size_t i = 0; i < view.keypoints.size(); ++i) {
     const Vec3& x = view.features.points[i];
-    if (x.z() == 0) continue;
+    if (x.z() == 0 || view.keypoints[i].tilt > 1) continue;
     const Vec3 ray = axes * x.normalized();
     PolarPoint point;
     point.sine = ray.head<2>().norm();

@@ -14,7 +14,10 @@ constexpr int kMaxTranslations = 30;
 std::vector<int> LargestPoints(const PointView& view) {
   std::vector<int> points;
   for (std::size_t n = 0; n < view.keypoints.size(); ++n) {
-    if (view.features.points[n].z() != 0) points.push_back(static_cast<int>(n));
+    // What tilted images show besides would count places several times.
+    if (view.features.points[n].z() != 0 && view.keypoints[n].tilt == 1) {
+      points.push_back(static_cast<int>(n));
+    }
   }
   if (points.size() > kMaxPoints) {
     std::stable_sort(points.begin(), points.end(), [&](int a, int b) {

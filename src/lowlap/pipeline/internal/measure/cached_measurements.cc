@@ -1,7 +1,6 @@
 #include "lowlap/pipeline/internal/measure/cached_measurements.h"
 
 #include <algorithm>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,63 +10,11 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/image_memory.h"
 #include "lowlap/pipeline/internal/measure/measurement_bytes.h"
+#include "lowlap/pipeline/internal/measure/measurement_cache.h"
 #include "lowlap/pipeline/internal/measure/measurement_key.h"
 
 namespace lowlap {
 namespace {
-
-// A cache from several threads, whose troubles are warnings.
-class Cache {
- public:
-  Cache(const CacheFolder& folder, std::string kind, const RunContext& context)
-      : folder_(folder), kind_(std::move(kind)), context_(context) {}
-
-  /// What `parse` makes of the entry; nullopt if there is none to trust.
-  template <class Parse>
-  auto Find(const Hash128::Value& key, const Parse& parse)
-      -> decltype(parse(std::string_view())) {
-    const auto bytes = folder_.Read(kind_, key);
-    if (!bytes) {
-      Warn(bytes.error().ToString() + "; computed anew");
-      return std::nullopt;
-    }
-    if (!*bytes) return std::nullopt;
-    auto value = parse(**bytes);
-    if (!value) {
-      Warn("the entry " + kind_ + " " + ToHex(key) +
-           " of the cache makes no sense; computed anew");
-    }
-    return value;
-  }
-
-  void Write(const Hash128::Value& key, const std::string& bytes) {
-    const Status written = folder_.Write(kind_, key, bytes);
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (written || write_failed_) return;
-    write_failed_ = true;
-    context_.Log(LogLevel::kWarning,
-                 "the cache cannot be written: " + written.error().ToString());
-  }
-
-  void LogUse(std::size_t found, std::size_t total) const {
-    if (found == 0) return;
-    context_.Log(LogLevel::kInfo, kind_ + ": " + std::to_string(found) +
-                                      " of " + std::to_string(total) +
-                                      " from the cache " + folder_.path());
-  }
-
- private:
-  void Warn(const std::string& message) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    context_.Log(LogLevel::kWarning, message);
-  }
-
-  const CacheFolder& folder_;
-  std::string kind_;
-  const RunContext& context_;
-  std::mutex mutex_;
-  bool write_failed_ = false;
-};
 
 struct ViewSlot {
   ViewId id = kInvalidId;
@@ -88,7 +35,7 @@ Result<KeyedFeatures> DetectFeatures(const Scene& scene,
     slots.emplace_back();
     slots.back().id = id;
   }
-  Cache cache(cache_folder, "features", context);
+  MeasurementCache cache(cache_folder, "features", context);
   const auto read_image = [&](ViewSlot* slot) {
     Result<std::string> bytes = ReadWholeFile(scene.ImagePath(slot->id));
     if (bytes) {
@@ -149,7 +96,7 @@ Result<std::map<ViewPair, PairMatches>> MatchFeatures(
     const MatchOptions& options, const CacheFolder& cache_folder,
     const RunContext& context) {
   LOWLAP_RETURN_IF_ERROR(options.Validate());
-  Cache cache(cache_folder, "matches", context);
+  MeasurementCache cache(cache_folder, "matches", context);
   std::vector<Hash128::Value> keys(pairs.size());
   std::vector<std::optional<PairMatches>> found(pairs.size());
   for (std::size_t n = 0; n < pairs.size(); ++n) {

@@ -71,6 +71,18 @@ void TransferVector(Archive& archive, Vector& vector) {
   for (auto& number : vector.reshaped()) archive.Value(number);
 }
 
+template <class Archive, class Keypoints>
+void TransferKeypoints(Archive& archive, Keypoints& keypoints) {
+  TransferList(archive, keypoints, [&](auto& keypoint) {
+    auto& [position_px, scale_px, angle_rad, covariance, tilt] = keypoint;
+    TransferVector(archive, position_px);
+    archive.Value(scale_px);
+    archive.Value(angle_rad);
+    TransferVector(archive, covariance);
+    archive.Value(tilt);
+  });
+}
+
 template <class Archive, class Features>
 void TransferFeatures(Archive& archive, Features& detected) {
   auto& [features, keypoints, point_descriptors, line_descriptors] = detected;
@@ -85,16 +97,24 @@ void TransferFeatures(Archive& archive, Features& detected) {
     TransferVector(archive, end_px);
     archive.Value(stddev_px);
   });
-  TransferList(archive, keypoints, [&](auto& keypoint) {
-    auto& [position_px, scale_px, angle_rad, covariance] = keypoint;
-    TransferVector(archive, position_px);
-    archive.Value(scale_px);
-    archive.Value(angle_rad);
-    TransferVector(archive, covariance);
-  });
+  TransferKeypoints(archive, keypoints);
   const auto value = [&](auto& descriptor) { archive.Value(descriptor); };
   TransferList(archive, point_descriptors, value);
   TransferList(archive, line_descriptors, value);
+}
+
+template <class Archive, class Tilted>
+void TransferTilted(Archive& archive, Tilted& tilted) {
+  auto& [added, looks] = tilted;
+  auto& [keypoints, added_descriptors] = added;
+  const auto value = [&](auto& number) { archive.Value(number); };
+  TransferKeypoints(archive, keypoints);
+  TransferList(archive, added_descriptors, value);
+  TransferList(archive, looks, [&](auto& look) {
+    auto& [descriptors, points] = look;
+    TransferList(archive, descriptors, value);
+    TransferList(archive, points, value);
+  });
 }
 
 template <class Archive, class Matches>
@@ -123,6 +143,20 @@ std::optional<DetectedFeatures> FeaturesFromBytes(std::string_view bytes) {
   TransferFeatures(reader, features);
   if (!reader.Fits()) return std::nullopt;
   return features;
+}
+
+std::string ToBytes(const TiltedPoints& points) {
+  Writer writer;
+  TransferTilted(writer, points);
+  return writer.Take();
+}
+
+std::optional<TiltedPoints> TiltedPointsFromBytes(std::string_view bytes) {
+  Reader reader(bytes);
+  TiltedPoints points;
+  TransferTilted(reader, points);
+  if (!reader.Fits()) return std::nullopt;
+  return points;
 }
 
 std::string ToBytes(const PairMatches& matches) {

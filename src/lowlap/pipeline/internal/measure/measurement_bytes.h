@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "lowlap/features/internal/features.h"
+#include "lowlap/features/internal/points/tilted_points.h"
 #include "lowlap/matching/internal/matching.h"
 
 namespace lowlap {
@@ -15,6 +16,9 @@ namespace lowlap {
 
 std::string ToBytes(const DetectedFeatures& features);
 std::optional<DetectedFeatures> FeaturesFromBytes(std::string_view bytes);
+
+std::string ToBytes(const TiltedPoints& points);
+std::optional<TiltedPoints> TiltedPointsFromBytes(std::string_view bytes);
 
 std::string ToBytes(const PairMatches& matches);
 std::optional<PairMatches> MatchesFromBytes(std::string_view bytes);

@@ -13,6 +13,7 @@ namespace lowlap {
 struct MeasurementChoices {
   std::string matcher = "exact";                            // or flann
   std::vector<std::string> two_view = {"points", "lines"};  // some of these
+  double max_tilt = TiltOptions().max_tilt;
 };
 
 /// Sets the options that follow. Lines are detected and matched if relative

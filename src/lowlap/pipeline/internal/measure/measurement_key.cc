@@ -57,9 +57,10 @@ Hash128::Value FeatureKey(std::string_view image_bytes,
                           const Intrinsic* intrinsic,
                           const FeatureOptions& options) {
   // The memory that may be used has no influence on the result.
-  const auto& [detect_points, detect_lines, points, lines, max_memory_gb] =
-      options;
+  const auto& [detect_points, detect_lines, points, tilts, lines,
+               max_memory_gb] = options;
   static_cast<void>(max_memory_gb);
+  static_cast<void>(tilts);  // TiltedKey
   Hash128 hash;
   AddAll(&hash, "features", ImageLibraryVersion(), image_bytes, detect_points,
          detect_lines);
@@ -74,11 +75,21 @@ Hash128::Value FeatureKey(std::string_view image_bytes,
   return hash.value();
 }
 
+Hash128::Value TiltedKey(const Hash128::Value& features,
+                         const TiltOptions& options) {
+  const auto& [max_tilt, max_side_px, max_points] = options;
+  Hash128 hash;
+  AddAll(&hash, "tilted", kTiltedPointsVersion, features, max_tilt, max_side_px,
+         max_points);
+  return hash.value();
+}
+
 Hash128::Value MatchKey(const Hash128::Value& first,
                         const Hash128::Value& second,
                         const MatchOptions& options) {
-  const auto& [match_points, match_lines, points, relaxed_points, lines] =
-      options;
+  const auto& [match_points, match_lines, points, relaxed_points, tilted_points,
+               lines] = options;
+  static_cast<void>(tilted_points);  // TiltedMatchKey
   Hash128 hash;
   AddAll(&hash, "matches", first, second, match_points, match_lines);
   if (match_points) {
@@ -86,6 +97,23 @@ Hash128::Value MatchKey(const Hash128::Value& first,
     AddOptions(relaxed_points, &hash);
   }
   if (match_lines) AddOptions(lines, &hash);
+  return hash.value();
+}
+
+Hash128::Value TiltedMatchKey(const Hash128::Value& first,
+                              const Hash128::Value& second,
+                              const Hash128::Value& matches,
+                              const TiltedPointOptions& options) {
+  const auto& [starved_below, enough_pairs, max_partners, max_ratio, matcher] =
+      options;
+  // Which pairs are matched says nothing of how.
+  static_cast<void>(starved_below);
+  static_cast<void>(enough_pairs);
+  static_cast<void>(max_partners);
+  Hash128 hash;
+  AddAll(&hash, "tilted matches", kTiltedMatchingVersion, first, second,
+         matches, max_ratio);
+  if (matcher != PointMatcher::kExact) hash.Add("flann");
   return hash.value();
 }
 

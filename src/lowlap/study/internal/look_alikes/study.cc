@@ -1,11 +1,17 @@
 #include "lowlap/study/internal/look_alikes/study.h"
 
+#include <array>
 #include <cmath>
+#include <map>
 #include <optional>
 
+#include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/features.h"
+#include "lowlap/features/internal/points/tilted_points.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/matching/internal/matching.h"
+#include "lowlap/matching/internal/points/tilted_matching.h"
+#include "lowlap/matching/internal/starved_pairs.h"
 #include "lowlap/study/internal/run_trials.h"
 #include "lowlap/two_view/internal/pair_estimator.h"
 
@@ -13,28 +19,66 @@ namespace lowlap {
 namespace {
 
 constexpr double kRight_deg = 2;
-std::optional<LookAlikeTrial> RunTrial(const LookAlikeKey& key) {
-  const auto& [kind, is_same_place, seed] = key;
-  const PhotographPair photographs =
-      MakePhotographPair(kind, is_same_place, seed);
-  LookAlikeTrial trial;
+
+// The point matches as `lowlap run` finds them. Starved pairs add points.
+Status MatchAgainFromAside(const std::array<GrayImage, 2>& images,
+                           std::array<DetectedFeatures, 2>* detected,
+                           PairMatches* matches) {
+  const MatchOptions options;
+  const std::map<ViewPair, PairMatches> pair = {
+      {{ViewId(0), ViewId(1)}, *matches}};
+  if (SelectStarvedPairs(pair, options.tilted_points).empty()) return {};
+  std::array<TiltedPoints, 2> tilted;
+  for (std::size_t n = 0; n < 2; ++n) {
+    DetectedFeatures& features = (*detected)[n];
+    RunContext serial;
+    serial.num_threads = 1;
+    LOWLAP_ASSIGN_OR_RETURN(
+        tilted[n],
+        DetectTiltedPoints(images[n],
+                           {features.keypoints, features.point_descriptors},
+                           PointOptions(), TiltOptions(), serial));
+    AddPoints(tilted[n].added, &features);
+  }
+  matches->points =
+      MatchTiltedPoints({(*detected)[0].keypoints, tilted[0].looks},
+                        {(*detected)[1].keypoints, tilted[1].looks},
+                        matches->points, options.tilted_points);
+  return {};
+}
+
+Result<PairEstimate> EstimatePairOf(const PhotographPair& photographs,
+                                    std::uint64_t seed) {
   std::array<DetectedFeatures, 2> detected;
+  for (std::size_t n = 0; n < 2; ++n) {
+    LOWLAP_ASSIGN_OR_RETURN(
+        detected[n], DetectFeatures(photographs.images[n], FeatureOptions()));
+  }
+  PairMatches matches = MatchPair(detected[0], detected[1], MatchOptions());
+  LOWLAP_RETURN_IF_ERROR(
+      MatchAgainFromAside(photographs.images, &detected, &matches));
   std::array<ViewMeasurements, 2> views;
   for (std::size_t n = 0; n < 2; ++n) {
-    auto features = DetectFeatures(photographs.images[n], FeatureOptions());
-    if (!features) {
-      trial.reason = features.error().message;
-      return trial;
-    }
-    detected[n] = std::move(*features);
     const Intrinsic& intrinsic = photographs.intrinsic;
     views[n] = MeasureView(detected[n].features, intrinsic,
                            Vec2(intrinsic.width_px, intrinsic.height_px),
                            &detected[n], VanishingOptions());
   }
-  const PairEstimate estimate = EstimatePair(
-      {ViewId(0), ViewId(1)}, views[0], views[1],
-      MatchPair(detected[0], detected[1], MatchOptions()), PairOptions(), seed);
+  return EstimatePair({ViewId(0), ViewId(1)}, views[0], views[1], matches,
+                      PairOptions(), seed);
+}
+
+std::optional<LookAlikeTrial> RunTrial(const LookAlikeKey& key) {
+  const auto& [kind, is_same_place, seed] = key;
+  const PhotographPair photographs =
+      MakePhotographPair(kind, is_same_place, seed);
+  LookAlikeTrial trial;
+  const auto estimated = EstimatePairOf(photographs, seed);
+  if (!estimated) {
+    trial.reason = estimated.error().message;
+    return trial;
+  }
+  const PairEstimate& estimate = *estimated;
   trial.is_accepted = estimate.pose.has_value();
   trial.reason = estimate.reason;
   if (!trial.is_accepted) return trial;
