@@ -11,6 +11,7 @@ namespace lowlap {
 namespace {
 
 using ::testing::Contains;
+using ::testing::HasSubstr;
 using testing::IsOk;
 using ::testing::Not;
 
@@ -84,6 +85,69 @@ TEST_F(LoneMatchTest, StaysWhereAThirdViewBearsItOut) {
   Relate({{0, 1}, {1, 2}});
   EXPECT_THAT(Inliers({0, 1}), Contains(FeatureMatch{kNear, kNear}));
   EXPECT_THAT(Inliers({1, 2}), Contains(FeatureMatch{kNear, kNear}));
+}
+
+// Three views of a cloud, the first and the last of which share seven places
+// only, each with several matches side by side.
+TEST(WeakPose, CountsOnlyWhereNothingElseJoinsItsViews) {
+  Scene scene;
+  Intrinsic& intrinsic = scene.intrinsics[0];
+  intrinsic.width_px = 1600;
+  intrinsic.height_px = 1200;
+  intrinsic.fx_px = intrinsic.fy_px = 1300;
+  intrinsic.principal_point_px = {800, 600};
+  Random random(4);
+  constexpr FeatureIndex kCloud = 60, kPlaces = 7, kBeside = 9;
+  std::vector<Vec3> points;
+  const auto anywhere = [&]() -> Vec3 {
+    return random.Uniform(4, 9) *
+           Vec3(random.Uniform(-0.4, 0.4), random.Uniform(-0.3, 0.3), 1);
+  };
+  for (FeatureIndex n = 0; n < kCloud; ++n) points.push_back(anywhere());
+  for (FeatureIndex place = 0; place < kPlaces; ++place) {
+    const Vec3 center = anywhere();
+    for (FeatureIndex n = 0; n < kBeside; ++n) {
+      points.push_back(center + 0.01 * Vec3(random.Uniform(-1, 1),
+                                            random.Uniform(-1, 1), 0));
+    }
+  }
+  for (std::uint32_t v = 0; v < 3; ++v) {
+    View& view = scene.views[v];
+    view.filename = std::to_string(v) + ".jpg";
+    view.width_px = 1600;
+    view.height_px = 1200;
+    view.intrinsic_id = 0;
+    view.pose_id = v;
+    for (const Vec3& point : points) {
+      scene.features[v].points_px.push_back(
+          intrinsic.Project(RotationFromAngleAxis(Vec3(0.01, 0.05, -0.02) * v) *
+                            (point - Vec3(0.5, 0.04 * v, 0) * v)) +
+          Vec2(random.Gaussian(0.2), random.Gaussian(0.2)));
+    }
+  }
+  std::map<ViewPair, PairMatches> matches;
+  for (FeatureIndex n = 0; n < kCloud; ++n) {
+    matches[{0, 1}].points.push_back({n, n});
+    matches[{1, 2}].points.push_back({n, n});
+  }
+  for (FeatureIndex n = kCloud; n < points.size(); ++n) {
+    matches[{0, 2}].points.push_back({n, n});
+  }
+  // Wrong matches, without which seven places say enough.
+  for (FeatureIndex n = 0; n < 40; ++n) {
+    matches[{0, 2}].points.push_back({n, (7 * n + 13) % kCloud});
+  }
+  auto reports = EstimateRelativePoses(&scene, matches, nullptr, {}, {});
+  ASSERT_THAT(reports, IsOk());
+  EXPECT_EQ(scene.relative_poses.count({0, 1}), 1u);
+  EXPECT_EQ(scene.relative_poses.count({0, 2}), 0u);
+  EXPECT_FALSE(reports->at(1).accepted);
+  EXPECT_THAT(reports->at(1).reason, HasSubstr("side by side"));
+
+  matches.erase({1, 2});
+  reports = EstimateRelativePoses(&scene, matches, nullptr, {}, {});
+  ASSERT_THAT(reports, IsOk());
+  EXPECT_EQ(scene.relative_poses.count({0, 2}), 1u);
 }
 
 }  // namespace

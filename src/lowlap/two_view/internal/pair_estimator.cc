@@ -193,6 +193,9 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
   pose.line_inliers =
       FilterLineMatches(line_matches, *input.features1, *input.features2,
                         pose.Cam2FromCam1(), options.line_filter);
+  if (pose.covariance) {
+    *pose.covariance += SpreadOfRivals(pose.Cam2FromCam1(), result->rivals);
+  }
   estimate.num_point_inliers = static_cast<int>(pose.point_inliers.size());
   // One pair that cannot be used must not make the scene invalid.
   if (const Status valid = ValidateRelativePose(pose); !valid) {
@@ -200,6 +203,7 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
     return estimate;
   }
   estimate.pose = std::move(pose);
+  estimate.is_weak = !(result->scattered_log10_nfa < 0);
   estimate.lone_matches = std::move(result->lone_matches);
   return estimate;
 }

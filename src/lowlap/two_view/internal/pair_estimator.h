@@ -46,6 +46,8 @@ struct PairEstimate {
   std::string reason;  // why there is none
   /// Point inliers that hold the pose alone (TwoViewResult).
   std::vector<FeatureMatch> lone_matches;
+  /// Matches that lie apart say nothing for the pose, only those side by side.
+  bool is_weak = false;
   /// No pose, since a rotation alone explains what the views see.
   bool no_parallax = false;
   /// Of the pose of least NFA, if any was meaningful.

@@ -11,6 +11,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/two_view/internal/partial_evidence.h"
 #include "lowlap/two_view/internal/planar_motion.h"
 #include "lowlap/two_view/internal/repeat_evidence.h"
 #include "lowlap/two_view/internal/search/pose_from_search.h"
@@ -225,11 +226,22 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   }
   result.pose =
       PoseFromSearch(input, matches, search, *best, &result.lone_matches);
+  for (const PoseCandidate& rival : candidates) {
+    if (!(rival.support.log10_nfa < 0) || SamePose(rival.pose, best->pose) ||
+        (result.geometry == TwoViewGeometry::kAmbiguousPlane &&
+         SamePose(rival.pose, other->pose))) {
+      continue;
+    }
+    result.rivals.push_back(
+        {rival.pose, RivalWeight(best->score - rival.score)});
+  }
   if (result.geometry == TwoViewGeometry::kAmbiguousPlane) {
     result.alternatives.push_back(
         PoseFromSearch(input, matches, search, *other, nullptr));
   }
   if (result.HasDirection()) {
+    result.scattered_log10_nfa =
+        ScatteredEvidence(input, matches, result.pose, options);
     LOWLAP_RETURN_IF_ERROR(DiscountRepeats(input, matches, options, &result));
   }
   return result;

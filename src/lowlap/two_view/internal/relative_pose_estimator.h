@@ -9,6 +9,7 @@
 #include "lowlap/matching/internal/repeats/repeated_pattern.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/relative_pose.h"
+#include "lowlap/two_view/internal/search/rival_spread.h"
 #include "lowlap/two_view/two_view_options.h"
 
 namespace lowlap {
@@ -56,9 +57,15 @@ struct TwoViewResult {
   /// its covariance knows nothing.
   std::vector<FeatureMatch> lone_matches;
   TwoViewGeometry geometry = TwoViewGeometry::kGeneral;
+  /// Other optima of the search, whose spread is part of its covariance.
+  std::vector<RivalPose> rivals;
   /// Other motions that the points cannot exclude (log10 NFA < 0, too); line or
   /// triplet evidence may. Empty unless kAmbiguousPlane.
   std::vector<RelativePose> alternatives;
+
+  /// log10 NFA of `pose` for matches that lie apart (ScatteredEvidence): what
+  /// it means if those side by side are not independent.
+  double scattered_log10_nfa = 0;
 
   // Diagnostics.
   int num_matches = 0;  // usable points and crossings

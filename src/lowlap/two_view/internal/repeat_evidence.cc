@@ -1,9 +1,9 @@
 #include "lowlap/two_view/internal/repeat_evidence.h"
 
-#include <algorithm>
 #include <limits>
+#include <vector>
 
-#include "lowlap/two_view/internal/search/pose_search.h"
+#include "lowlap/two_view/internal/partial_evidence.h"
 
 namespace lowlap {
 namespace {
@@ -32,27 +32,15 @@ std::optional<EvidenceBeyondRepeats> FindEvidenceBeyondRepeats(
       (input.repeats1->IsEmpty() && input.repeats2->IsEmpty())) {
     return std::nullopt;
   }
-  PointPairs others;
-  others.focal1_px = matches.pairs.focal1_px;
-  others.focal2_px = matches.pairs.focal2_px;
+  std::vector<int> others;
   for (int n = 0; n < matches.pairs.size(); ++n) {
-    if (IsRepeated(input, matches, n)) continue;
-    others.x1.push_back(matches.pairs.x1[n]);
-    others.x2.push_back(matches.pairs.x2[n]);
-    others.covariance1.push_back(matches.pairs.Covariance1(n));
-    others.covariance2.push_back(matches.pairs.Covariance2(n));
+    if (!IsRepeated(input, matches, n)) others.push_back(n);
   }
   EvidenceBeyondRepeats evidence;
-  evidence.num_others = others.size();
-  evidence.num_repeated = matches.pairs.size() - others.size();
+  evidence.num_others = static_cast<int>(others.size());
+  evidence.num_repeated = matches.pairs.size() - evidence.num_others;
   if (evidence.num_repeated == 0) return std::nullopt;
-  evidence.log10_nfa = std::numeric_limits<double>::infinity();
-  if (others.size() <= EssentialKernel::kSampleSize) return evidence;
-  TwoViewOptions bounded = options;
-  bounded.max_threshold_px =
-      std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
-  const PoseSearch search(others, {}, SampsonLaw(input), bounded);
-  evidence.log10_nfa = search.SupportOf(pose.Cam2FromCam1()).log10_nfa;
+  evidence.log10_nfa = EvidenceOfSome(input, matches, others, pose, options);
   return evidence;
 }
 

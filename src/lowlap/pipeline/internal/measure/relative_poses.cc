@@ -7,6 +7,7 @@
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -90,6 +91,35 @@ void LogPairsWithoutParallax(const Scene& scene,
                   names + (count > kMaxNamed ? ", ..." : ""));
 }
 
+// Weak poses count where nothing else joins their views: those within one
+// component of the others are dropped.
+void DropWeakPoses(std::vector<PairEstimate>* estimates) {
+  Scene others;
+  for (const PairEstimate& estimate : *estimates) {
+    if (estimate.pose && !estimate.is_weak) {
+      others.relative_poses[estimate.pose->views] = *estimate.pose;
+    }
+  }
+  std::map<ViewId, std::size_t> component_of;
+  const auto components = ConnectedComponents(ViewGraph(others));
+  for (std::size_t n = 0; n < components.size(); ++n) {
+    for (const ViewId view : components[n]) component_of[view] = n;
+  }
+  for (PairEstimate& estimate : *estimates) {
+    if (!estimate.pose || !estimate.is_weak) continue;
+    const auto first = component_of.find(estimate.pose->views.first);
+    const auto second = component_of.find(estimate.pose->views.second);
+    if (first == component_of.end() || second == component_of.end() ||
+        first->second != second->second) {
+      continue;
+    }
+    estimate.pose.reset();
+    estimate.reason =
+        "only matches side by side agree with a motion, which things that look "
+        "alike do, too; other relative poses join the views";
+  }
+}
+
 using MatchesOfPairs = std::map<ViewPair, std::vector<FeatureMatch>>;
 
 // The tracks of the relative poses' inliers. Matches that hold a relative pose
@@ -155,6 +185,7 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
       });
   if (!done) return tl::unexpected<Error>(done.error());
 
+  DropWeakPoses(&estimates);
   scene->relative_poses.clear();
   std::vector<PairReport> reports;
   MatchesOfPairs lone_matches;

@@ -1,0 +1,58 @@
+#include "lowlap/two_view/internal/partial_evidence.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "lowlap/two_view/internal/search/pose_search.h"
+
+namespace lowlap {
+namespace {
+
+constexpr double kApartShare = 0.02;
+
+}  // namespace
+
+double EvidenceOfSome(const TwoViewInput& input, const ShuffledMatches& matches,
+                      const std::vector<int>& some, const RelativePose& pose,
+                      const TwoViewOptions& options) {
+  if (some.size() <= EssentialKernel::kSampleSize) {
+    return std::numeric_limits<double>::infinity();
+  }
+  PointPairs pairs;
+  pairs.focal1_px = matches.pairs.focal1_px;
+  pairs.focal2_px = matches.pairs.focal2_px;
+  for (const int n : some) {
+    pairs.x1.push_back(matches.pairs.x1[n]);
+    pairs.x2.push_back(matches.pairs.x2[n]);
+    pairs.covariance1.push_back(matches.pairs.Covariance1(n));
+    pairs.covariance2.push_back(matches.pairs.Covariance2(n));
+  }
+  TwoViewOptions bounded = options;
+  bounded.max_threshold_px =
+      std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
+  const PoseSearch search(pairs, {}, SampsonLaw(input), bounded);
+  return search.SupportOf(pose.Cam2FromCam1()).log10_nfa;
+}
+
+double ScatteredEvidence(const TwoViewInput& input,
+                         const ShuffledMatches& matches,
+                         const RelativePose& pose,
+                         const TwoViewOptions& options) {
+  const PointPairs& pairs = matches.pairs;
+  const double apart1 =
+      kApartShare * input.image_size1_px.mean() / pairs.focal1_px;
+  const double apart2 =
+      kApartShare * input.image_size2_px.mean() / pairs.focal2_px;
+  std::vector<int> scattered;
+  for (int n = 0; n < pairs.size(); ++n) {
+    const bool is_apart =
+        std::none_of(scattered.begin(), scattered.end(), [&](int other) {
+          return (pairs.x1[n] - pairs.x1[other]).norm() < apart1 &&
+                 (pairs.x2[n] - pairs.x2[other]).norm() < apart2;
+        });
+    if (is_apart) scattered.push_back(n);
+  }
+  return EvidenceOfSome(input, matches, scattered, pose, options);
+}
+
+}  // namespace lowlap
