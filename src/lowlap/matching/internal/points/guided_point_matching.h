@@ -27,8 +27,8 @@ struct PointView {
 /// whole image; what is lost is that an accidental nearest stands alone, so
 /// the descriptor must also be nearer than to a sample of points taken
 /// regardless of the geometry. Both tests hold from either image, and matches
-/// are mutual; sorted by the first index, every feature at most once. Points that
-/// only tilted images show (Keypoint::tilt) take no part.
+/// are mutual; sorted by the first index, every feature at most once. Points
+/// that only tilted images show (Keypoint::tilt) take no part.
 ///
 /// Points within a degree of an epipole have no depth and are left out.
 /// Descriptor distances are exact, in integers. With c candidates per point
