@@ -61,6 +61,7 @@ struct Quality {
 Quality Measure(Scene scene) {
   MeasurementOptions options;
   options.pairs = "cycle";
+  options.features.tilts.max_tilt = 1;  // features as they are detected
   StageLog stages;
   Quality quality;
   EXPECT_THAT(MeasureImages(&scene, options, {}, &stages), IsOk());
