@@ -170,11 +170,13 @@ void AddMerge(CLI::App* program, Action* action) {
   PhotographFlags& photographs = flags->photographs;
   AddIntrinsicsFlags(command, &photographs.intrinsics);
   AddPairsFlag(command, &photographs.pairs, "Pairs of --images to match");
+  AddMaxTiltFlag(command, &photographs.choices.max_tilt);
   AddOption(command, "--cache", photographs.cache,
             "Folder of features and matches of --images to use again; without "
             "it none is kept");
   // What was measured before has pairs, matches and intrinsics of its own.
-  for (const char* name : {"--intrinsics", "--focal", "--pairs", "--cache"}) {
+  for (const char* name :
+       {"--intrinsics", "--focal", "--pairs", "--max-tilt", "--cache"}) {
     FindOption(command, name).Excludes(scene).Excludes(database);
   }
   AddOption(command, "--exclude", flags->measured.exclude,

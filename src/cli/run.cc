@@ -64,11 +64,7 @@ void AddRun(CLI::App* program, Action* action) {
             "faster where photographs have hundreds of thousands of points)")
       .Must(Check::OneOf({"exact", "flann"}))
       .ShowDefault();
-  AddOption(command, "--max-tilt", photographs.choices.max_tilt,
-            "Pairs with few matches are matched again by what their "
-            "photographs show from aside, compressed by up to this (1 to 16; "
-            "1: not at all)")
-      .ShowDefault();
+  AddMaxTiltFlag(command, &photographs.choices.max_tilt);
   AddOption(command, "--exclude", photographs.exclude,
             "Photographs to leave out, separated by commas")
       .SeparatedBy(',');

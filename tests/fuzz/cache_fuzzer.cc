@@ -4,8 +4,8 @@
 #include <system_error>
 
 #include "fuzz_input.h"
-#include "lowlap/pipeline/internal/measure/cache_folder.h"
-#include "lowlap/pipeline/internal/measure/measurement_bytes.h"
+#include "lowlap/pipeline/internal/measure/cache/cache_folder.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_bytes.h"
 
 namespace {
 
@@ -21,6 +21,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data,
   const std::string_view bytes = fuzz::Bytes(data, size);
   const auto features = FeaturesFromBytes(bytes);
   if (features) Check(ToBytes(*features) == bytes);
+  const auto tilted = TiltedPointsFromBytes(bytes);
+  if (tilted) Check(ToBytes(*tilted) == bytes);
   const auto matches = MatchesFromBytes(bytes);
   if (matches) Check(ToBytes(*matches) == bytes);
   const fuzz::InputFolder folder(bytes);

@@ -10,10 +10,10 @@
 #include <sstream>
 
 #include "lowlap/pipeline/image_collection.h"
-#include "lowlap/pipeline/internal/measure/cache_folder.h"
+#include "lowlap/pipeline/internal/measure/cache/cache_folder.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_bytes.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_key.h"
 #include "lowlap/pipeline/internal/measure/image_measurements.h"
-#include "lowlap/pipeline/internal/measure/measurement_bytes.h"
-#include "lowlap/pipeline/internal/measure/measurement_key.h"
 #include "lowlap/pipeline/measure_images.h"
 #include "support/matchers.h"
 #include "support/synthetic_image.h"

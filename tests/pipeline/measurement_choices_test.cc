@@ -24,11 +24,10 @@ TEST(MeasurementChoices, AreTheDefaultsUnlessSaidOtherwise) {
   EXPECT_TRUE(options.matching.match_lines);
 }
 
-TEST(MeasurementChoices, AllPassesOfMatchingAreOfOneKind) {
+TEST(MeasurementChoices, BothPassesOfMatchingAreOfOneKind) {
   const MeasurementOptions options = OptionsOf({"flann", {"points"}});
   EXPECT_EQ(options.matching.points.matcher, PointMatcher::kFlann);
   EXPECT_EQ(options.matching.relaxed_points.matcher, PointMatcher::kFlann);
-  EXPECT_EQ(options.matching.tilted_points.matcher, PointMatcher::kFlann);
 }
 
 TEST(MeasurementChoices, BoundTheTilt) {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "support/matchers.h"
@@ -15,42 +17,53 @@ using ::testing::HasSubstr;
 using testing::IsOk;
 using ::testing::Not;
 
+// Three views, each turned a little further, with all of the points in each.
+Scene SceneOf(const std::vector<Vec3>& points,
+              const std::array<Vec3, 3>& centers, double noise_px) {
+  Scene scene;
+  Intrinsic& intrinsic = scene.intrinsics[0];
+  intrinsic.width_px = 1600;
+  intrinsic.height_px = 1200;
+  intrinsic.fx_px = intrinsic.fy_px = 1300;
+  intrinsic.principal_point_px = {800, 600};
+  Random random(1);
+  for (std::uint32_t v = 0; v < 3; ++v) {
+    View& view = scene.views[v];
+    view.filename = std::to_string(v) + ".jpg";
+    view.width_px = 1600;
+    view.height_px = 1200;
+    view.intrinsic_id = 0;
+    view.pose_id = v;
+    const Mat3 cam_from_world =
+        RotationFromAngleAxis(Vec3(0.01, 0.05, -0.02) * v);
+    for (const Vec3& point : points) {
+      scene.features[v].points_px.push_back(
+          intrinsic.Project(cam_from_world * (point - centers[v])) +
+          Vec2(random.Gaussian(noise_px), random.Gaussian(noise_px)));
+    }
+  }
+  return scene;
+}
+
+Vec3 Anywhere(Random* random) {
+  return random->Uniform(4, 9) *
+         Vec3(random->Uniform(-0.4, 0.4), random->Uniform(-0.3, 0.3), 1);
+}
+
 constexpr int kFarPoints = 30;
 constexpr FeatureIndex kNear = kFarPoints;
 
-// Three views of a far cloud, and of one near point that tells more of the
-// directions between them than all the others.
+// A far cloud, and one near point that tells more of the directions between the
+// views than all the others.
 class LoneMatchTest : public ::testing::Test {
  protected:
   LoneMatchTest() {
-    Intrinsic& intrinsic = scene_.intrinsics[0];
-    intrinsic.width_px = 1600;
-    intrinsic.height_px = 1200;
-    intrinsic.fx_px = intrinsic.fy_px = 1300;
-    intrinsic.principal_point_px = {800, 600};
-    const Vec3 centers[] = {{0, 0, 0}, {0.3, 0, 0}, {0.6, 0.08, 0}};
     Random random(1);
-    for (std::uint32_t v = 0; v < 3; ++v) {
-      View& view = scene_.views[v];
-      view.filename = std::to_string(v) + ".jpg";
-      view.width_px = 1600;
-      view.height_px = 1200;
-      view.intrinsic_id = 0;
-      view.pose_id = v;
-    }
-    for (int n = 0; n <= kFarPoints; ++n) {
-      const Vec3 far =
-          random.Uniform(4, 9) *
-          Vec3(random.Uniform(-0.4, 0.4), random.Uniform(-0.3, 0.3), 1);
-      const Vec3 point = n == kFarPoints ? 0.8 * Vec3(0.35, 0, 1) : far;
-      for (std::uint32_t v = 0; v < 3; ++v) {
-        const Mat3 cam_from_world =
-            RotationFromAngleAxis(Vec3(0.01, 0.05, -0.02) * v);
-        scene_.features[v].points_px.push_back(
-            intrinsic.Project(cam_from_world * (point - centers[v])) +
-            Vec2(random.Gaussian(0.1), random.Gaussian(0.1)));
-      }
-    }
+    std::vector<Vec3> points;
+    for (int n = 0; n < kFarPoints; ++n) points.push_back(Anywhere(&random));
+    points.push_back(0.8 * Vec3(0.35, 0, 1));
+    scene_ = SceneOf(points,
+                     {Vec3(0, 0, 0), Vec3(0.3, 0, 0), Vec3(0.6, 0.08, 0)}, 0.1);
   }
 
   void Relate(const std::vector<ViewPair>& pairs) {
@@ -87,44 +100,22 @@ TEST_F(LoneMatchTest, StaysWhereAThirdViewBearsItOut) {
   EXPECT_THAT(Inliers({1, 2}), Contains(FeatureMatch{kNear, kNear}));
 }
 
-// Three views of a cloud, the first and the last of which share seven places
-// only, each with several matches side by side.
+// The first and the last view share seven places of a cloud only, each with
+// several matches side by side.
 TEST(WeakPose, CountsOnlyWhereNothingElseJoinsItsViews) {
-  Scene scene;
-  Intrinsic& intrinsic = scene.intrinsics[0];
-  intrinsic.width_px = 1600;
-  intrinsic.height_px = 1200;
-  intrinsic.fx_px = intrinsic.fy_px = 1300;
-  intrinsic.principal_point_px = {800, 600};
   Random random(4);
   constexpr FeatureIndex kCloud = 60, kPlaces = 7, kBeside = 9;
   std::vector<Vec3> points;
-  const auto anywhere = [&]() -> Vec3 {
-    return random.Uniform(4, 9) *
-           Vec3(random.Uniform(-0.4, 0.4), random.Uniform(-0.3, 0.3), 1);
-  };
-  for (FeatureIndex n = 0; n < kCloud; ++n) points.push_back(anywhere());
+  for (FeatureIndex n = 0; n < kCloud; ++n) points.push_back(Anywhere(&random));
   for (FeatureIndex place = 0; place < kPlaces; ++place) {
-    const Vec3 center = anywhere();
+    const Vec3 center = Anywhere(&random);
     for (FeatureIndex n = 0; n < kBeside; ++n) {
       points.push_back(center + 0.01 * Vec3(random.Uniform(-1, 1),
                                             random.Uniform(-1, 1), 0));
     }
   }
-  for (std::uint32_t v = 0; v < 3; ++v) {
-    View& view = scene.views[v];
-    view.filename = std::to_string(v) + ".jpg";
-    view.width_px = 1600;
-    view.height_px = 1200;
-    view.intrinsic_id = 0;
-    view.pose_id = v;
-    for (const Vec3& point : points) {
-      scene.features[v].points_px.push_back(
-          intrinsic.Project(RotationFromAngleAxis(Vec3(0.01, 0.05, -0.02) * v) *
-                            (point - Vec3(0.5, 0.04 * v, 0) * v)) +
-          Vec2(random.Gaussian(0.2), random.Gaussian(0.2)));
-    }
-  }
+  Scene scene = SceneOf(
+      points, {Vec3(0, 0, 0), Vec3(0.5, 0.04, 0), Vec3(1, 0.16, 0)}, 0.2);
   std::map<ViewPair, PairMatches> matches;
   for (FeatureIndex n = 0; n < kCloud; ++n) {
     matches[{0, 1}].points.push_back({n, n});

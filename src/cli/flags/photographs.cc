@@ -16,6 +16,14 @@ Option AddPairsFlag(CLI::App* command, std::string* pairs,
       .ShowDefault();
 }
 
+Option AddMaxTiltFlag(CLI::App* command, double* max_tilt) {
+  return AddOption(command, "--max-tilt", *max_tilt,
+                   "Pairs with few matches are matched again by what their "
+                   "photographs show from aside, compressed by up to this (1 "
+                   "to 16; 1: not at all)")
+      .ShowDefault();
+}
+
 Result<Scene> OpenPhotographs(const PhotographFlags& flags,
                               const RunContext& context) {
   LOWLAP_ASSIGN_OR_RETURN(const auto intrinsics,

@@ -28,6 +28,9 @@ struct PhotographFlags {
 Option AddPairsFlag(CLI::App* command, std::string* pairs,
                     const std::string& help);
 
+/// --max-tilt.
+Option AddMaxTiltFlag(CLI::App* command, double* max_tilt);
+
 /// Their views (SceneFromImages); what must be known about the intrinsics goes
 /// to the log.
 Result<Scene> OpenPhotographs(const PhotographFlags& flags,

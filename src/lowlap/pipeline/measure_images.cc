@@ -9,7 +9,7 @@
 #include "lowlap/matching/internal/pair_retrieval.h"
 #include "lowlap/matching/internal/pair_selection.h"
 #include "lowlap/matching/internal/points/subpixel_refinement.h"
-#include "lowlap/pipeline/internal/measure/cached_measurements.h"
+#include "lowlap/pipeline/internal/measure/cache/cached_measurements.h"
 #include "lowlap/pipeline/internal/measure/image_measurements.h"
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
 #include "lowlap/pipeline/internal/measure/tilted_measurements.h"

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lowlap/core/result.h"
-#include "lowlap/matching/match_options.h"
+#include "lowlap/matching/guided_match_options.h"
 
 namespace lowlap {
 

@@ -97,6 +97,22 @@ Result<DetectedFeatures> DetectFeatures(const GrayImage& image,
   return detected;
 }
 
+Result<GrayImage> DecodeImageOfView(const Scene& scene, ViewId id,
+                                    const std::string& image_bytes) {
+  const std::string path = scene.ImagePath(id);
+  LOWLAP_ASSIGN_OR_RETURN(GrayImage image, DecodeGrayImage(image_bytes, path));
+  const View& view = scene.views.at(id);
+  if (image.width != view.width_px || image.height != view.height_px) {
+    return MakeError(ErrorCode::kInvalidScene,
+                     "the image has " + std::to_string(image.width) + " x " +
+                         std::to_string(image.height) + " pixels, its view " +
+                         std::to_string(view.width_px) + " x " +
+                         std::to_string(view.height_px),
+                     path, "view " + std::to_string(id.value()));
+  }
+  return image;
+}
+
 Result<DetectedFeatures> DetectFeaturesOfView(const Scene& scene, ViewId id,
                                               const std::string& image_bytes,
                                               const FeatureOptions& options) {
@@ -108,16 +124,7 @@ Result<DetectedFeatures> DetectFeaturesOfView(const Scene& scene, ViewId id,
         CheckMemoryOfPoints(size.width_px, size.height_px, path));
   }
   LOWLAP_ASSIGN_OR_RETURN(const GrayImage image,
-                          DecodeGrayImage(image_bytes, path));
-  const View& view = scene.views.at(id);
-  if (image.width != view.width_px || image.height != view.height_px) {
-    return MakeError(ErrorCode::kInvalidScene,
-                     "the image has " + std::to_string(image.width) + " x " +
-                         std::to_string(image.height) + " pixels, its view " +
-                         std::to_string(view.width_px) + " x " +
-                         std::to_string(view.height_px),
-                     path, "view " + std::to_string(id.value()));
-  }
+                          DecodeImageOfView(scene, id, image_bytes));
   const Intrinsic* intrinsic = scene.FindIntrinsic(id);
   Result<DetectedFeatures> features =
       intrinsic ? DetectFeatures(image, *intrinsic, options)
@@ -126,18 +133,15 @@ Result<DetectedFeatures> DetectFeaturesOfView(const Scene& scene, ViewId id,
   return features;
 }
 
-int DetectionThreads(const Scene& scene, const FeatureOptions& options,
-                     const RunContext& context) {
-  if (!options.detect_points) return context.ThreadCount();
+RunContext WithinMemory(const Scene& scene, const FeatureOptions& options,
+                        const RunContext& context) {
+  if (!options.detect_points) return context;
   double largest_px = 1;
   for (const auto& [id, view] : scene.views) {
     largest_px = std::max(largest_px,
                           static_cast<double>(view.width_px) * view.height_px);
   }
-  const double fit =
-      options.max_memory_gb * 1e9 / (kPointBytesPerPixel * largest_px);
-  return static_cast<int>(
-      std::clamp(fit, 1.0, static_cast<double>(context.ThreadCount())));
+  return WithinPointMemory(context, largest_px, options.max_memory_gb);
 }
 
 Result<std::map<ViewId, DetectedFeatures>> DetectFeatures(
@@ -147,8 +151,7 @@ Result<std::map<ViewId, DetectedFeatures>> DetectFeatures(
   std::vector<ViewId> ids;
   for (const auto& [id, view] : scene.views) ids.push_back(id);
   std::vector<std::optional<Result<DetectedFeatures>>> results(ids.size());
-  RunContext limited = context;
-  limited.num_threads = DetectionThreads(scene, options, context);
+  const RunContext limited = WithinMemory(scene, options, context);
   const ReusedImageMemory reused_memory;
   const Status done =
       ParallelFor(limited, "features", ids.size(), [&](std::size_t i) {

@@ -37,15 +37,20 @@ Result<DetectedFeatures> DetectFeatures(const GrayImage& image,
                                         const Intrinsic& intrinsic,
                                         const FeatureOptions& options);
 
+/// The image of a view from its file's bytes; one whose size is not that of the
+/// view is kInvalidScene.
+Result<GrayImage> DecodeImageOfView(const Scene& scene, ViewId id,
+                                    const std::string& image_bytes);
+
 /// The features of one view from its image file's bytes. kUnsupported: an image
 /// whose points take more memory than the machine has.
 Result<DetectedFeatures> DetectFeaturesOfView(const Scene& scene, ViewId id,
                                               const std::string& image_bytes,
                                               const FeatureOptions& options);
 
-/// As many threads as max_memory_gb leaves room for, at most the context's.
-int DetectionThreads(const Scene& scene, const FeatureOptions& options,
-                     const RunContext& context);
+/// The context with as many threads as max_memory_gb leaves room for.
+RunContext WithinMemory(const Scene& scene, const FeatureOptions& options,
+                        const RunContext& context);
 
 /// Reads the images of all views of the scene (Scene::ImagePath) and detects
 /// their features, one image per thread. An image whose size is not that of

@@ -44,17 +44,25 @@ RigidPiece MainGroup(const std::vector<RigidPiece>& groups,
   return best;
 }
 
-// What was measured between the views of a piece and all others.
+// What was measured between the views of a piece and all others, or among them
+// where there are no others.
 std::string EvidenceAcross(const Scene& scene, const RigidPiece& piece,
                            const std::set<ViewPair>& agreeing) {
   const std::set<ViewId> inside(piece.views.begin(), piece.views.end());
   const auto is_inside = [&](ViewId view) { return inside.count(view) > 0; };
+  const bool has_others = inside.size() < scene.views.size();
   int num_pairs = 0, num_agreeing = 0;
   for (const auto& entry : scene.relative_poses) {
     const ViewPair& views = entry.first;
-    if (is_inside(views.first) == is_inside(views.second)) continue;
+    if (has_others && is_inside(views.first) == is_inside(views.second)) {
+      continue;
+    }
     ++num_pairs;
     num_agreeing += static_cast<int>(agreeing.count(views));
+  }
+  if (!has_others) {
+    return Format("of the %d relative poses between them only %d agree",
+                  num_pairs, num_agreeing);
   }
   if (num_pairs == 0) return "no relative pose joins them to any other view";
   int num_ratios = 0, num_meaningful = 0;
@@ -111,7 +119,7 @@ Status CheckTies(const Scene& scene, const PoseSummary& summary,
     if (IsIn(trusted, together)) continue;
     reasons += (reasons.empty() ? "" : "\n") + models[trusted.model].name +
                ": nothing fixes the place and the scale of " +
-               NamesOf(scene, trusted.piece.views) + " among the others: " +
+               NamesOf(scene, trusted.piece.views) + ": " +
                EvidenceAcross(scene, trusted.piece, agreeing);
   }
   if (reasons.empty()) return {};

@@ -92,6 +92,29 @@ std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
   return search.Finish(*motion);
 }
 
+// The other candidates that are meaningful.
+std::vector<RivalPose> RivalsOf(const PoseCandidate& best,
+                                const std::vector<PoseCandidate>& candidates) {
+  std::vector<RivalPose> rivals;
+  for (const PoseCandidate& candidate : candidates) {
+    if (candidate.support.log10_nfa < 0 &&
+        !SamePose(candidate.pose, best.pose)) {
+      rivals.push_back(
+          {candidate.pose, RivalWeight(best.score - candidate.score)});
+    }
+  }
+  return rivals;
+}
+
+void RemoveSamePose(const RigidTransform& pose,
+                    std::vector<RivalPose>* rivals) {
+  rivals->erase(std::remove_if(rivals->begin(), rivals->end(),
+                               [&](const RivalPose& rival) {
+                                 return SamePose(rival.pose, pose);
+                               }),
+                rivals->end());
+}
+
 // Lets the poses count for what does not repeat (FindEvidenceBeyondRepeats).
 Status DiscountRepeats(const TwoViewInput& input,
                        const ShuffledMatches& matches,
@@ -226,16 +249,10 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   }
   result.pose =
       PoseFromSearch(input, matches, search, *best, &result.lone_matches);
-  for (const PoseCandidate& rival : candidates) {
-    if (!(rival.support.log10_nfa < 0) || SamePose(rival.pose, best->pose) ||
-        (result.geometry == TwoViewGeometry::kAmbiguousPlane &&
-         SamePose(rival.pose, other->pose))) {
-      continue;
-    }
-    result.rivals.push_back(
-        {rival.pose, RivalWeight(best->score - rival.score)});
-  }
+  result.rivals = RivalsOf(*best, candidates);
   if (result.geometry == TwoViewGeometry::kAmbiguousPlane) {
+    // What triplets and cycles may decide for does not widen this motion.
+    RemoveSamePose(other->pose, &result.rivals);
     result.alternatives.push_back(
         PoseFromSearch(input, matches, search, *other, nullptr));
   }

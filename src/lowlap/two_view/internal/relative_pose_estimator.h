@@ -57,7 +57,8 @@ struct TwoViewResult {
   /// its covariance knows nothing.
   std::vector<FeatureMatch> lone_matches;
   TwoViewGeometry geometry = TwoViewGeometry::kGeneral;
-  /// Other optima of the search, whose spread is part of its covariance.
+  /// Other optima of the search. Of their spread the covariance of `pose` knows
+  /// nothing; EstimatePair adds it.
   std::vector<RivalPose> rivals;
   /// Other motions that the points cannot exclude (log10 NFA < 0, too); line or
   /// triplet evidence may. Empty unless kAmbiguousPlane.
@@ -107,8 +108,8 @@ struct TwoViewResult {
 ///
 /// Errors: kInsufficientData when fewer than 6 points and crossings are usable
 /// or no pose has log10 NFA < 0, with what repeats or without (the message says
-/// which); kInvalidArgument for
-/// matches that refer to features that do not exist, or empty images.
+/// which); kInvalidArgument for matches that refer to features that do not
+/// exist, or empty images.
 Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
                                            const TwoViewOptions& options,
                                            std::uint64_t seed);

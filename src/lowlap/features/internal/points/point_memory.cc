@@ -34,4 +34,13 @@ Status CheckMemoryOfPoints(int width_px, int height_px,
                    path);
 }
 
+RunContext WithinPointMemory(const RunContext& context, double pixels,
+                             double max_memory_gb) {
+  RunContext limited = context;
+  limited.num_threads = static_cast<int>(
+      std::clamp(max_memory_gb * 1e9 / (kPointBytesPerPixel * pixels), 1.0,
+                 static_cast<double>(context.ThreadCount())));
+  return limited;
+}
+
 }  // namespace lowlap

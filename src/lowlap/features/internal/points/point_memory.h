@@ -3,6 +3,7 @@
 #include <string>
 
 #include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
 
 namespace lowlap {
 
@@ -13,5 +14,10 @@ inline constexpr double kPointBytesPerPixel = 240;
 /// the machine has, or than the process may take.
 Status CheckMemoryOfPoints(int width_px, int height_px,
                            const std::string& path);
+
+/// The context with as many threads as may detect points in images of so many
+/// pixels at once, at least one.
+RunContext WithinPointMemory(const RunContext& context, double pixels,
+                             double max_memory_gb);
 
 }  // namespace lowlap

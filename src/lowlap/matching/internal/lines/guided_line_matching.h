@@ -5,8 +5,8 @@
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
 #include "lowlap/geometry/rigid_transform.h"
+#include "lowlap/matching/guided_match_options.h"
 #include "lowlap/matching/internal/lines/line_matching.h"
-#include "lowlap/matching/match_options.h"
 #include "lowlap/scene/features.h"
 
 namespace lowlap {

@@ -6,7 +6,7 @@
 #include "lowlap/core/result.h"
 #include "lowlap/features/internal/points/point_detector.h"
 #include "lowlap/geometry/rigid_transform.h"
-#include "lowlap/matching/match_options.h"
+#include "lowlap/matching/guided_match_options.h"
 #include "lowlap/scene/features.h"
 
 namespace lowlap {

@@ -41,14 +41,10 @@ struct NearestPlaces {
 };
 
 std::vector<NearestPlaces> FindNearestPlaces(
-    const std::vector<PointDescriptor>& queries, const TiltedView& view,
-    PointMatcher matcher) {
-  const auto find = matcher == PointMatcher::kFlann
-                        ? FindNearestTwoApproximately
-                        : FindNearestTwo;
+    const std::vector<PointDescriptor>& queries, const TiltedView& view) {
   std::vector<std::vector<NearestTwo>> found;
   for (const TiltedPoints::Look& look : view.looks) {
-    found.push_back(find(queries, look.descriptors));
+    found.push_back(FindNearestTwo(queries, look.descriptors));
   }
   std::vector<NearestPlaces> result(queries.size());
   for (std::size_t n = 0; n < queries.size(); ++n) {
@@ -113,7 +109,7 @@ std::vector<FeatureMatch> MatchTiltedPoints(
                    look.descriptors.end());
     points.insert(points.end(), look.points.begin(), look.points.end());
   }
-  const auto forward = FindNearestPlaces(queries, second, options.matcher);
+  const auto forward = FindNearestPlaces(queries, second);
   std::vector<PointDescriptor> targets;
   std::vector<LookMatch> candidates;
   for (std::size_t n = 0; n < queries.size(); ++n) {
@@ -122,7 +118,7 @@ std::vector<FeatureMatch> MatchTiltedPoints(
     candidates.push_back({nearest.Ratio(), {points[n], nearest.point}});
     targets.push_back(second.looks[nearest.look].descriptors[nearest.row]);
   }
-  const auto backward = FindNearestPlaces(targets, first, options.matcher);
+  const auto backward = FindNearestPlaces(targets, first);
   std::vector<LookMatch> mutual;
   for (std::size_t n = 0; n < candidates.size(); ++n) {
     const double ratio = backward[n].Ratio();

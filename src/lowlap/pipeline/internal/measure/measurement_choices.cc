@@ -33,7 +33,6 @@ Status SetChoices(const MeasurementChoices& choices, const ScaleOptions& scale,
       choices.matcher == "flann" ? PointMatcher::kFlann : PointMatcher::kExact;
   options->matching.points.matcher = matcher;
   options->matching.relaxed_points.matcher = matcher;
-  options->matching.tilted_points.matcher = matcher;
   options->features.tilts.max_tilt = choices.max_tilt;
   LOWLAP_RETURN_IF_ERROR(options->features.tilts.Validate());
   PairOptions& pair = options->relative_poses.pair;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/image_memory.h"
@@ -13,9 +14,9 @@
 #include "lowlap/features/internal/points/tilted_points.h"
 #include "lowlap/matching/internal/points/tilted_matching.h"
 #include "lowlap/matching/internal/starved_pairs.h"
-#include "lowlap/pipeline/internal/measure/measurement_bytes.h"
-#include "lowlap/pipeline/internal/measure/measurement_cache.h"
-#include "lowlap/pipeline/internal/measure/measurement_key.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_bytes.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_cache.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_key.h"
 
 namespace lowlap {
 namespace {
@@ -37,17 +38,30 @@ auto FindOrMake(std::optional<MeasurementCache>& cache,
   return made;
 }
 
-RunContext WithinMemory(const GrayImage& image, const FeatureOptions& options,
-                        const RunContext& context) {
-  // The least tilt takes the most, turned by 45 degrees.
+// The least tilt takes the most memory, turned by 45 degrees.
+constexpr double kLargestTilted = 1.5;
+
+// `key` is that of the features, with a cache.
+Result<TiltedPoints> DetectInView(const Scene& scene, ViewId view,
+                                  const DetectedFeatures& untilted,
+                                  const std::optional<Hash128::Value>& key,
+                                  const FeatureOptions& options,
+                                  const RunContext& context) {
+  const std::string path = scene.ImagePath(view);
+  LOWLAP_ASSIGN_OR_RETURN(const std::string bytes, ReadWholeFile(path));
+  if (key && FeatureKey(bytes, scene.FindIntrinsic(view), options) != *key) {
+    return MakeError(ErrorCode::kIo, "the photograph changed during the run",
+                     path);
+  }
+  LOWLAP_ASSIGN_OR_RETURN(const GrayImage image,
+                          DecodeImageOfView(scene, view, bytes));
   const double side_px =
       std::min(std::max(image.width, image.height), options.tilts.max_side_px);
-  const double fit = options.max_memory_gb * 1e9 /
-                     (kPointBytesPerPixel * 1.5 * side_px * side_px);
-  RunContext limited = context;
-  limited.num_threads = static_cast<int>(
-      std::clamp(fit, 1.0, static_cast<double>(context.ThreadCount())));
-  return limited;
+  return DetectTiltedPoints(
+      image, {untilted.keypoints, untilted.point_descriptors}, options.points,
+      options.tilts,
+      WithinPointMemory(context, kLargestTilted * side_px * side_px,
+                        options.max_memory_gb));
 }
 
 // One view after the other, each with all threads.
@@ -66,14 +80,14 @@ Result<std::map<ViewId, TiltedOfView>> DetectInViews(
   for (auto& entry : tilted) {
     const ViewId view = entry.first;
     TiltedOfView& of_view = entry.second;
-    if (cache) of_view.key = TiltedKey(detected.keys.at(view), options.tilts);
-    const auto detect = [&]() -> Result<TiltedPoints> {
-      LOWLAP_ASSIGN_OR_RETURN(const GrayImage image,
-                              ReadGrayImage(scene.ImagePath(view)));
-      const DetectedFeatures& untilted = detected.features.at(view);
-      return DetectTiltedPoints(
-          image, {untilted.keypoints, untilted.point_descriptors},
-          options.points, options.tilts, WithinMemory(image, options, context));
+    std::optional<Hash128::Value> key;
+    if (cache) {
+      key = detected.keys.at(view);
+      of_view.key = TiltedKey(*key, options.tilts);
+    }
+    const auto detect = [&] {
+      return DetectInView(scene, view, detected.features.at(view), key, options,
+                          context);
     };
     LOWLAP_ASSIGN_OR_RETURN(
         of_view.points,

@@ -5,8 +5,8 @@
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/matching/internal/matching.h"
-#include "lowlap/pipeline/internal/measure/cache_folder.h"
-#include "lowlap/pipeline/internal/measure/cached_measurements.h"
+#include "lowlap/pipeline/internal/measure/cache/cache_folder.h"
+#include "lowlap/pipeline/internal/measure/cache/cached_measurements.h"
 #include "lowlap/pipeline/measure_images.h"
 #include "lowlap/scene/scene.h"
 

@@ -7,8 +7,8 @@
 namespace lowlap {
 namespace {
 
-// A quarter of what tells two motions apart (ten points that fit one perfectly
-// and the other not at all): noise alone reaches half of that, rarely.
+// A quarter of what tells the two motions of a plane apart (kDecisiveScore, ten
+// digits), of which noise alone reaches half at most.
 constexpr double kScoreNoiseDigits = 2.5;
 
 }  // namespace

@@ -15,8 +15,8 @@ struct RivalPose {
 };
 
 /// The weight of a motion whose score (PoseCandidate) is so many decimal digits
-/// less than that of the best, which noise moves by kScoreNoiseDigits:
-/// Phi(-deficit / kScoreNoiseDigits).
+/// less than that of the best, which noise moves by 2.5 digits:
+/// Phi(-deficit / 2.5).
 double RivalWeight(double deficit_digits);
 
 /// By how much `other` is off from `pose`: rotation in radians, in camera 2;

@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/measure/measurement_key.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_key.h"
 
 namespace lowlap {
 namespace {
@@ -104,8 +104,7 @@ Hash128::Value TiltedMatchKey(const Hash128::Value& first,
                               const Hash128::Value& second,
                               const Hash128::Value& matches,
                               const TiltedPointOptions& options) {
-  const auto& [starved_below, enough_pairs, max_partners, max_ratio, matcher] =
-      options;
+  const auto& [starved_below, enough_pairs, max_partners, max_ratio] = options;
   // Which pairs are matched says nothing of how.
   static_cast<void>(starved_below);
   static_cast<void>(enough_pairs);
@@ -113,7 +112,6 @@ Hash128::Value TiltedMatchKey(const Hash128::Value& first,
   Hash128 hash;
   AddAll(&hash, "tilted matches", kTiltedMatchingVersion, first, second,
          matches, max_ratio);
-  if (matcher != PointMatcher::kExact) hash.Add("flann");
   return hash.value();
 }
 

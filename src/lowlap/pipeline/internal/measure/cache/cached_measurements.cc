@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/measure/cached_measurements.h"
+#include "lowlap/pipeline/internal/measure/cache/cached_measurements.h"
 
 #include <algorithm>
 #include <optional>
@@ -9,9 +9,9 @@
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/image_memory.h"
-#include "lowlap/pipeline/internal/measure/measurement_bytes.h"
-#include "lowlap/pipeline/internal/measure/measurement_cache.h"
-#include "lowlap/pipeline/internal/measure/measurement_key.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_bytes.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_cache.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_key.h"
 
 namespace lowlap {
 namespace {
@@ -60,8 +60,7 @@ Result<KeyedFeatures> DetectFeatures(const Scene& scene,
       std::count_if(slots.begin(), slots.end(),
                     [](const ViewSlot& s) { return s.features.has_value(); }),
       slots.size());
-  RunContext limited = context;
-  limited.num_threads = DetectionThreads(scene, options, context);
+  const RunContext limited = WithinMemory(scene, options, context);
   const ReusedImageMemory reused_memory;
   done = ParallelFor(limited, "features", missing.size(), [&](std::size_t n) {
     ViewSlot* slot = missing[n];

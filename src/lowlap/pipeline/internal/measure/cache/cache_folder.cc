@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/measure/cache_folder.h"
+#include "lowlap/pipeline/internal/measure/cache/cache_folder.h"
 
 #include <algorithm>
 #include <chrono>

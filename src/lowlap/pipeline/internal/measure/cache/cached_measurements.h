@@ -8,7 +8,7 @@
 #include "lowlap/core/run_context.h"
 #include "lowlap/features/internal/features.h"
 #include "lowlap/matching/internal/matching.h"
-#include "lowlap/pipeline/internal/measure/cache_folder.h"
+#include "lowlap/pipeline/internal/measure/cache/cache_folder.h"
 
 namespace lowlap {
 

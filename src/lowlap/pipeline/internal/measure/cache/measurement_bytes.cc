@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/measure/measurement_bytes.h"
+#include "lowlap/pipeline/internal/measure/cache/measurement_bytes.h"
 
 #include <cstdint>
 #include <cstring>
@@ -129,48 +129,56 @@ void TransferMatches(Archive& archive, Matches& matches) {
   }
 }
 
+template <class Record, class Transfer>
+std::string Written(const Record& record, const Transfer& transfer) {
+  Writer writer;
+  transfer(writer, record);
+  return writer.Take();
+}
+
+template <class Record, class Transfer>
+std::optional<Record> Parsed(std::string_view bytes, const Transfer& transfer) {
+  Reader reader(bytes);
+  Record record;
+  transfer(reader, record);
+  if (!reader.Fits()) return std::nullopt;
+  return record;
+}
+
+constexpr auto kFeatures = [](auto& archive, auto& record) {
+  TransferFeatures(archive, record);
+};
+constexpr auto kTilted = [](auto& archive, auto& record) {
+  TransferTilted(archive, record);
+};
+constexpr auto kMatches = [](auto& archive, auto& record) {
+  TransferMatches(archive, record);
+};
+
 }  // namespace
 
 std::string ToBytes(const DetectedFeatures& features) {
-  Writer writer;
-  TransferFeatures(writer, features);
-  return writer.Take();
+  return Written(features, kFeatures);
 }
 
 std::optional<DetectedFeatures> FeaturesFromBytes(std::string_view bytes) {
-  Reader reader(bytes);
-  DetectedFeatures features;
-  TransferFeatures(reader, features);
-  if (!reader.Fits()) return std::nullopt;
-  return features;
+  return Parsed<DetectedFeatures>(bytes, kFeatures);
 }
 
 std::string ToBytes(const TiltedPoints& points) {
-  Writer writer;
-  TransferTilted(writer, points);
-  return writer.Take();
+  return Written(points, kTilted);
 }
 
 std::optional<TiltedPoints> TiltedPointsFromBytes(std::string_view bytes) {
-  Reader reader(bytes);
-  TiltedPoints points;
-  TransferTilted(reader, points);
-  if (!reader.Fits()) return std::nullopt;
-  return points;
+  return Parsed<TiltedPoints>(bytes, kTilted);
 }
 
 std::string ToBytes(const PairMatches& matches) {
-  Writer writer;
-  TransferMatches(writer, matches);
-  return writer.Take();
+  return Written(matches, kMatches);
 }
 
 std::optional<PairMatches> MatchesFromBytes(std::string_view bytes) {
-  Reader reader(bytes);
-  PairMatches matches;
-  TransferMatches(reader, matches);
-  if (!reader.Fits()) return std::nullopt;
-  return matches;
+  return Parsed<PairMatches>(bytes, kMatches);
 }
 
 }  // namespace lowlap

@@ -9,7 +9,7 @@
 
 #include "lowlap/core/internal/hash.h"
 #include "lowlap/core/run_context.h"
-#include "lowlap/pipeline/internal/measure/cache_folder.h"
+#include "lowlap/pipeline/internal/measure/cache/cache_folder.h"
 
 namespace lowlap {
 
