@@ -14,7 +14,7 @@
 #include "lowlap/pipeline/internal/output/summary_json.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/synthetic/synthetic_scene.h"
-#include "lowlap/two_view/internal/planar_motion.h"
+#include "lowlap/two_view/internal/planes/planar_motion.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {

@@ -5,7 +5,7 @@
 #include <numeric>
 #include <vector>
 
-#include "lowlap/two_view/internal/planar_motion.h"
+#include "lowlap/two_view/internal/planes/planar_motion.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
 #include "tests/two_view/two_view_scene.h"
 

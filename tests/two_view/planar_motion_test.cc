@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/planar_motion.h"
+#include "lowlap/two_view/internal/planes/planar_motion.h"
 
 #include <gtest/gtest.h>
 

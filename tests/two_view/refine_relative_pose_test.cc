@@ -23,13 +23,6 @@ std::vector<int> All(const PointPairs& pairs) {
   return all;
 }
 
-RigidTransform Moved(const RigidTransform& pose, const Vec5& step) {
-  const Vec3 w = step.head<3>();
-  const Vec2 d = step.tail<2>();
-  return {RotationFromAngleAxis(w) * pose.rotation,
-          (pose.translation + TangentBasis(pose.translation) * d).normalized()};
-}
-
 // One pair of arbitrary rays, with or without shapes of their errors.
 PointPairs OnePair(Random& random, bool round) {
   PointPairs pairs;
@@ -85,7 +78,7 @@ TEST(SampsonResidual, HasTheDerivativeOfFiniteDifferences) {
     for (int k = 0; k < 5; ++k) {
       const double h = 1e-6;
       const auto at = [&](double step) {
-        return SampsonResidual(Moved(pose, step * Vec5::Unit(k)), pairs)(0);
+        return SampsonResidual(MovedPose(pose, step * Vec5::Unit(k)), pairs)(0);
       };
       EXPECT_NEAR(jacobian[k], (at(h) - at(-h)) / (2 * h),
                   1e-5 * (1 + std::abs(jacobian[k])));
@@ -107,8 +100,9 @@ TEST(RefineRelativePose, ConvergesToTheTruthWithoutNoise) {
   const PointPairs pairs = scene.Pairs();
   Vec5 offset;
   offset << 0.02, -0.03, 0.01, 0.05, -0.04;
-  const RigidTransform refined = RefineRelativePose(
-      Moved(scene.cam2_from_cam1, offset), pairs, All(pairs), {5.0, 50, {}, 0});
+  const RigidTransform refined =
+      RefineRelativePose(MovedPose(scene.cam2_from_cam1, offset), pairs,
+                         All(pairs), {5.0, 50, {}, 0});
   EXPECT_LT(RotationErrorDeg(refined.rotation, scene.cam2_from_cam1.rotation),
             1e-7);
   EXPECT_LT(

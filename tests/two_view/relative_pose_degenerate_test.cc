@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <limits>
 
@@ -23,13 +24,17 @@ double PoseErrorDeg(const RelativePose& pose, const TwoViewScene& scene) {
          DirectionErrorDeg(pose.direction, scene.cam2_from_cam1.translation);
 }
 
+TwoViewSceneOptions PlanarOptions() {
+  TwoViewSceneOptions options;
+  options.planar = true;
+  options.noise_px = 0.3;
+  return options;
+}
+
 TEST(EstimateRelativePose, PlanarSceneIsDecidedByVisibility) {
   // The mirror motion would put part of the points behind a camera.
   for (int seed = 0; seed < 8; ++seed) {
-    TwoViewSceneOptions options;
-    options.planar = true;
-    options.noise_px = 0.3;
-    const TwoViewScene scene = MakeTwoViewScene(options, seed);
+    const TwoViewScene scene = MakeTwoViewScene(PlanarOptions(), seed);
     const auto result = EstimateRelativePose(scene.Input(), {}, seed);
     ASSERT_THAT(result, IsOk());
     EXPECT_EQ(result->geometry, TwoViewGeometry::kPlanar) << seed;
@@ -102,7 +107,7 @@ TEST(ImproveRelativePose, APoseThatNoMatchFitsComesBackAsItWas) {
   for (int seed = 0; seed < 50; ++seed) {
     const TwoViewScene other = MakeTwoViewScene(wrong, 361 + seed);
     const RelativePose improved =
-        ImproveRelativePose(other.Input(), result->pose, {});
+        ImproveRelativePose(other.Input(), result->pose, false, {});
     EXPECT_TRUE(improved == result->pose || improved.point_inliers.size() > 5u);
   }
 }
@@ -117,6 +122,37 @@ TEST(EstimateRelativePose, AFewPointsOffThePlaneDecide) {
     EXPECT_EQ(result->geometry, TwoViewGeometry::kPlanar) << seed;
     EXPECT_TRUE(result->alternatives.empty());
     EXPECT_LT(PoseErrorDeg(result->pose, scene), 1.5) << seed;
+  }
+}
+
+TEST(EstimateRelativePose, WhatOnePlaneLeavesOpenIsSaid) {
+  int num_inside = 0;
+  constexpr int kNumTrials = 40;
+  for (int seed = 0; seed < kNumTrials; ++seed) {
+    TwoViewSceneOptions options = PlanarOptions();
+    options.num_wrong = 40;
+    const TwoViewScene scene = MakeTwoViewScene(options, 500 + seed);
+    const auto result = EstimateRelativePose(scene.Input(), {}, seed);
+    ASSERT_THAT(result, IsOk());
+    EXPECT_TRUE(result->is_of_one_plane);
+    ASSERT_TRUE(result->pose.covariance);
+    const Eigen::Matrix<double, 5, 1> error =
+        PoseError(result->pose.Cam2FromCam1(), scene.cam2_from_cam1);
+    const double squared =
+        error.dot(result->pose.covariance->ldlt().solve(error));
+    num_inside += squared < 11.07 ? 1 : 0;  // 95 % of 5 degrees of freedom
+  }
+  EXPECT_GE(num_inside, 34);
+}
+
+TEST(EstimateRelativePose, PointsOffAPlaneAreMoreThanOnePlane) {
+  for (int seed = 0; seed < 8; ++seed) {
+    TwoViewSceneOptions options = PlanarOptions();
+    options.num_off_plane = 15;
+    const TwoViewScene scene = MakeTwoViewScene(options, 600 + seed);
+    const auto result = EstimateRelativePose(scene.Input(), {}, seed);
+    ASSERT_THAT(result, IsOk());
+    EXPECT_FALSE(result->is_of_one_plane) << seed;
   }
 }
 

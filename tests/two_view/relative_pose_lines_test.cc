@@ -124,7 +124,8 @@ TEST(ImproveRelativePose, RefinesAndKeepsTheEvidence) {
   start.direction = scene.cam2_from_cam1.translation;
   start.log10_nfa = -12.5;
   start.point_threshold_px = 2;
-  const RelativePose improved = ImproveRelativePose(scene.Input(), start, {});
+  const RelativePose improved =
+      ImproveRelativePose(scene.Input(), start, false, {});
   EXPECT_EQ(improved.log10_nfa, -12.5);
   EXPECT_LT(RotationErrorDeg(improved.rotation, scene.cam2_from_cam1.rotation),
             0.05);

@@ -90,7 +90,7 @@ DirectionCheck CheckDirection(const TwoViewInput& input,
   replaced.rotation = found->rotation;
   replaced.direction = found->translation;
   replaced.point_threshold_px = other.threshold;
-  replaced = ImproveRelativePose(input, replaced, TwoViewOptions());
+  replaced = ImproveRelativePose(input, replaced, false, TwoViewOptions());
   check.error_rad = AngleBetween(replaced.direction, pose.direction);
   if (check.error_rad <= same_rad) return check;
   check.verdict = DirectionVerdict::kReplaced;

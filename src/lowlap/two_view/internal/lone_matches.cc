@@ -16,7 +16,7 @@ std::vector<double> Leverages(const RigidTransform& cam2_from_cam1,
                               const std::vector<int>& indices,
                               const PoseRefinementOptions& options) {
   const Eigen::LDLT<Mat5> factor(
-      RelativePoseHessian(cam2_from_cam1, pairs, indices, options));
+      LinearizePose(cam2_from_cam1, pairs, indices, options).hessian);
   if (!IsWellDetermined(factor)) return {};
   const SampsonResidual residual(cam2_from_cam1, pairs);
   std::vector<double> leverages;

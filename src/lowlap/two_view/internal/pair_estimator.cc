@@ -48,10 +48,10 @@ RelativePose WithHypothesis(const RelativePose& pose,
 // have been found with the pose, and draw an alternative over to it: that says
 // nothing, and the alternative stays as it was.
 RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
-                     const TwoViewOptions& options,
+                     bool is_of_one_plane, const TwoViewOptions& options,
                      std::vector<FeatureMatch>* lone_matches) {
   RelativePose improved =
-      ImproveRelativePose(input, pose, options, lone_matches);
+      ImproveRelativePose(input, pose, is_of_one_plane, options, lone_matches);
   const auto differs = [&](const RelativePose& other) {
     return !SamePose(other.Cam2FromCam1(), improved.Cam2FromCam1());
   };
@@ -59,7 +59,7 @@ RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
   for (const AlternativeMotion& other : pose.alternatives) {
     const RelativePose before = WithHypothesis(pose, other);
     const RelativePose after =
-        ImproveRelativePose(input, before, options, nullptr);
+        ImproveRelativePose(input, before, is_of_one_plane, options);
     if (differs(after)) {
       alternatives.push_back(MotionOf(after));
     } else if (differs(before)) {
@@ -86,8 +86,8 @@ void UseGuidedMatches(const ViewMeasurements& first,
                       const ViewMeasurements& second,
                       const PairOptions& options,
                       std::vector<FeatureMatch>* line_matches,
-                      TwoViewInput* input, RelativePose* pose,
-                      std::vector<FeatureMatch>* lone_matches) {
+                      TwoViewInput* input, TwoViewResult* result) {
+  RelativePose* const pose = &result->pose;
   const DetectedFeatures &d1 = *first.detected, &d2 = *second.detected;
   input->point_matches = pose->point_inliers;
   if (options.use_points &&
@@ -102,7 +102,8 @@ void UseGuidedMatches(const ViewMeasurements& first,
   *line_matches = GuidedLineMatches(first, second, pose->Cam2FromCam1(),
                                     *line_matches, options);
   if (options.use_lines) input->line_matches = *line_matches;
-  *pose = Improve(*input, *pose, options.two_view, lone_matches);
+  *pose = Improve(*input, *pose, result->is_of_one_plane, options.two_view,
+                  &result->lone_matches);
 }
 
 }  // namespace
@@ -187,8 +188,7 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
   }
   std::vector<FeatureMatch> line_matches = putative.lines;
   if (first.detected != nullptr && second.detected != nullptr) {
-    UseGuidedMatches(first, second, options, &line_matches, &input, &pose,
-                     &result->lone_matches);
+    UseGuidedMatches(first, second, options, &line_matches, &input, &*result);
   }
   pose.line_inliers =
       FilterLineMatches(line_matches, *input.features1, *input.features2,
@@ -243,7 +243,8 @@ RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,
   TwoViewInput input = InputOf(pose.views, first, second);
   if (options.use_points) input.point_matches = pose.point_inliers;
   if (options.use_lines) input.line_matches = pose.line_inliers;
-  RelativePose refined = Improve(input, pose, options.two_view, lone_matches);
+  RelativePose refined =
+      Improve(input, pose, false, options.two_view, lone_matches);
   refined.line_inliers =
       FilterLineMatches(pose.line_inliers, first.features, second.features,
                         refined.Cam2FromCam1(), options.line_filter);

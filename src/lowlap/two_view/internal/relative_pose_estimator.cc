@@ -12,7 +12,8 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/two_view/internal/partial_evidence.h"
-#include "lowlap/two_view/internal/planar_motion.h"
+#include "lowlap/two_view/internal/planes/parallax_evidence.h"
+#include "lowlap/two_view/internal/planes/planar_motion.h"
 #include "lowlap/two_view/internal/repeat_evidence.h"
 #include "lowlap/two_view/internal/search/pose_from_search.h"
 #include "lowlap/two_view/internal/search/pose_search.h"
@@ -24,7 +25,8 @@
 namespace lowlap {
 namespace {
 
-/// A plane that holds this share of the inliers is worth a second motion.
+/// A plane that holds this share of the inliers may be all that speaks for the
+/// motion, and is worth a second one.
 constexpr double kPlaneShare = 0.5;
 /// Two motions are told apart by an advantage worth ten points that fit one
 /// perfectly and the other not at all, 10 log(10): noise alone reaches half.
@@ -72,9 +74,13 @@ Status ValidateInput(const TwoViewInput& input) {
 std::optional<ScenePlane> DominantPlaneOf(const PoseCandidate& candidate,
                                           const PointPairs& pairs,
                                           Random& random) {
-  // Transfer errors have two components, each with the noise of both views.
   return DominantPlane(candidate.pose, pairs, candidate.inliers,
-                       3 * candidate.support.threshold, random);
+                       candidate.support.threshold, random);
+}
+
+bool HoldsMost(const ScenePlane& plane, const PoseCandidate& candidate) {
+  return static_cast<double>(plane.inliers.size()) >=
+         kPlaneShare * static_cast<double>(candidate.inliers.size());
 }
 
 /// The other explanation of a scene whose points lie mostly on `plane`.
@@ -82,10 +88,7 @@ std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
                                                const PointPairs& pairs,
                                                const PoseCandidate& candidate,
                                                const ScenePlane& plane) {
-  if (static_cast<double>(plane.inliers.size()) <
-      kPlaneShare * static_cast<double>(candidate.inliers.size())) {
-    return std::nullopt;
-  }
+  if (!HoldsMost(plane, candidate)) return std::nullopt;
   const std::optional<RigidTransform> motion = OtherPlanarMotion(
       candidate.pose, plane.normal, pairs.x1[plane.inliers.front()]);
   if (!motion) return std::nullopt;
@@ -247,6 +250,12 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   if (!translation.IsSeen()) {
     result.geometry = TwoViewGeometry::kRotationOnly;
   }
+  if (plane && HoldsMost(*plane, *best) &&
+      !(ParallaxEvidence(best->pose, *plane, pairs, best->support.threshold) <
+        0)) {
+    result.is_of_one_plane = true;
+    search.TieToPlane(*plane, &*best);
+  }
   result.pose =
       PoseFromSearch(input, matches, search, *best, &result.lone_matches);
   result.rivals = RivalsOf(*best, candidates);
@@ -265,7 +274,7 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
 }
 
 RelativePose ImproveRelativePose(const TwoViewInput& input,
-                                 const RelativePose& pose,
+                                 const RelativePose& pose, bool is_of_one_plane,
                                  const TwoViewOptions& options,
                                  std::vector<FeatureMatch>* lone_matches) {
   // No sample is drawn; the order only matters to the background of chance.
@@ -280,8 +289,12 @@ RelativePose ImproveRelativePose(const TwoViewInput& input,
       matches.pairs,
       CommonDirections(input, static_cast<int>(matches.pairs.size())),
       SampsonLaw(input), bounded);
-  const PoseCandidate candidate = search.Finish(pose.Cam2FromCam1());
+  PoseCandidate candidate = search.Finish(pose.Cam2FromCam1());
   if (!std::isfinite(candidate.support.log10_nfa)) return pose;
+  if (is_of_one_plane) {
+    const auto plane = DominantPlaneOf(candidate, matches.pairs, random);
+    if (plane) search.TieToPlane(*plane, &candidate);
+  }
   RelativePose improved =
       PoseFromSearch(input, matches, search, candidate, lone_matches);
   improved.log10_nfa = pose.log10_nfa;

@@ -64,6 +64,10 @@ struct TwoViewResult {
   /// triplet evidence may. Empty unless kAmbiguousPlane.
   std::vector<RelativePose> alternatives;
 
+  /// All that speaks for `pose` lies on one plane (ParallaxEvidence): it is
+  /// refined on the plane, and its covariance is what the plane leaves open.
+  bool is_of_one_plane = false;
+
   /// log10 NFA of `pose` for matches that lie apart (ScatteredEvidence): what
   /// it means if those side by side are not independent.
   double scattered_log10_nfa = 0;
@@ -119,9 +123,11 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
 /// (log10_nfa) stays that of the first ones, which knew nothing of the pose.
 /// Where too few of them fit the pose to refine it, it comes back as it was.
 /// `input` is valid; its line matches count with their crossings and
-/// directions. `lone_matches`, if not null, are as in TwoViewResult.
+/// directions. `is_of_one_plane` and, if not null, `lone_matches` are as in
+/// TwoViewResult: matches found with the pose lie on its epipolar lines, and
+/// cannot tell.
 RelativePose ImproveRelativePose(
-    const TwoViewInput& input, const RelativePose& pose,
+    const TwoViewInput& input, const RelativePose& pose, bool is_of_one_plane,
     const TwoViewOptions& options,
     std::vector<FeatureMatch>* lone_matches = nullptr);
 

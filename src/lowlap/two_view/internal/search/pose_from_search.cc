@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <iterator>
+#include <optional>
 #include <utility>
 
 #include "lowlap/two_view/internal/lone_matches.h"
+#include "lowlap/two_view/internal/planes/refine_on_plane.h"
 #include "lowlap/two_view/internal/search/refine_relative_pose.h"
 
 namespace lowlap {
@@ -68,8 +70,14 @@ RelativePose PoseFromSearch(const TwoViewInput& input,
   }
   pose.log10_nfa = candidate.support.log10_nfa;
   pose.point_threshold_px = candidate.support.threshold;
-  pose.covariance = RelativePoseCovariance(candidate.pose, matches.pairs,
-                                           borne_out, refinement);
+  std::optional<Mat5> of_plane;
+  if (candidate.plane) {
+    of_plane =
+        InformationOfPlane(candidate.pose, matches.pairs, *candidate.plane);
+  }
+  pose.covariance =
+      RelativePoseCovariance(candidate.pose, matches.pairs, borne_out,
+                             refinement, of_plane ? &*of_plane : nullptr);
   return pose;
 }
 

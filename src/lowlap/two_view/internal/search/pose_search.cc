@@ -11,6 +11,7 @@
 #include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/two_view/internal/kernels/five_point.h"
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
+#include "lowlap/two_view/internal/planes/refine_on_plane.h"
 #include "lowlap/two_view/internal/search/chance_support.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
 #include "lowlap/two_view/internal/search/sharpen_pose.h"
@@ -177,6 +178,21 @@ PoseCandidate PoseSearch::Finish(const RigidTransform& cam2_from_cam1) const {
       DirectionPenalty(directions_, candidate.pose.rotation);
   candidate.score = ScoreOf(candidate.pose);
   return candidate;
+}
+
+void PoseSearch::TieToPlane(const ScenePlane& plane,
+                            PoseCandidate* candidate) const {
+  const double threshold_px = candidate->support.threshold;
+  ScenePlane refined_plane = plane;
+  const RigidTransform refined = RefineOnPlane(
+      candidate->pose, kernel_.pairs(),
+      kernel_.VisibleWithinThreshold(candidate->pose, 2 * threshold_px),
+      RefinementOptions(*candidate), &refined_plane);
+  candidate->plane = plane;
+  if (!(SupportOf(refined).log10_nfa < 0)) return;
+  candidate->pose = refined;
+  candidate->plane = std::move(refined_plane);
+  candidate->inliers = kernel_.VisibleWithinThreshold(refined, threshold_px);
 }
 
 double PoseSearch::ScoreOf(const RigidTransform& cam2_from_cam1) const {

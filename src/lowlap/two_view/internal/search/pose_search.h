@@ -8,6 +8,7 @@
 #include "lowlap/robust/internal/a_contrario.h"
 #include "lowlap/two_view/internal/kernels/essential_kernel.h"
 #include "lowlap/two_view/internal/parallel_directions.h"
+#include "lowlap/two_view/internal/planes/planar_motion.h"
 #include "lowlap/two_view/internal/relative_pose_estimator.h"
 #include "lowlap/two_view/internal/search/refine_relative_pose.h"
 
@@ -18,6 +19,8 @@ struct PoseCandidate {
   AContrarioScore support;   // of the points, against chance
   std::vector<int> inliers;  // visible, within the threshold; ascending
   double direction_penalty = 0;
+  /// The plane to which alone it is due (PoseSearch::TieToPlane), if any.
+  std::optional<ScenePlane> plane;
 
   /// What speaks for it, in decimal digits: the core score of the points less
   /// the penalty of the directions.
@@ -54,6 +57,11 @@ class PoseSearch {
   /// A motion brought to its optimum: the signs that see most inliers, then
   /// threshold, inliers and refinement in turn until they agree.
   PoseCandidate Finish(const RigidTransform& cam2_from_cam1) const;
+
+  /// Takes the places of the inliers on a plane into account, in which all that
+  /// speaks for the motion lies. The motion stays as it was if chance explains
+  /// the other one.
+  void TieToPlane(const ScenePlane& plane, PoseCandidate* candidate) const;
 
   /// Truncated Cauchy score of the visible matches,
   ///   sum log(1 + 9) - log(1 + min(r^2 / s^2, 9)),

@@ -8,71 +8,30 @@
 namespace lowlap {
 namespace {
 
-struct NormalEquations {
-  Mat5 hessian = Mat5::Zero();
-  Vec5 gradient = Vec5::Zero();
-  double cost = 0;
+using DirectionJacobian = Eigen::Matrix<double, 2, 3>;
+
+struct PoseProblem {
+  const PointPairs& pairs;
+  const std::vector<int>& indices;
+  const PoseRefinementOptions& options;
+
+  NormalEquations<5> Linearize(const RigidTransform& pose) const {
+    return LinearizePose(pose, pairs, indices, options);
+  }
+  double Cost(const RigidTransform& pose) const {
+    return PoseCost(pose, pairs, indices, options);
+  }
+  static RigidTransform Moved(const RigidTransform& pose, const Vec5& step) {
+    return MovedPose(pose, step);
+  }
 };
+
+}  // namespace
 
 double CauchyCost(double residual, double scale) {
   const double ratio = residual / scale;
   return 0.5 * scale * scale * std::log1p(ratio * ratio);
 }
-
-using DirectionJacobian = Eigen::Matrix<double, 2, 3>;
-
-NormalEquations Linearize(const RigidTransform& pose, const PointPairs& pairs,
-                          const std::vector<int>& indices,
-                          const PoseRefinementOptions& options) {
-  const double scale = options.loss_scale_px;
-  const SampsonResidual residual(pose, pairs);
-  NormalEquations system;
-  Vec5 jacobian;
-  for (const int i : indices) {
-    const double r = residual(i, &jacobian);
-    const double weight = 1 / (1 + (r / scale) * (r / scale));
-    system.hessian.noalias() += (weight * jacobian) * jacobian.transpose();
-    system.gradient += (weight * r) * jacobian;
-    system.cost += CauchyCost(r, scale);
-  }
-  for (const DirectionPair& pair : options.directions) {
-    DirectionJacobian turn;
-    const Vec2 m = DirectionResidual(pair, pose.rotation, &turn);
-    const double ratio = m.norm() / kDirectionLossScale;
-    const double weight = options.point_variance_px2 / (1 + ratio * ratio);
-    system.hessian.topLeftCorner<3, 3>() += weight * turn.transpose() * turn;
-    system.gradient.head<3>() += weight * turn.transpose() * m;
-    system.cost +=
-        options.point_variance_px2 * CauchyCost(m.norm(), kDirectionLossScale);
-  }
-  return system;
-}
-
-double Cost(const RigidTransform& pose, const PointPairs& pairs,
-            const std::vector<int>& indices,
-            const PoseRefinementOptions& options) {
-  const SampsonResidual residual(pose, pairs);
-  double cost = 0;
-  for (const int i : indices) {
-    cost += CauchyCost(residual(i), options.loss_scale_px);
-  }
-  for (const DirectionPair& pair : options.directions) {
-    cost += options.point_variance_px2 *
-            CauchyCost(DirectionResidual(pair, pose.rotation).norm(),
-                       kDirectionLossScale);
-  }
-  return cost;
-}
-
-RigidTransform Moved(const RigidTransform& pose, const Vec5& step) {
-  const Vec3 rotation = step.head<3>();
-  const Vec2 direction = step.tail<2>();
-  return {RotationFromAngleAxis(rotation) * pose.rotation,
-          (pose.translation + TangentBasis(pose.translation) * direction)
-              .normalized()};
-}
-
-}  // namespace
 
 SampsonResidual::SampsonResidual(const RigidTransform& cam2_from_cam1,
                                  const PointPairs& pairs)
@@ -123,43 +82,71 @@ double SampsonResidual::Between(int first, int second, Vec5* jacobian) const {
   return numerator * inverse_norm;
 }
 
+NormalEquations<5> LinearizePose(const RigidTransform& pose,
+                                 const PointPairs& pairs,
+                                 const std::vector<int>& indices,
+                                 const PoseRefinementOptions& options) {
+  const double scale = options.loss_scale_px;
+  const SampsonResidual residual(pose, pairs);
+  NormalEquations<5> system;
+  Vec5 jacobian;
+  for (const int i : indices) {
+    const double r = residual(i, &jacobian);
+    const double weight = 1 / (1 + (r / scale) * (r / scale));
+    system.hessian.noalias() += (weight * jacobian) * jacobian.transpose();
+    system.gradient += (weight * r) * jacobian;
+    system.cost += CauchyCost(r, scale);
+  }
+  for (const DirectionPair& pair : options.directions) {
+    DirectionJacobian turn;
+    const Vec2 m = DirectionResidual(pair, pose.rotation, &turn);
+    const double ratio = m.norm() / kDirectionLossScale;
+    const double weight = options.point_variance_px2 / (1 + ratio * ratio);
+    system.hessian.topLeftCorner<3, 3>() += weight * turn.transpose() * turn;
+    system.gradient.head<3>() += weight * turn.transpose() * m;
+    system.cost +=
+        options.point_variance_px2 * CauchyCost(m.norm(), kDirectionLossScale);
+  }
+  return system;
+}
+
+double PoseCost(const RigidTransform& pose, const PointPairs& pairs,
+                const std::vector<int>& indices,
+                const PoseRefinementOptions& options) {
+  const SampsonResidual residual(pose, pairs);
+  double cost = 0;
+  for (const int i : indices) {
+    cost += CauchyCost(residual(i), options.loss_scale_px);
+  }
+  for (const DirectionPair& pair : options.directions) {
+    cost += options.point_variance_px2 *
+            CauchyCost(DirectionResidual(pair, pose.rotation).norm(),
+                       kDirectionLossScale);
+  }
+  return cost;
+}
+
+RigidTransform MovedPose(const RigidTransform& pose, const Vec5& step) {
+  const Vec3 rotation = step.head<3>();
+  const Vec2 direction = step.tail<2>();
+  return {RotationFromAngleAxis(rotation) * pose.rotation,
+          (pose.translation + TangentBasis(pose.translation) * direction)
+              .normalized()};
+}
+
 RigidTransform RefineRelativePose(const RigidTransform& cam2_from_cam1,
                                   const PointPairs& pairs,
                                   const std::vector<int>& indices,
                                   const PoseRefinementOptions& options) {
-  RigidTransform pose = cam2_from_cam1;
   if (indices.size() + 2 * options.directions.size() < 5 ||
       indices.size() < 2) {
-    return pose;
+    return cam2_from_cam1;
   }
-  double damping = 1e-4;
-  NormalEquations system = Linearize(pose, pairs, indices, options);
-  for (int iteration = 0; iteration < options.max_iterations; ++iteration) {
-    Mat5 damped = system.hessian;
-    damped.diagonal() += damping * system.hessian.diagonal();
-    const Vec5 step = -damped.ldlt().solve(system.gradient);
-    if (!step.allFinite()) break;
-    const RigidTransform moved = Moved(pose, step);
-    if (Cost(moved, pairs, indices, options) <= system.cost) {
-      pose = moved;
-      damping = std::max(1e-10, damping * 0.1);
-      if (step.norm() < 1e-9) break;
-      system = Linearize(pose, pairs, indices, options);
-    } else {
-      if (step.norm() < 1e-9) break;
-      damping = std::max(1e-6, damping * 10);
-      if (damping > 1e6) break;
-    }
-  }
+  RigidTransform pose =
+      MinimizeLevenbergMarquardt(PoseProblem{pairs, indices, options},
+                                 cam2_from_cam1, options.max_iterations);
   pose.rotation = NearestRotation(pose.rotation);
   return pose;
-}
-
-Mat5 RelativePoseHessian(const RigidTransform& cam2_from_cam1,
-                         const PointPairs& pairs,
-                         const std::vector<int>& indices,
-                         const PoseRefinementOptions& options) {
-  return Linearize(cam2_from_cam1, pairs, indices, options).hessian;
 }
 
 bool IsWellDetermined(const Eigen::LDLT<Mat5>& factor) {
@@ -167,9 +154,11 @@ bool IsWellDetermined(const Eigen::LDLT<Mat5>& factor) {
          factor.vectorD().minCoeff() > 1e-14 * factor.vectorD().maxCoeff();
 }
 
-std::optional<Mat5> RelativePoseCovariance(
-    const RigidTransform& cam2_from_cam1, const PointPairs& pairs,
-    const std::vector<int>& indices, const PoseRefinementOptions& options) {
+std::optional<Mat5> RelativePoseCovariance(const RigidTransform& cam2_from_cam1,
+                                           const PointPairs& pairs,
+                                           const std::vector<int>& indices,
+                                           const PoseRefinementOptions& options,
+                                           const Mat5* plane_information) {
   const double n = static_cast<double>(indices.size());
   if (n < 6) return std::nullopt;
   const SampsonResidual residual(cam2_from_cam1, pairs);
@@ -185,6 +174,7 @@ std::optional<Mat5> RelativePoseCovariance(
     sum_squared_psi += weight * r * weight * r;
     sum_psi_slope += (1 - squared) * weight * weight;
   }
+  if (plane_information != nullptr) information = *plane_information;
   const double slope = sum_psi_slope / n;
   if (!(slope > 0)) return std::nullopt;
   // Exact data have no scatter; rounding takes its place.

@@ -8,6 +8,7 @@
 #include "lowlap/geometry/rigid_transform.h"
 #include "lowlap/two_view/internal/kernels/point_pairs.h"
 #include "lowlap/two_view/internal/parallel_directions.h"
+#include "lowlap/two_view/internal/search/levenberg_marquardt.h"
 
 namespace lowlap {
 
@@ -61,12 +62,24 @@ RigidTransform RefineRelativePose(const RigidTransform& cam2_from_cam1,
                                   const std::vector<int>& indices,
                                   const PoseRefinementOptions& options);
 
-/// sum w J J^T of the matches, w the weights of that loss at the pose, and the
-/// information of the directions in the same units.
-Mat5 RelativePoseHessian(const RigidTransform& cam2_from_cam1,
-                         const PointPairs& pairs,
-                         const std::vector<int>& indices,
-                         const PoseRefinementOptions& options);
+/// The normal equations of that loss at a pose: sum w J J^T of the matches, w
+/// the weights of the loss, and the directions in the same units.
+NormalEquations<5> LinearizePose(const RigidTransform& cam2_from_cam1,
+                                 const PointPairs& pairs,
+                                 const std::vector<int>& indices,
+                                 const PoseRefinementOptions& options);
+
+/// The loss alone.
+double PoseCost(const RigidTransform& cam2_from_cam1, const PointPairs& pairs,
+                const std::vector<int>& indices,
+                const PoseRefinementOptions& options);
+
+/// s^2 / 2 log(1 + r^2 / s^2).
+double CauchyCost(double residual, double scale);
+
+/// The pose after a step (w, d) as in SampsonResidual.
+RigidTransform MovedPose(const RigidTransform& cam2_from_cam1,
+                         const Vec5& step);
 
 /// Whether a decomposed Hessian or information of a pose has full rank.
 bool IsWellDetermined(const Eigen::LDLT<Mat5>& factor);
@@ -78,8 +91,11 @@ bool IsWellDetermined(const Eigen::LDLT<Mat5>& factor);
 /// It covers independent errors of the points only: an imperfect calibration
 /// adds its own, which thousands of matches do not average down.
 /// nullopt: fewer than 6 matches, or a singular system.
+/// `plane_information`, if not null, stands for sum J J^T
+/// (InformationOfPlane).
 std::optional<Mat5> RelativePoseCovariance(
     const RigidTransform& cam2_from_cam1, const PointPairs& pairs,
-    const std::vector<int>& indices, const PoseRefinementOptions& options);
+    const std::vector<int>& indices, const PoseRefinementOptions& options,
+    const Mat5* plane_information = nullptr);
 
 }  // namespace lowlap

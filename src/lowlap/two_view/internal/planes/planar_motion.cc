@@ -1,14 +1,14 @@
-#include "lowlap/two_view/internal/planar_motion.h"
+#include "lowlap/two_view/internal/planes/planar_motion.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/a_contrario_ransac.h"
+#include "lowlap/two_view/internal/planes/transfer_residual.h"
 
 namespace lowlap {
 namespace {
@@ -16,12 +16,12 @@ namespace {
 constexpr int kNumPlaneSamples = 200;
 constexpr std::size_t kMaxScoredMotions = 500;
 
-bool OnPlane(const Mat3& homography, const Vec3& x1, const Vec3& x2,
-             double threshold) {
-  const Vec3 y = homography * x1;
-  if (y.z() <= 0) return false;
-  return (y.head<2>() / y.z() - x2.head<2>()).squaredNorm() <=
-         threshold * threshold;
+// n . x1 of the depth at which a point comes nearest to its match.
+double InverseDepth(const RigidTransform& cam2_from_cam1, const Vec3& x1,
+                    const Vec3& x2) {
+  const Vec3 a = (cam2_from_cam1.rotation * x1).cross(x2);
+  const Vec3 b = cam2_from_cam1.translation.cross(x2);
+  return -a.dot(b) / b.squaredNorm();
 }
 
 }  // namespace
@@ -31,27 +31,21 @@ std::optional<ScenePlane> DominantPlane(const RigidTransform& cam2_from_cam1,
                                         const std::vector<int>& indices,
                                         double threshold_px, Random& random) {
   if (indices.size() < 4) return std::nullopt;
-  const Mat3& r = cam2_from_cam1.rotation;
-  const Vec3& t = cam2_from_cam1.translation;
-  const double threshold = threshold_px / pairs.focal2_px;
-  // x2 ~ R x1 + t (n . x1): n . x1 is the inverse depth that fits best.
   std::vector<double> inverse_depth;
   inverse_depth.reserve(indices.size());
   for (const int i : indices) {
-    const Vec3 a = (r * pairs.x1[i]).cross(pairs.x2[i]);
-    const Vec3 b = t.cross(pairs.x2[i]);
-    inverse_depth.push_back(-a.dot(b) / b.squaredNorm());
+    inverse_depth.push_back(
+        InverseDepth(cam2_from_cam1, pairs.x1[i], pairs.x2[i]));
   }
   const auto members = [&](const Vec3& normal, std::size_t count) {
-    const Mat3 homography = r + t * normal.transpose();
-    std::vector<int> positions;
+    const TransferResidual residual(cam2_from_cam1, normal, pairs);
+    std::vector<int> found;
     for (std::size_t k = 0; k < count; ++k) {
-      const int i = indices[k];
-      if (OnPlane(homography, pairs.x1[i], pairs.x2[i], threshold)) {
-        positions.push_back(static_cast<int>(k));
+      if (std::abs(residual.Along(indices[k])) <= threshold_px) {
+        found.push_back(indices[k]);
       }
     }
-    return positions;
+    return found;
   };
 
   const std::size_t num_scored = std::min(indices.size(), kMaxScoredMotions);
@@ -74,29 +68,24 @@ std::optional<ScenePlane> DominantPlane(const RigidTransform& cam2_from_cam1,
     }
   }
   if (!best) return std::nullopt;
-  // Gauss-Newton on the transfer error of the members.
+  // Gauss-Newton on the errors of the members.
+  ScenePlane plane{*best, {}};
   for (int iteration = 0; iteration < 5; ++iteration) {
+    const TransferResidual residual(cam2_from_cam1, plane.normal, pairs);
     Mat3 information = Mat3::Zero();
     Vec3 gradient = Vec3::Zero();
-    for (const int k : members(*best, indices.size())) {
-      const Vec3& x1 = pairs.x1[indices[k]];
-      const Vec3 y = r * x1 + t * best->dot(x1);
-      const Vec2 transferred = y.head<2>() / y.z();
-      const Vec2 error = transferred - pairs.x2[indices[k]].head<2>();
-      // d transferred / d n = slope x1^T.
-      const Vec2 slope = (t.head<2>() - transferred * t.z()) / y.z();
-      information += slope.squaredNorm() * x1 * x1.transpose();
-      gradient += slope.dot(error) * x1;
+    Vec3 by_normal;
+    for (const int i : members(plane.normal, indices.size())) {
+      const double error_px = residual.Along(i, &by_normal);
+      information += by_normal * by_normal.transpose();
+      gradient += error_px * by_normal;
     }
-    const Vec3 refined = *best - information.ldlt().solve(gradient);
+    const Vec3 refined = plane.normal - information.ldlt().solve(gradient);
     if (!refined.allFinite()) break;
-    best = refined;
+    plane.normal = refined;
   }
-  ScenePlane plane;
-  plane.normal = *best;
-  for (const int k : members(plane.normal, indices.size())) {
-    plane.inliers.push_back(indices[k]);
-  }
+  plane.inliers = members(plane.normal, indices.size());
+  std::sort(plane.inliers.begin(), plane.inliers.end());
   return plane;
 }
 

@@ -12,13 +12,13 @@ namespace lowlap {
 /// A plane normal . X = 1 in camera 1, and the matches that lie on it.
 struct ScenePlane {
   Vec3 normal = Vec3::Zero();
-  std::vector<int> inliers;
+  std::vector<int> inliers;  // ascending
 };
 
-/// The plane that holds most of the matches named by `indices`, given the
-/// motion: its homography is H = R + t n^T. RANSAC on three matches; an inlier
-/// is transferred to within `threshold_px`. nullopt: fewer than 4 matches, or
-/// no sample with a plane.
+/// The plane that holds most of the matches named by `indices`, inliers of the
+/// motion: RANSAC on three matches. They lie on it if their TransferResidual
+/// along the epipolar line is at most `threshold_px`. nullopt: fewer than 4
+/// matches, or no sample with a plane.
 std::optional<ScenePlane> DominantPlane(const RigidTransform& cam2_from_cam1,
                                         const PointPairs& pairs,
                                         const std::vector<int>& indices,

@@ -1,0 +1,111 @@
+#include "lowlap/two_view/internal/planes/refine_on_plane.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <numeric>
+
+#include "lowlap/two_view/internal/search/rival_spread.h"
+#include "tests/two_view/two_view_scene.h"
+
+namespace lowlap {
+namespace {
+
+using testing::DirectionErrorDeg;
+using testing::MakeTwoViewScene;
+using testing::RotationErrorDeg;
+using testing::TwoViewScene;
+using testing::TwoViewSceneOptions;
+
+const Vec3 kNormal = Vec3(0.4, 0.2, 1).normalized() / 6;
+
+std::vector<int> All(const PointPairs& pairs) {
+  std::vector<int> all(pairs.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+TwoViewScene PlanarScene(double noise_px, std::uint64_t seed) {
+  TwoViewSceneOptions options;
+  options.planar = true;
+  options.num_right = 100;
+  options.noise_px = noise_px;
+  return MakeTwoViewScene(options, seed);
+}
+
+TEST(RefineOnPlane, FindsTheMotionOfPointsOnAPlane) {
+  Vec5 step;
+  step << 0.01, -0.005, 0.01, 0.02, -0.02;
+  for (int seed = 0; seed < 10; ++seed) {
+    const TwoViewScene scene = PlanarScene(0, seed);
+    const PointPairs pairs = scene.Pairs();
+    ScenePlane plane{kNormal + Vec3(0.01, -0.01, 0.01), All(pairs)};
+    const RigidTransform found = RefineOnPlane(
+        MovedPose(scene.cam2_from_cam1, step), pairs, All(pairs), {}, &plane);
+    EXPECT_LT(RotationErrorDeg(found.rotation, scene.cam2_from_cam1.rotation),
+              1e-4);
+    EXPECT_LT(
+        DirectionErrorDeg(found.translation, scene.cam2_from_cam1.translation),
+        1e-4);
+    EXPECT_LT((plane.normal - kNormal).norm(), 1e-6);
+  }
+}
+
+TEST(RefineOnPlane, IsBetterThanEpipolarLinesAlone) {
+  double with_plane = 0, without = 0;
+  for (int seed = 0; seed < 50; ++seed) {
+    const TwoViewScene scene = PlanarScene(0.5, seed);
+    const PointPairs pairs = scene.Pairs();
+    const RigidTransform& truth = scene.cam2_from_cam1;
+    ScenePlane plane{kNormal, All(pairs)};
+    const auto error = [&](const RigidTransform& pose) {
+      return DirectionErrorDeg(pose.translation, truth.translation);
+    };
+    with_plane +=
+        error(RefineOnPlane(truth, pairs, All(pairs), {}, &plane)) / 50;
+    without += error(RefineRelativePose(truth, pairs, All(pairs), {})) / 50;
+  }
+  EXPECT_LT(with_plane, 0.8 * without);
+}
+
+TEST(InformationOfPlane, StatesTheSpreadOfTheMotion) {
+  double squared = 0;
+  constexpr int kNumTrials = 200;
+  for (int seed = 0; seed < kNumTrials; ++seed) {
+    const TwoViewScene scene = PlanarScene(0.5, seed);
+    const PointPairs pairs = scene.Pairs();
+    ScenePlane plane{kNormal, All(pairs)};
+    const RigidTransform found =
+        RefineOnPlane(scene.cam2_from_cam1, pairs, All(pairs), {}, &plane);
+    const Mat5 information = InformationOfPlane(found, pairs, plane);
+    const auto covariance =
+        RelativePoseCovariance(found, pairs, All(pairs), {}, &information);
+    ASSERT_TRUE(covariance);
+    const Vec5 error = PoseError(found, scene.cam2_from_cam1);
+    squared += error.dot(covariance->inverse() * error) / kNumTrials;
+  }
+  // The mean of chi squared with 5 degrees of freedom, within a fifth.
+  EXPECT_GT(squared, 4);
+  EXPECT_LT(squared, 6);
+}
+
+TEST(RefineOnPlane, PointsOffThePlaneCountWithTheirEpipolarLines) {
+  TwoViewSceneOptions options;
+  options.planar = true;
+  options.num_right = 60;
+  options.num_off_plane = 20;
+  const TwoViewScene scene = MakeTwoViewScene(options, 7);
+  const PointPairs pairs = scene.Pairs();
+  ScenePlane plane{kNormal, {}};
+  for (int i = 20; i < 60; ++i) plane.inliers.push_back(i);
+  Vec5 step;
+  step << 0.01, -0.005, 0.01, 0.02, -0.02;
+  const RigidTransform found = RefineOnPlane(
+      MovedPose(scene.cam2_from_cam1, step), pairs, All(pairs), {}, &plane);
+  EXPECT_LT(
+      DirectionErrorDeg(found.translation, scene.cam2_from_cam1.translation),
+      1e-4);
+}
+
+}  // namespace
+}  // namespace lowlap
