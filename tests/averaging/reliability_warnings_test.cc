@@ -110,6 +110,16 @@ TEST(ReliabilityWarnings, ViewsThatHangOnAWeakRatio) {
               Contains(HasSubstr("only weak scale ratios join them")));
 }
 
+TEST(ReliabilityWarnings, AllViewsWhereNoPartIsMostOfThem) {
+  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  FindRatio({2, 3, 4}, &synthetic.scene)->log10_nfa = -1;
+  FindRatio({4, 5, 6}, &synthetic.scene)->log10_nfa = -1;
+  const auto warnings = WarningsOf(synthetic.scene);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].reason, WarningReason::kWeakScale);
+  EXPECT_EQ(warnings[0].views.size(), 8u);
+}
+
 TEST(ReliabilityWarnings, AWeakRatioBesideStrongOnesIsNoWarning) {
   SyntheticScene synthetic = SceneWithTrueRatios("window:2");
   FindRatio({3, 4, 5}, &synthetic.scene)->log10_nfa = -1;

@@ -133,6 +133,9 @@ class Agreement {
       warn(GroupOf(firm.edges.front(), AnalyzeRigidity(Graph({}), all)),
            std::move(weak));
       warn({placed_.begin(), placed_.end()}, Unheld(held));
+      if (2 * firm.views.size() <= placed_.size()) {
+        AddViews(firm.views, &warnings.back());
+      }
     }
     const auto diagnosis = DiagnoseScales(Graph({}), agreeing_ratios_);
     if (!diagnosis) return warnings;
@@ -163,6 +166,12 @@ class Agreement {
     const Vec3 baseline = Baseline(edge);
     return baseline.norm() > 0 ? AngleBetween(baseline, edge.direction_in_world)
                                : kPi;
+  }
+
+  static void AddViews(const std::vector<ViewId>& views,
+                       ReliabilityWarning* warning) {
+    warning->views.insert(warning->views.end(), views.begin(), views.end());
+    std::sort(warning->views.begin(), warning->views.end());
   }
 
   // What is in use and agrees, without some of it.

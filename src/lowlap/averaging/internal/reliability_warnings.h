@@ -34,7 +34,9 @@ struct ReliabilityOptions {
 ///   whose views would not hold each other without them and weak ratios; two
 ///   views are none if the scene has more.
 ///   Every other view hangs on what was set aside, or on other such views, and
-///   is doubtful for it. A ratio agrees within `reach` deviations, or a tenth.
+///   is doubtful for it; if they are half of the placed views or more, so are
+///   the firm ones: nothing says which of the parts is in its place. A ratio
+///   agrees within `reach` deviations, or a tenth.
 /// - Ratios across one camera are contradicted if those rejected there, between
 ///   the same parts, have more than half their evidence.
 std::vector<ReliabilityWarning> FindReliabilityWarnings(
