@@ -135,6 +135,13 @@ TEST(WeakPose, CountsOnlyWhereNothingElseJoinsItsViews) {
   EXPECT_FALSE(reports->at(1).accepted);
   EXPECT_THAT(reports->at(1).reason, HasSubstr("side by side"));
 
+  // Much less evidence joins them otherwise.
+  matches[{1, 2}].points.resize(12);
+  reports = EstimateRelativePoses(&scene, matches, nullptr, {}, {});
+  ASSERT_THAT(reports, IsOk());
+  EXPECT_EQ(scene.relative_poses.count({1, 2}), 1u);
+  EXPECT_EQ(scene.relative_poses.count({0, 2}), 1u);
+
   matches.erase({1, 2});
   reports = EstimateRelativePoses(&scene, matches, nullptr, {}, {});
   ASSERT_THAT(reports, IsOk());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/believed_tracks.h"
 #include "lowlap/pipeline/internal/check_directions.h"
 #include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/pipeline/internal/reconsider_poses.h"
@@ -212,6 +214,8 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
                       const RunContext& context, StageLog* stages,
                       SolveResult* result) {
   result->poses_before_adjustment = scene->poses;
+  std::optional<BelievedTracks> believed;
+  believed.emplace(PairsOf(result->poses.outlier_edges), scene);
   auto refinement = RefineSolution(scene, options, context, stages);
   if (!refinement && options.adjust &&
       (refinement.error().code == ErrorCode::kInsufficientData ||
@@ -224,6 +228,7 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
     structure_only.adjust = false;
     refinement = RefineSolution(scene, structure_only, context, stages);
   }
+  believed.reset();
   if (!refinement) return tl::unexpected<Error>(refinement.error());
   result->structure = std::move(refinement->structure);
   result->adjustment = std::move(refinement->adjustment);

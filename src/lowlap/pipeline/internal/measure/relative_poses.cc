@@ -1,13 +1,14 @@
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
-#include "lowlap/scene/view_graph.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {
@@ -91,30 +92,40 @@ void LogPairsWithoutParallax(const Scene& scene,
                   names + (count > kMaxNamed ? ", ..." : ""));
 }
 
-// Weak poses count where nothing else joins their views: those within one
-// component of the others are dropped.
+// Weak poses count where nothing else joins their views with as much evidence:
+// those within one component of the other poses whose NFA is no greater are
+// dropped.
 void DropWeakPoses(std::vector<PairEstimate>* estimates) {
-  Scene others;
-  for (const PairEstimate& estimate : *estimates) {
-    if (estimate.pose && !estimate.is_weak) {
-      others.relative_poses[estimate.pose->views] = *estimate.pose;
+  const auto evidence_first = [](const PairEstimate* a, const PairEstimate* b) {
+    return a->pose->log10_nfa < b->pose->log10_nfa;
+  };
+  std::vector<PairEstimate*> weak, others;
+  std::map<ViewId, std::size_t> index_of_view;
+  for (PairEstimate& estimate : *estimates) {
+    if (!estimate.pose) continue;
+    (estimate.is_weak ? weak : others).push_back(&estimate);
+    for (const ViewId view :
+         {estimate.pose->views.first, estimate.pose->views.second}) {
+      index_of_view.emplace(view, index_of_view.size());
     }
   }
-  std::map<ViewId, std::size_t> component_of;
-  const auto components = ConnectedComponents(ViewGraph(others));
-  for (std::size_t n = 0; n < components.size(); ++n) {
-    for (const ViewId view : components[n]) component_of[view] = n;
-  }
-  for (PairEstimate& estimate : *estimates) {
-    if (!estimate.pose || !estimate.is_weak) continue;
-    const auto first = component_of.find(estimate.pose->views.first);
-    const auto second = component_of.find(estimate.pose->views.second);
-    if (first == component_of.end() || second == component_of.end() ||
-        first->second != second->second) {
+  std::stable_sort(weak.begin(), weak.end(), evidence_first);
+  std::stable_sort(others.begin(), others.end(), evidence_first);
+  UnionFind joined(index_of_view.size());
+  auto next = others.begin();
+  for (PairEstimate* estimate : weak) {
+    while (next != others.end() && !evidence_first(estimate, *next)) {
+      const ViewPair& views = (*next++)->pose->views;
+      joined.Union(index_of_view.at(views.first),
+                   index_of_view.at(views.second));
+    }
+    const ViewPair& views = estimate->pose->views;
+    if (joined.Find(index_of_view.at(views.first)) !=
+        joined.Find(index_of_view.at(views.second))) {
       continue;
     }
-    estimate.pose.reset();
-    estimate.reason =
+    estimate->pose.reset();
+    estimate->reason =
         "only matches side by side agree with a motion, which things that look "
         "alike do, too; other relative poses join the views";
   }

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// While it lives, the scene's tracks are without what only relative poses join
+/// that were left out: of the observations of a track, the largest set (the one
+/// with the first view, of equal ones) in which two views are joined directly
+/// or over others by pairs that were not left out. Matches of one wall agree
+/// with the right poses and with a wrong one, which would bend the adjustment
+/// its way. A track that keeps fewer than two views is gone. All tracks come
+/// back in the end.
+class BelievedTracks {
+ public:
+  /// `scene` must outlive this.
+  BelievedTracks(const std::vector<ViewPair>& left_out, Scene* scene);
+  ~BelievedTracks();
+  BelievedTracks(const BelievedTracks&) = delete;
+  BelievedTracks& operator=(const BelievedTracks&) = delete;
+
+ private:
+  Scene* scene_;
+  std::map<PointTrackId, Track> changed_points_;  // as they were
+  std::map<LineTrackId, Track> changed_lines_;
+};
+
+}  // namespace lowlap

@@ -1,0 +1,66 @@
+#include "lowlap/pipeline/internal/believed_tracks.h"
+
+#include <gtest/gtest.h>
+
+namespace lowlap {
+namespace {
+
+Track TrackOf(const std::vector<ViewId>& views) {
+  Track track;
+  for (const ViewId view : views) {
+    track.push_back({view, 7});
+  }
+  return track;
+}
+
+Scene SceneOf(const std::vector<Track>& tracks) {
+  Scene scene;
+  for (std::size_t n = 0; n < tracks.size(); ++n) {
+    scene.point_tracks[static_cast<PointTrackId>(n)] = tracks[n];
+    scene.line_tracks[static_cast<LineTrackId>(n)] = tracks[n];
+  }
+  return scene;
+}
+
+TEST(BelievedTracks, WhatOnlyAWrongPairJoinsIsLeftOut) {
+  Scene scene = SceneOf({TrackOf({0, 2}), TrackOf({0, 1})});
+  const BelievedTracks believed({{0, 2}}, &scene);
+  ASSERT_EQ(scene.point_tracks.size(), 1u);
+  EXPECT_EQ(scene.point_tracks.at(1), TrackOf({0, 1}));
+  EXPECT_EQ(scene.line_tracks.size(), 1u);
+}
+
+TEST(BelievedTracks, AThirdViewMayJoinTwo) {
+  Scene scene = SceneOf({TrackOf({0, 1, 2})});
+  const BelievedTracks believed({{0, 2}}, &scene);
+  EXPECT_EQ(scene.point_tracks.at(0), TrackOf({0, 1, 2}));
+}
+
+TEST(BelievedTracks, TheLargestPartStays) {
+  Scene scene = SceneOf({TrackOf({0, 1, 2, 3, 4})});
+  const BelievedTracks believed(
+      {{0, 2}, {0, 3}, {0, 4}, {1, 2}, {1, 3}, {1, 4}}, &scene);
+  EXPECT_EQ(scene.point_tracks.at(0), TrackOf({2, 3, 4}));
+}
+
+TEST(BelievedTracks, SegmentsOfOneViewAreNoTwoViews) {
+  Scene scene;
+  scene.line_tracks[0] = {{0, 1}, {0, 2}, {3, 1}};
+  const BelievedTracks believed({{0, 3}}, &scene);
+  EXPECT_TRUE(scene.line_tracks.empty());
+}
+
+TEST(BelievedTracks, AllComeBack) {
+  const Scene before = SceneOf(
+      {TrackOf({0, 2}), TrackOf({0, 1}), TrackOf({0, 2, 3}), TrackOf({1, 2})});
+  Scene scene = before;
+  {
+    const BelievedTracks believed({{0, 2}, {0, 3}}, &scene);
+    EXPECT_FALSE(scene.point_tracks == before.point_tracks);
+  }
+  EXPECT_EQ(scene.point_tracks, before.point_tracks);
+  EXPECT_EQ(scene.line_tracks, before.line_tracks);
+}
+
+}  // namespace
+}  // namespace lowlap
