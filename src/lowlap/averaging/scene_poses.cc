@@ -84,19 +84,8 @@ std::set<ViewTriplet> WeakRatios(const Scene& scene,
 // Whether a relative pose that disagrees says that something is wrong: not if
 // it is only a little off, nor if its matches do not bear it out.
 bool Contradicts(const OutlierEdge& edge, const MatchVerdicts& matches) {
-  const double little_deg = PoseOptions().least_false_deg;
-  switch (edge.reason) {
-    case OutlierReason::kMatches:
-      return false;
-    case OutlierReason::kRotation:
-      if (edge.error_deg <= little_deg) return false;
-      break;
-    case OutlierReason::kDirection:
-      if (edge.error_deg <= 3 * little_deg) return false;
-      break;
-    case OutlierReason::kContradicted:
-    case OutlierReason::kOpenLoop:
-      break;
+  if (edge.reason == OutlierReason::kMatches || edge.IsLittleOff()) {
+    return false;
   }
   return std::find(matches.untold.begin(), matches.untold.end(), edge.views) ==
          matches.untold.end();

@@ -23,7 +23,7 @@ struct PoseOptions {
   /// three times this), however small its stated deviation, which covers
   /// neither calibration nor what errors have in common. Robust weights deal
   /// with it.
-  double least_false_deg = 1.0;
+  double least_false_deg = kLittleDeg;
 
   Status Validate() const;
 };

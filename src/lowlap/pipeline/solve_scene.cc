@@ -118,6 +118,18 @@ std::size_t CountScaleParts(const Scene& scene, const PoseSummary& summary) {
       .groups.size();
 }
 
+// The pairs whose matches are not believed: the relative poses that were left
+// out for what the others say, and by more than a little.
+std::vector<ViewPair> FalsePairs(const PoseSummary& summary) {
+  std::vector<ViewPair> pairs;
+  for (const OutlierEdge& edge : summary.outlier_edges) {
+    if (edge.reason != OutlierReason::kMatches && !edge.IsLittleOff()) {
+      pairs.push_back(edge.views);
+    }
+  }
+  return pairs;
+}
+
 }  // namespace
 
 StructurePositions PositionsOf(const Scene& scene) {
@@ -215,7 +227,7 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
                       SolveResult* result) {
   result->poses_before_adjustment = scene->poses;
   std::optional<BelievedTracks> believed;
-  believed.emplace(PairsOf(result->poses.outlier_edges), scene);
+  believed.emplace(FalsePairs(result->poses), scene);
   auto refinement = RefineSolution(scene, options, context, stages);
   if (!refinement && options.adjust &&
       (refinement.error().code == ErrorCode::kInsufficientData ||

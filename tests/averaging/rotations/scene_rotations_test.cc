@@ -222,5 +222,16 @@ TEST(AverageSceneRotations, RefusesAnEmptyScene) {
             ErrorCode::kInsufficientData);
 }
 
+TEST(OutlierEdge, IsLittleOffBelowADegreeOrThree) {
+  const auto is_little = [](OutlierReason reason, double error_deg) {
+    return OutlierEdge{{0, 1}, reason, error_deg}.IsLittleOff();
+  };
+  EXPECT_TRUE(is_little(OutlierReason::kRotation, 0.9));
+  EXPECT_FALSE(is_little(OutlierReason::kRotation, 1.1));
+  EXPECT_TRUE(is_little(OutlierReason::kDirection, 2.9));
+  EXPECT_FALSE(is_little(OutlierReason::kDirection, 3.1));
+  EXPECT_FALSE(is_little(OutlierReason::kOpenLoop, 0));
+}
+
 }  // namespace
 }  // namespace lowlap

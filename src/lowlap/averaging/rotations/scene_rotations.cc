@@ -256,6 +256,20 @@ const char* OutlierReasonName(OutlierReason reason) {
   return "";
 }
 
+bool OutlierEdge::IsLittleOff() const {
+  switch (reason) {
+    case OutlierReason::kRotation:
+      return error_deg <= kLittleDeg;
+    case OutlierReason::kDirection:
+      return error_deg <= 3 * kLittleDeg;
+    case OutlierReason::kContradicted:
+    case OutlierReason::kOpenLoop:
+    case OutlierReason::kMatches:
+      break;
+  }
+  return false;
+}
+
 std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers) {
   std::vector<ViewPair> pairs;
   pairs.reserve(outliers.size());

@@ -34,6 +34,10 @@ enum class OutlierReason {
 /// "rotation", "direction", "contradicted", "open_loop", "matches".
 const char* OutlierReasonName(OutlierReason reason);
 
+/// What a rotation may be off without being called false (a direction: three
+/// times that).
+inline constexpr double kLittleDeg = 1.0;
+
 /// A relative pose that was left out, and why.
 struct OutlierEdge {
   ViewPair views;
@@ -41,6 +45,10 @@ struct OutlierEdge {
   /// Its distance from the solution when it was left out; 0 for kContradicted,
   /// kOpenLoop and kMatches.
   double error_deg = 0;
+
+  /// Left out though it is off by a little only: no sign that its matches are
+  /// wrong.
+  bool IsLittleOff() const;
 };
 
 std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers);
