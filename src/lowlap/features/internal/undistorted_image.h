@@ -29,7 +29,7 @@ class UndistortedImage {
   std::optional<LineSegment> ToDistorted(const LineSegment& segment) const;
 
  private:
-  UndistortedImage(GrayImage image, Intrinsic intrinsic, Vec2 origin_px)
+  UndistortedImage(GrayImage image, Intrinsic intrinsic, const Vec2& origin_px)
       : image_(std::move(image)),
         intrinsic_(std::move(intrinsic)),
         origin_px_(origin_px) {}

@@ -9,14 +9,14 @@ namespace lowlap {
 namespace {
 
 /// Crossings of lines have no window of their own.
-constexpr double kCrossingScale_px = std::numeric_limits<double>::infinity();
+constexpr double kCrossingScalePx = std::numeric_limits<double>::infinity();
 
 bool IsRepeated(const TwoViewInput& input, const ShuffledMatches& matches,
                 int n) {
   const int m = matches.match_of_pair[n];
   if (m == ShuffledMatches::kCrossing) {
-    return input.repeats1->Covers(matches.pairs.x1[n], kCrossingScale_px) ||
-           input.repeats2->Covers(matches.pairs.x2[n], kCrossingScale_px);
+    return input.repeats1->Covers(matches.pairs.x1[n], kCrossingScalePx) ||
+           input.repeats2->Covers(matches.pairs.x2[n], kCrossingScalePx);
   }
   const FeatureMatch& match = input.point_matches[m];
   return input.repeats1->HasPoint(match.first) ||

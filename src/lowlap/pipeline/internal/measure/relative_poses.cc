@@ -176,6 +176,7 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
     const std::map<ViewPair, RigidTransform>& given) {
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::vector<ViewPair> pairs;
+  pairs.reserve(matches.size());
   for (const auto& entry : matches) pairs.push_back(entry.first);
   LOWLAP_ASSIGN_OR_RETURN(
       const auto measurements,

@@ -107,7 +107,7 @@ Status MatchPairs(const std::vector<ViewPair>& pairs,
   }
   return ParallelFor(
       context, "matching tilted views", pairs.size(), [&](std::size_t n) {
-        const auto& [first, second] = pairs[n];
+        const ViewId first = pairs[n].first, second = pairs[n].second;
         const TiltedOfView &tilted1 = tilted.at(first),
                            &tilted2 = tilted.at(second);
         PairMatches& of_pair = matches->at(pairs[n]);

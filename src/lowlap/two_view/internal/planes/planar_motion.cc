@@ -95,7 +95,7 @@ std::optional<RigidTransform> OtherPlanarMotion(
   const Mat3 h = cam2_from_cam1.rotation +
                  cam2_from_cam1.translation * plane_normal.transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(h.transpose() * h);
-  const Vec3 squared = solver.eigenvalues();  // ascending; the middle one is 1
+  const Vec3& squared = solver.eigenvalues();  // ascending; the middle one is 1
   const double low = std::max(0.0, 1 - squared[0]);
   const double high = std::max(0.0, squared[2] - 1);
   // Without a translation both vanish; with t parallel to n, one of them.

@@ -27,6 +27,7 @@ std::vector<FeatureMatch> PointMatches(const TwoViewInput& input,
   }
   std::sort(inliers.begin(), inliers.end());
   std::vector<FeatureMatch> points;
+  points.reserve(inliers.size());
   for (const int m : inliers) points.push_back(input.point_matches[m]);
   return points;
 }

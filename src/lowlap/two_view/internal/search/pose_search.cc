@@ -53,6 +53,7 @@ std::vector<PoseCandidate> PoseSearch::Search(Random& random,
     }
   }
   std::vector<PoseCandidate> candidates;
+  candidates.reserve(motions.size());
   for (const RigidTransform& motion : motions) {
     candidates.push_back(Finish(motion));
   }
