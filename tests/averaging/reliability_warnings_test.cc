@@ -120,6 +120,18 @@ TEST(ReliabilityWarnings, AllViewsWhereNoPartIsMostOfThem) {
   EXPECT_EQ(warnings[0].views.size(), 8u);
 }
 
+TEST(ReliabilityWarnings, NoViewIsNamedTwice) {
+  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  for (ScaleRatio& ratio : synthetic.scene.scale_ratios) ratio.log10_nfa = -1;
+  std::vector<ViewId> named;
+  for (const ReliabilityWarning& warning : WarningsOf(synthetic.scene)) {
+    named.insert(named.end(), warning.views.begin(), warning.views.end());
+  }
+  std::sort(named.begin(), named.end());
+  EXPECT_EQ(std::adjacent_find(named.begin(), named.end()), named.end());
+  EXPECT_EQ(named.size(), 8u);
+}
+
 TEST(ReliabilityWarnings, AWeakRatioBesideStrongOnesIsNoWarning) {
   SyntheticScene synthetic = SceneWithTrueRatios("window:2");
   FindRatio({3, 4, 5}, &synthetic.scene)->log10_nfa = -1;

@@ -11,6 +11,7 @@
 #include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/two_view/internal/kernels/five_point.h"
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
+#include "lowlap/two_view/internal/lone_matches.h"
 #include "lowlap/two_view/internal/planes/refine_on_plane.h"
 #include "lowlap/two_view/internal/search/chance_support.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
@@ -184,11 +185,15 @@ PoseCandidate PoseSearch::Finish(const RigidTransform& cam2_from_cam1) const {
 void PoseSearch::TieToPlane(const ScenePlane& plane,
                             PoseCandidate* candidate) const {
   const double threshold_px = candidate->support.threshold;
-  ScenePlane refined_plane = plane;
-  const RigidTransform refined = RefineOnPlane(
+  const PoseRefinementOptions refinement = RefinementOptions(*candidate);
+  // What lies off the plane alone is there by chance.
+  const std::vector<int> borne_out = BorneOutMatches(
       candidate->pose, kernel_.pairs(),
       kernel_.VisibleWithinThreshold(candidate->pose, 2 * threshold_px),
-      RefinementOptions(*candidate), &refined_plane);
+      refinement);
+  ScenePlane refined_plane = plane;
+  const RigidTransform refined = RefineOnPlane(
+      candidate->pose, kernel_.pairs(), borne_out, refinement, &refined_plane);
   candidate->plane = plane;
   if (!(SupportOf(refined).log10_nfa < 0)) return;
   candidate->pose = refined;
