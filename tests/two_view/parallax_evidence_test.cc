@@ -12,7 +12,7 @@ using testing::MakeTwoViewScene;
 using testing::TwoViewScene;
 using testing::TwoViewSceneOptions;
 
-const ScenePlane kPlane{Vec3(0.4, 0.2, 1).normalized() / 6, {}};
+const ScenePlane kPlane{testing::kPlaneNormal, {}};
 
 double EvidenceOf(const TwoViewScene& scene) {
   return ParallaxEvidence(scene.cam2_from_cam1, kPlane, scene.Pairs(), 1);

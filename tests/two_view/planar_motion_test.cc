@@ -10,11 +10,10 @@ namespace lowlap {
 namespace {
 
 using testing::DirectionErrorDeg;
+using testing::kPlaneNormal;
 using testing::MakeTwoViewScene;
 using testing::RotationErrorDeg;
 using testing::TwoViewSceneOptions;
-
-const Vec3 kNormal = Vec3(0.4, 0.2, 1).normalized() / 6;
 
 TEST(OtherPlanarMotion, MovesThePlaneLikeTheGivenOne) {
   Random random(1);
@@ -70,8 +69,9 @@ TEST(DominantPlane, FindsThePlaneAmongOtherPoints) {
   const auto plane =
       DominantPlane(scene.cam2_from_cam1, scene.Pairs(), all, 1.5, random);
   ASSERT_TRUE(plane);
-  EXPECT_LT(DirectionErrorDeg(plane->normal, kNormal), 1);
-  EXPECT_NEAR(plane->normal.norm(), kNormal.norm(), 0.01 * kNormal.norm());
+  EXPECT_LT(DirectionErrorDeg(plane->normal, kPlaneNormal), 1);
+  EXPECT_NEAR(plane->normal.norm(), kPlaneNormal.norm(),
+              0.01 * kPlaneNormal.norm());
   int on_plane = 0;
   for (const int i : plane->inliers) on_plane += i >= 80;
   EXPECT_GE(on_plane, 115);

@@ -12,12 +12,11 @@ namespace lowlap {
 namespace {
 
 using testing::DirectionErrorDeg;
+using testing::kPlaneNormal;
 using testing::MakeTwoViewScene;
 using testing::RotationErrorDeg;
 using testing::TwoViewScene;
 using testing::TwoViewSceneOptions;
-
-const Vec3 kNormal = Vec3(0.4, 0.2, 1).normalized() / 6;
 
 std::vector<int> All(const PointPairs& pairs) {
   std::vector<int> all(pairs.size());
@@ -39,7 +38,7 @@ TEST(RefineOnPlane, FindsTheMotionOfPointsOnAPlane) {
   for (int seed = 0; seed < 10; ++seed) {
     const TwoViewScene scene = PlanarScene(0, seed);
     const PointPairs pairs = scene.Pairs();
-    ScenePlane plane{kNormal + Vec3(0.01, -0.01, 0.01), All(pairs)};
+    ScenePlane plane{kPlaneNormal + Vec3(0.01, -0.01, 0.01), All(pairs)};
     const RigidTransform found = RefineOnPlane(
         MovedPose(scene.cam2_from_cam1, step), pairs, All(pairs), {}, &plane);
     EXPECT_LT(RotationErrorDeg(found.rotation, scene.cam2_from_cam1.rotation),
@@ -47,7 +46,7 @@ TEST(RefineOnPlane, FindsTheMotionOfPointsOnAPlane) {
     EXPECT_LT(
         DirectionErrorDeg(found.translation, scene.cam2_from_cam1.translation),
         1e-4);
-    EXPECT_LT((plane.normal - kNormal).norm(), 1e-6);
+    EXPECT_LT((plane.normal - kPlaneNormal).norm(), 1e-6);
   }
 }
 
@@ -57,7 +56,7 @@ TEST(RefineOnPlane, IsBetterThanEpipolarLinesAlone) {
     const TwoViewScene scene = PlanarScene(0.5, seed);
     const PointPairs pairs = scene.Pairs();
     const RigidTransform& truth = scene.cam2_from_cam1;
-    ScenePlane plane{kNormal, All(pairs)};
+    ScenePlane plane{kPlaneNormal, All(pairs)};
     const auto error = [&](const RigidTransform& pose) {
       return DirectionErrorDeg(pose.translation, truth.translation);
     };
@@ -74,7 +73,7 @@ TEST(InformationOfPlane, StatesTheSpreadOfTheMotion) {
   for (int seed = 0; seed < kNumTrials; ++seed) {
     const TwoViewScene scene = PlanarScene(0.5, seed);
     const PointPairs pairs = scene.Pairs();
-    ScenePlane plane{kNormal, All(pairs)};
+    ScenePlane plane{kPlaneNormal, All(pairs)};
     const RigidTransform found =
         RefineOnPlane(scene.cam2_from_cam1, pairs, All(pairs), {}, &plane);
     const Mat5 information = InformationOfPlane(found, pairs, plane);
@@ -96,7 +95,7 @@ TEST(RefineOnPlane, PointsOffThePlaneCountWithTheirEpipolarLines) {
   options.num_off_plane = 20;
   const TwoViewScene scene = MakeTwoViewScene(options, 7);
   const PointPairs pairs = scene.Pairs();
-  ScenePlane plane{kNormal, {}};
+  ScenePlane plane{kPlaneNormal, {}};
   for (int i = 20; i < 60; ++i) plane.inliers.push_back(i);
   Vec5 step;
   step << 0.01, -0.005, 0.01, 0.02, -0.02;

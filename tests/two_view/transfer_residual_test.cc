@@ -12,12 +12,10 @@
 namespace lowlap {
 namespace {
 
+using testing::kPlaneNormal;
 using testing::MakeTwoViewScene;
 using testing::TwoViewScene;
 using testing::TwoViewSceneOptions;
-
-// The plane of a planar two-view scene, in baselines.
-const Vec3 kNormal = Vec3(0.4, 0.2, 1).normalized() / 6;
 
 TwoViewScene PlanarScene(double noise_px, std::uint64_t seed) {
   TwoViewSceneOptions options;
@@ -40,7 +38,7 @@ TEST(TransferResidual, VanishesOnThePlane) {
   const TwoViewScene scene = PlanarScene(0, 1);
   PointPairs pairs = scene.Pairs();
   ShapeErrors(&pairs);
-  const TransferResidual residual(scene.cam2_from_cam1, kNormal, pairs);
+  const TransferResidual residual(scene.cam2_from_cam1, kPlaneNormal, pairs);
   for (int i = 0; i < pairs.size(); ++i) {
     ASSERT_TRUE(residual(i));
     EXPECT_LT(residual(i)->norm(), 1e-9);
@@ -52,7 +50,7 @@ TEST(TransferResidual, IsAcrossAndAlongTheEpipolarLine) {
   const TwoViewScene scene = PlanarScene(0.01, 2);
   PointPairs pairs = scene.Pairs();
   ShapeErrors(&pairs);
-  const TransferResidual residual(scene.cam2_from_cam1, kNormal, pairs);
+  const TransferResidual residual(scene.cam2_from_cam1, kPlaneNormal, pairs);
   const SampsonResidual across(scene.cam2_from_cam1, pairs);
   for (int i = 0; i < pairs.size(); ++i) {
     const double norm = residual(i)->norm();
@@ -65,7 +63,7 @@ TEST(TransferResidual, HasTheStatedDerivatives) {
   PointPairs pairs = scene.Pairs();
   ShapeErrors(&pairs);
   constexpr double kStep = 1e-6;
-  const TransferResidual residual(scene.cam2_from_cam1, kNormal, pairs);
+  const TransferResidual residual(scene.cam2_from_cam1, kPlaneNormal, pairs);
   for (int i = 0; i < 10; ++i) {
     TransferResidual::Jacobian jacobian;
     residual(i, &jacobian);
@@ -74,7 +72,7 @@ TEST(TransferResidual, HasTheStatedDerivatives) {
     for (int k = 0; k < 8; ++k) {
       const auto moved = [&](double step) {
         Vec5 change = Vec5::Zero();
-        Vec3 normal = kNormal;
+        Vec3 normal = kPlaneNormal;
         (k < 5 ? change[k] : normal[k - 5]) += step;
         return TransferResidual(MovedPose(scene.cam2_from_cam1, change), normal,
                                 pairs);

@@ -50,6 +50,9 @@ struct TwoViewSceneOptions {
 
 inline constexpr double kFocalPx = 1300;
 
+/// The plane n . X = 1 of planar scenes, in camera 1.
+inline const Vec3 kPlaneNormal = Vec3(0.4, 0.2, 1).normalized() / 6;
+
 /// A point within the image of 1600 x 1200 pixels, normalised.
 inline Vec3 RandomImagePoint(Random& random) {
   return {random.Uniform(-800, 800) / kFocalPx,
@@ -77,14 +80,13 @@ inline TwoViewScene MakeTwoViewScene(const TwoViewSceneOptions& options,
     scene.features2.points.push_back(x2);
     scene.matches.push_back({index, index});
   };
-  const Vec3 plane_normal = Vec3(0.4, 0.2, 1).normalized();
   while (static_cast<int>(scene.matches.size()) < options.num_right) {
     const Vec3 x1 = RandomImagePoint(random);
     const bool on_plane =
         options.planar &&
         static_cast<int>(scene.matches.size()) >= options.num_off_plane;
     const double depth =
-        on_plane ? 6 / plane_normal.dot(x1) : random.Uniform(4, 9);
+        on_plane ? 1 / kPlaneNormal.dot(x1) : random.Uniform(4, 9);
     const Vec3 y = options.cam2_from_cam1.rotation * (depth * x1) +
                    options.baseline * options.cam2_from_cam1.translation;
     if (y.z() < 0.5 || !inside(y / y.z())) continue;

@@ -133,7 +133,8 @@ class Agreement {
       warn(GroupOf(firm.edges.front(), AnalyzeRigidity(Graph({}), all)),
            std::move(weak));
       warn({placed_.begin(), placed_.end()}, Unheld(held));
-      // Fewer than three are named already.
+      // The last warning says what joins the parts. Fewer than three views are
+      // named already.
       if (firm.views.size() > 2 && 2 * firm.views.size() <= placed_.size()) {
         AddViews(firm.views, &warnings.back());
       }

@@ -82,13 +82,11 @@ std::set<ViewTriplet> WeakRatios(const Scene& scene,
 }
 
 // Whether a relative pose that disagrees says that something is wrong: not if
-// it is only a little off, nor if its matches do not bear it out.
+// its matches do not bear it out.
 bool Contradicts(const OutlierEdge& edge, const MatchVerdicts& matches) {
-  if (edge.reason == OutlierReason::kMatches || edge.IsLittleOff()) {
-    return false;
-  }
-  return std::find(matches.untold.begin(), matches.untold.end(), edge.views) ==
-         matches.untold.end();
+  return edge.IsFalse() &&
+         std::find(matches.untold.begin(), matches.untold.end(), edge.views) ==
+             matches.untold.end();
 }
 
 // Those of the relative poses of placed views; what is contested already is

@@ -118,14 +118,11 @@ std::size_t CountScaleParts(const Scene& scene, const PoseSummary& summary) {
       .groups.size();
 }
 
-// The pairs whose matches are not believed: the relative poses that were left
-// out for what the others say, and by more than a little.
+// The pairs whose matches are not believed.
 std::vector<ViewPair> FalsePairs(const PoseSummary& summary) {
   std::vector<ViewPair> pairs;
   for (const OutlierEdge& edge : summary.outlier_edges) {
-    if (edge.reason != OutlierReason::kMatches && !edge.IsLittleOff()) {
-      pairs.push_back(edge.views);
-    }
+    if (edge.IsFalse()) pairs.push_back(edge.views);
   }
   return pairs;
 }

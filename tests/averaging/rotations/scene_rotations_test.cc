@@ -222,15 +222,17 @@ TEST(AverageSceneRotations, RefusesAnEmptyScene) {
             ErrorCode::kInsufficientData);
 }
 
-TEST(OutlierEdge, IsLittleOffBelowADegreeOrThree) {
-  const auto is_little = [](OutlierReason reason, double error_deg) {
-    return OutlierEdge{{0, 1}, reason, error_deg}.IsLittleOff();
+TEST(OutlierEdge, IsFalseByMoreThanADegreeOrThree) {
+  const auto is_false = [](OutlierReason reason, double error_deg) {
+    return OutlierEdge{{0, 1}, reason, error_deg}.IsFalse();
   };
-  EXPECT_TRUE(is_little(OutlierReason::kRotation, 0.9));
-  EXPECT_FALSE(is_little(OutlierReason::kRotation, 1.1));
-  EXPECT_TRUE(is_little(OutlierReason::kDirection, 2.9));
-  EXPECT_FALSE(is_little(OutlierReason::kDirection, 3.1));
-  EXPECT_FALSE(is_little(OutlierReason::kOpenLoop, 0));
+  EXPECT_FALSE(is_false(OutlierReason::kRotation, 0.9));
+  EXPECT_TRUE(is_false(OutlierReason::kRotation, 1.1));
+  EXPECT_FALSE(is_false(OutlierReason::kDirection, 2.9));
+  EXPECT_TRUE(is_false(OutlierReason::kDirection, 3.1));
+  EXPECT_TRUE(is_false(OutlierReason::kContradicted, 0));
+  EXPECT_TRUE(is_false(OutlierReason::kOpenLoop, 0));
+  EXPECT_FALSE(is_false(OutlierReason::kMatches, 0));
 }
 
 }  // namespace

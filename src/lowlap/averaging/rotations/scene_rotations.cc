@@ -256,14 +256,15 @@ const char* OutlierReasonName(OutlierReason reason) {
   return "";
 }
 
-bool OutlierEdge::IsLittleOff() const {
+bool OutlierEdge::IsFalse() const {
   switch (reason) {
     case OutlierReason::kRotation:
-      return error_deg <= kLittleDeg;
+      return error_deg > kLittleDeg;
     case OutlierReason::kDirection:
-      return error_deg <= 3 * kLittleDeg;
+      return error_deg > 3 * kLittleDeg;
     case OutlierReason::kContradicted:
     case OutlierReason::kOpenLoop:
+      return true;
     case OutlierReason::kMatches:
       break;
   }

@@ -46,9 +46,9 @@ struct OutlierEdge {
   /// kOpenLoop and kMatches.
   double error_deg = 0;
 
-  /// Left out though it is off by a little only: no sign that its matches are
-  /// wrong.
-  bool IsLittleOff() const;
+  /// The others say that it is wrong: not if it is off by a little only, nor if
+  /// its own matches contradict it, which are right then.
+  bool IsFalse() const;
 };
 
 std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers);
