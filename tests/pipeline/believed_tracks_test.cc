@@ -36,6 +36,45 @@ TEST(BelievedTracks, AThirdViewMayJoinTwo) {
   EXPECT_EQ(scene.point_tracks.at(0), TrackOf({0, 1, 2}));
 }
 
+// A scene whose pairs state their matches, all of feature 7 with feature 7.
+void Match(const std::vector<ViewPair>& pairs, Scene* scene) {
+  for (const ViewPair& views : pairs) {
+    RelativePose& pose = scene->relative_poses[views];
+    pose.views = views;
+    pose.point_inliers = pose.line_inliers = {{7, 7}};
+  }
+}
+
+TEST(BelievedTracks, AThirdViewThatMatchesOneOfThemJoinsNothing) {
+  Scene scene = SceneOf({TrackOf({0, 1, 2})});
+  Match({{0, 1}, {0, 2}, {1, 2}}, &scene);
+  // Other points of the views 0 and 1 match, these do not.
+  scene.relative_poses.at({0, 1}).point_inliers = {{3, 4}};
+  const BelievedTracks believed({{0, 2}}, &scene);
+  EXPECT_EQ(scene.point_tracks.at(0), TrackOf({1, 2}));
+  EXPECT_EQ(scene.line_tracks.at(0), TrackOf({0, 1, 2}));
+}
+
+TEST(BelievedTracks, ViewsWithoutRelativePoseAreJoinedOverOthers) {
+  Scene scene = SceneOf({TrackOf({0, 1, 2, 3}), TrackOf({0, 2, 3})});
+  Match({{0, 1}, {0, 2}, {1, 3}, {2, 3}}, &scene);
+  const BelievedTracks believed({{0, 2}}, &scene);
+  EXPECT_EQ(scene.point_tracks.at(0), TrackOf({0, 1, 2, 3}));
+  EXPECT_EQ(scene.point_tracks.at(1), TrackOf({2, 3}));
+}
+
+TEST(BelievedTracks, RelativePosesThatWereLeftOutHoldNothing) {
+  Scene scene = SceneOf({TrackOf({0, 1, 2})});
+  Match({{0, 1}, {0, 2}, {1, 2}}, &scene);
+  {
+    const BelievedTracks believed({{0, 2}, {3, 4}}, &scene);
+    EXPECT_EQ(scene.relative_poses.size(), 2u);
+    EXPECT_EQ(scene.relative_poses.count({0, 2}), 0u);
+  }
+  ASSERT_EQ(scene.relative_poses.size(), 3u);
+  EXPECT_EQ(scene.relative_poses.at({0, 2}).point_inliers.size(), 1u);
+}
+
 TEST(BelievedTracks, TheLargestPartStays) {
   Scene scene = SceneOf({TrackOf({0, 1, 2, 3, 4})});
   const BelievedTracks believed(

@@ -10,12 +10,60 @@
 namespace lowlap {
 namespace {
 
-using Partners = std::map<ViewId, std::set<ViewId>>;
+using Matches = std::vector<FeatureMatch> RelativePose::*;
 
-bool AreLeftOut(const Partners& left_out, ViewId a, ViewId b) {
-  const auto partners = left_out.find(a);
-  return partners != left_out.end() && partners->second.count(b) > 0;
-}
+// What joins two observations of a track.
+class Links {
+ public:
+  // `matches`: point_inliers or line_inliers.
+  Links(const std::vector<ViewPair>& left_out,
+        const std::map<ViewPair, RelativePose>& poses, Matches matches)
+      : poses_(poses), matches_(matches) {
+    for (const ViewPair& views : left_out) {
+      left_out_[views.first].insert(views.second);
+      left_out_[views.second].insert(views.first);
+    }
+    are_matches_known_ = std::any_of(
+        poses.begin(), poses.end(),
+        [&](const auto& entry) { return !(entry.second.*matches).empty(); });
+  }
+
+  /// The views whose relative poses with this one were left out.
+  const std::set<ViewId>& LeftOutWith(ViewId view) const {
+    static const std::set<ViewId> kNone;
+    const auto partners = left_out_.find(view);
+    return partners == left_out_.end() ? kNone : partners->second;
+  }
+
+  // Whether a relative pose that was not left out matches the two; where
+  // nobody knows matches, any may.
+  bool AreJoined(const FeatureRef& a, const FeatureRef& b) {
+    if (a.view == b.view) return true;
+    if (LeftOutWith(a.view).count(b.view) > 0) return false;
+    if (!are_matches_known_) return true;
+    return a.view < b.view ? IsMatch(a, b) : IsMatch(b, a);
+  }
+
+ private:
+  bool IsMatch(const FeatureRef& first, const FeatureRef& second) {
+    const ViewPair views{first.view, second.view};
+    const auto [entry, is_new] = sorted_.try_emplace(views);
+    std::vector<FeatureMatch>& matches = entry->second;
+    if (is_new) {
+      const auto pose = poses_.find(views);
+      if (pose != poses_.end()) matches = pose->second.*matches_;
+      std::sort(matches.begin(), matches.end());
+    }
+    return std::binary_search(matches.begin(), matches.end(),
+                              FeatureMatch{first.feature, second.feature});
+  }
+
+  const std::map<ViewPair, RelativePose>& poses_;
+  Matches matches_;
+  bool are_matches_known_ = false;
+  std::map<ViewId, std::set<ViewId>> left_out_;
+  std::map<ViewPair, std::vector<FeatureMatch>> sorted_;  // of those asked for
+};
 
 bool Sees(const Track& track, ViewId view) {
   return std::any_of(
@@ -24,24 +72,20 @@ bool Sees(const Track& track, ViewId view) {
 }
 
 // Whether any two views of the track were left out: of most tracks, none.
-bool MayChange(const Track& track, const Partners& left_out) {
+bool MayChange(const Track& track, const Links& links) {
   for (const FeatureRef& observation : track) {
-    const auto partners = left_out.find(observation.view);
-    if (partners == left_out.end()) continue;
-    for (const ViewId partner : partners->second) {
+    for (const ViewId partner : links.LeftOutWith(observation.view)) {
       if (Sees(track, partner)) return true;
     }
   }
   return false;
 }
 
-Track BelievedPart(const Track& track, const Partners& left_out) {
+Track BelievedPart(const Track& track, Links* links) {
   UnionFind joined(track.size());
   for (std::size_t a = 0; a < track.size(); ++a) {
     for (std::size_t b = a + 1; b < track.size(); ++b) {
-      if (!AreLeftOut(left_out, track[a].view, track[b].view)) {
-        joined.Union(a, b);
-      }
+      if (links->AreJoined(track[a], track[b])) joined.Union(a, b);
     }
   }
   const std::vector<std::size_t> labels = joined.Labels();
@@ -60,11 +104,11 @@ bool HasTwoViews(const Track& track) {
 
 // Moves what changes to `changed`.
 template <class Tracks>
-void Reduce(const Partners& left_out, Tracks* tracks, Tracks* changed) {
+void Reduce(Links links, Tracks* tracks, Tracks* changed) {
   for (auto entry = tracks->begin(); entry != tracks->end();) {
     Track& track = entry->second;
     Track believed;
-    if (MayChange(track, left_out)) believed = BelievedPart(track, left_out);
+    if (MayChange(track, links)) believed = BelievedPart(track, &links);
     if (believed.empty() || believed.size() == track.size()) {
       ++entry;
       continue;
@@ -89,18 +133,21 @@ void Restore(Tracks* changed, Tracks* tracks) {
 BelievedTracks::BelievedTracks(const std::vector<ViewPair>& left_out,
                                Scene* scene)
     : scene_(scene) {
-  Partners partners;
+  const auto& poses = scene->relative_poses;
+  Reduce(Links(left_out, poses, &RelativePose::point_inliers),
+         &scene->point_tracks, &changed_points_);
+  Reduce(Links(left_out, poses, &RelativePose::line_inliers),
+         &scene->line_tracks, &changed_lines_);
   for (const ViewPair& views : left_out) {
-    partners[views.first].insert(views.second);
-    partners[views.second].insert(views.first);
+    auto pose = scene->relative_poses.extract(views);
+    if (!pose.empty()) left_out_poses_.insert(std::move(pose));
   }
-  Reduce(partners, &scene->point_tracks, &changed_points_);
-  Reduce(partners, &scene->line_tracks, &changed_lines_);
 }
 
 BelievedTracks::~BelievedTracks() {
   Restore(&changed_points_, &scene_->point_tracks);
   Restore(&changed_lines_, &scene_->line_tracks);
+  scene_->relative_poses.merge(left_out_poses_);
 }
 
 }  // namespace lowlap

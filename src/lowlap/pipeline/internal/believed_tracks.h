@@ -9,11 +9,13 @@ namespace lowlap {
 
 /// While it lives, the scene's tracks are without what only relative poses join
 /// that were left out: of the observations of a track, the largest set (the one
-/// with the first view, of equal ones) in which two views are joined directly
-/// or over others by pairs that were not left out. Matches of one wall agree
-/// with the right poses and with a wrong one, which would bend the adjustment
-/// its way. A track that keeps fewer than two views is gone. All tracks come
-/// back in the end.
+/// with the first view, of equal ones) that the matches of relative poses that
+/// were not left out join, directly or over others. In a scene whose relative
+/// poses state no matches any of them may. Matches of one wall agree with the
+/// right poses and with a wrong one, which would bend the adjustment its way. A
+/// track that keeps fewer than two views is gone. The relative poses that were
+/// left out are gone as well: no prior may hold what contradicts the others.
+/// All comes back in the end.
 class BelievedTracks {
  public:
   /// `scene` must outlive this.
@@ -26,6 +28,7 @@ class BelievedTracks {
   Scene* scene_;
   std::map<PointTrackId, Track> changed_points_;  // as they were
   std::map<LineTrackId, Track> changed_lines_;
+  std::map<ViewPair, RelativePose> left_out_poses_;
 };
 
 }  // namespace lowlap
