@@ -67,7 +67,7 @@ TEST(RefineOnPlane, IsBetterThanEpipolarLinesAlone) {
   EXPECT_LT(with_plane, 0.8 * without);
 }
 
-TEST(InformationOfPlane, StatesTheSpreadOfTheMotion) {
+TEST(CovarianceOnPlane, StatesTheSpreadOfTheMotion) {
   double squared = 0;
   constexpr int kNumTrials = 200;
   for (int seed = 0; seed < kNumTrials; ++seed) {
@@ -76,9 +76,7 @@ TEST(InformationOfPlane, StatesTheSpreadOfTheMotion) {
     ScenePlane plane{kPlaneNormal, All(pairs)};
     const RigidTransform found =
         RefineOnPlane(scene.cam2_from_cam1, pairs, All(pairs), {}, &plane);
-    const Mat5 information = InformationOfPlane(found, pairs, plane);
-    const auto covariance =
-        RelativePoseCovariance(found, pairs, All(pairs), {}, &information);
+    const auto covariance = CovarianceOnPlane(found, pairs, plane, {});
     ASSERT_TRUE(covariance);
     const Vec5 error = PoseError(found, scene.cam2_from_cam1);
     squared += error.dot(covariance->inverse() * error) / kNumTrials;

@@ -11,6 +11,8 @@ namespace {
 
 /// The variance of a segment's end point over that of a keypoint.
 constexpr double kLineVariance = 0.25;
+/// Matches within this share of the image's diagonal err together.
+constexpr double kCommonErrorShare = 0.05;
 
 }  // namespace
 
@@ -19,6 +21,8 @@ ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random) {
   PointPairs& pairs = shuffled.pairs;
   pairs.focal1_px = input.features1->focal_px;
   pairs.focal2_px = input.features2->focal_px;
+  pairs.common_error_side1 =
+      kCommonErrorShare * input.image_size1_px.norm() / pairs.focal1_px;
   const auto add = [&](int match, const Vec3& x1, const Vec3& x2,
                        const Mat2& covariance1, const Mat2& covariance2) {
     shuffled.match_of_pair.push_back(match);

@@ -17,6 +17,9 @@ struct PointPairs {
   /// the deviation across the epipolar line. Empty: round, of variance 1.
   std::vector<Mat2> covariance1 = {};
   std::vector<Mat2> covariance2 = {};
+  /// Side of a square of view 1, normalised, whose matches err together
+  /// (SandwichCovariance); 0: all are independent.
+  double common_error_side1 = 0;
 
   int size() const { return static_cast<int>(x1.size()); }
   const Mat2& Covariance1(int i) const { return At(covariance1, i); }

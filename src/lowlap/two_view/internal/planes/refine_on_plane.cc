@@ -97,17 +97,25 @@ RigidTransform RefineOnPlane(const RigidTransform& cam2_from_cam1,
   return motion.cam2_from_cam1;
 }
 
-Mat5 InformationOfPlane(const RigidTransform& cam2_from_cam1,
-                        const PointPairs& pairs, const ScenePlane& plane) {
+std::optional<Mat5> CovarianceOnPlane(const RigidTransform& cam2_from_cam1,
+                                      const PointPairs& pairs,
+                                      const ScenePlane& plane,
+                                      const PoseRefinementOptions& options) {
   const TransferResidual residual(cam2_from_cam1, plane.normal, pairs);
-  Eigen::Matrix<double, 8, 8> all = Eigen::Matrix<double, 8, 8>::Zero();
+  // What neighbours share the plane, which is unknown, mostly takes up.
+  SandwichCovariance<8> sandwich(0);
   TransferResidual::Jacobian jacobian;
   for (const int i : plane.inliers) {
-    if (residual(i, &jacobian)) all += jacobian.transpose() * jacobian;
+    const std::optional<Vec2> m = residual(i, &jacobian);
+    if (!m) continue;
+    const CauchyDerivatives<2> loss(*m, options.loss_scale_px);
+    sandwich.Add<2>(pairs.x1[i].head<2>(), jacobian, loss.gradient,
+                    loss.hessian);
   }
-  const Eigen::LDLT<Mat3> of_plane(all.bottomRightCorner<3, 3>());
-  const Eigen::Matrix<double, 3, 5> mixed = all.bottomLeftCorner<3, 5>();
-  return all.topLeftCorner<5, 5>() - mixed.transpose() * of_plane.solve(mixed);
+  AddDirections(cam2_from_cam1, pairs, options, &sandwich);
+  const auto covariance = sandwich.Solve();
+  if (!covariance) return std::nullopt;
+  return Mat5(covariance->topLeftCorner<5, 5>());
 }
 
 }  // namespace lowlap

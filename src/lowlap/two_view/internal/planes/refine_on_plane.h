@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "lowlap/two_view/internal/planes/planar_motion.h"
@@ -18,9 +19,11 @@ RigidTransform RefineOnPlane(const RigidTransform& cam2_from_cam1,
                              const PoseRefinementOptions& options,
                              ScenePlane* plane);
 
-/// sum J^T J over the inliers of a plane for (w, d), the plane unknown: what
-/// they say of the motion, in place of their epipolar residuals.
-Mat5 InformationOfPlane(const RigidTransform& cam2_from_cam1,
-                        const PointPairs& pairs, const ScenePlane& plane);
+/// RelativePoseCovariance, of what the inliers of a plane say of the motion in
+/// two dimensions, the plane unknown.
+std::optional<Mat5> CovarianceOnPlane(const RigidTransform& cam2_from_cam1,
+                                      const PointPairs& pairs,
+                                      const ScenePlane& plane,
+                                      const PoseRefinementOptions& options);
 
 }  // namespace lowlap

@@ -71,14 +71,11 @@ RelativePose PoseFromSearch(const TwoViewInput& input,
   }
   pose.log10_nfa = candidate.support.log10_nfa;
   pose.point_threshold_px = candidate.support.threshold;
-  std::optional<Mat5> of_plane;
-  if (candidate.plane) {
-    of_plane =
-        InformationOfPlane(candidate.pose, matches.pairs, *candidate.plane);
-  }
-  pose.covariance =
-      RelativePoseCovariance(candidate.pose, matches.pairs, borne_out,
-                             refinement, of_plane ? &*of_plane : nullptr);
+  pose.covariance = candidate.plane
+                        ? CovarianceOnPlane(candidate.pose, matches.pairs,
+                                            *candidate.plane, refinement)
+                        : RelativePoseCovariance(candidate.pose, matches.pairs,
+                                                 borne_out, refinement);
   return pose;
 }
 

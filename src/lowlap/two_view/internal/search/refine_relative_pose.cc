@@ -149,49 +149,21 @@ RigidTransform RefineRelativePose(const RigidTransform& cam2_from_cam1,
   return pose;
 }
 
-bool IsWellDetermined(const Eigen::LDLT<Mat5>& factor) {
-  return factor.info() == Eigen::Success &&
-         factor.vectorD().minCoeff() > 1e-14 * factor.vectorD().maxCoeff();
-}
-
-std::optional<Mat5> RelativePoseCovariance(const RigidTransform& cam2_from_cam1,
-                                           const PointPairs& pairs,
-                                           const std::vector<int>& indices,
-                                           const PoseRefinementOptions& options,
-                                           const Mat5* plane_information) {
-  const double n = static_cast<double>(indices.size());
-  if (n < 6) return std::nullopt;
+std::optional<Mat5> RelativePoseCovariance(
+    const RigidTransform& cam2_from_cam1, const PointPairs& pairs,
+    const std::vector<int>& indices, const PoseRefinementOptions& options) {
   const SampsonResidual residual(cam2_from_cam1, pairs);
-  Mat5 information = Mat5::Zero();
-  double sum_squared_psi = 0;
-  double sum_psi_slope = 0;
+  SandwichCovariance<5> sandwich(pairs.common_error_side1);
   Vec5 jacobian;
   for (const int i : indices) {
     const double r = residual(i, &jacobian);
-    const double squared = std::pow(r / options.loss_scale_px, 2);
-    const double weight = 1 / (1 + squared);
-    information.noalias() += jacobian * jacobian.transpose();
-    sum_squared_psi += weight * r * weight * r;
-    sum_psi_slope += (1 - squared) * weight * weight;
+    const CauchyDerivatives<1> loss(Eigen::Matrix<double, 1, 1>(r),
+                                    options.loss_scale_px);
+    sandwich.Add<1>(pairs.x1[i].head<2>(), jacobian.transpose(), loss.gradient,
+                    loss.hessian);
   }
-  if (plane_information != nullptr) information = *plane_information;
-  const double slope = sum_psi_slope / n;
-  if (!(slope > 0)) return std::nullopt;
-  // Exact data have no scatter; rounding takes its place.
-  information *= (n - 5) * slope * slope / std::max(sum_squared_psi, 1e-24 * n);
-  for (const DirectionPair& pair : options.directions) {
-    DirectionJacobian turn;
-    const double ratio =
-        DirectionResidual(pair, cam2_from_cam1.rotation, &turn).norm() /
-        kDirectionLossScale;
-    information.topLeftCorner<3, 3>() +=
-        turn.transpose() * turn / (1 + ratio * ratio);
-  }
-  const Eigen::LDLT<Mat5> factor(information);
-  if (!IsWellDetermined(factor)) return std::nullopt;
-  const Mat5 covariance = factor.solve(Mat5::Identity());
-  if (!covariance.allFinite()) return std::nullopt;
-  return Mat5(0.5 * (covariance + covariance.transpose()));
+  AddDirections(cam2_from_cam1, pairs, options, &sandwich);
+  return sandwich.Solve();
 }
 
 }  // namespace lowlap

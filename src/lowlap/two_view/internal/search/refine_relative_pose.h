@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <optional>
 #include <vector>
@@ -9,6 +8,7 @@
 #include "lowlap/two_view/internal/kernels/point_pairs.h"
 #include "lowlap/two_view/internal/parallel_directions.h"
 #include "lowlap/two_view/internal/search/levenberg_marquardt.h"
+#include "lowlap/two_view/internal/search/sandwich_covariance.h"
 
 namespace lowlap {
 
@@ -81,21 +81,42 @@ double CauchyCost(double residual, double scale);
 RigidTransform MovedPose(const RigidTransform& cam2_from_cam1,
                          const Vec5& step);
 
-/// Whether a decomposed Hessian or information of a pose has full rank.
-bool IsWellDetermined(const Eigen::LDLT<Mat5>& factor);
+/// First and second derivative of s^2 / 2 log(1 + |m|^2 / s^2) by m.
+template <int R>
+struct CauchyDerivatives {
+  using Vec = Eigen::Matrix<double, R, 1>;
+  using Mat = Eigen::Matrix<double, R, R>;
 
-/// Covariance of (w, d) as above at the minimum of the same loss:
-///   (sum psi^2 / (n - 5)) / (mean psi')^2 (sum J J^T)^-1
-/// (Huber, "Robust Statistics", section 7.6), psi the derivative of the loss;
-/// its inverse and the information of the directions add up.
-/// It covers independent errors of the points only: an imperfect calibration
-/// adds its own, which thousands of matches do not average down.
+  CauchyDerivatives(const Vec& m, double scale)
+      : weight(1 / (1 + m.squaredNorm() / (scale * scale))),
+        gradient(weight * m),
+        hessian(weight * Mat::Identity() -
+                2 / (scale * scale) * gradient * gradient.transpose()) {}
+
+  double weight;
+  Vec gradient;
+  Mat hessian;
+};
+
+/// Covariance of (w, d) as above at the minimum of the same loss
+/// (SandwichCovariance). It covers errors of the points, of neighbours in
+/// common; an imperfect calibration adds its own, which thousands of matches do
+/// not average down.
 /// nullopt: fewer than 6 matches, or a singular system.
-/// `plane_information`, if not null, stands for sum J J^T
-/// (InformationOfPlane).
 std::optional<Mat5> RelativePoseCovariance(
     const RigidTransform& cam2_from_cam1, const PointPairs& pairs,
-    const std::vector<int>& indices, const PoseRefinementOptions& options,
-    const Mat5* plane_information = nullptr);
+    const std::vector<int>& indices, const PoseRefinementOptions& options);
+
+/// Adds what the directions say of (w, d), the first of the parameters.
+template <int D>
+void AddDirections(const RigidTransform& cam2_from_cam1,
+                   const PointPairs& pairs,
+                   const PoseRefinementOptions& options,
+                   SandwichCovariance<D>* sandwich) {
+  Eigen::Matrix<double, D, D> hessian = Eigen::Matrix<double, D, D>::Zero();
+  hessian.template topLeftCorner<5, 5>() =
+      LinearizePose(cam2_from_cam1, pairs, {}, options).hessian;
+  sandwich->AddPrior(hessian, options.point_variance_px2 * hessian);
+}
 
 }  // namespace lowlap
