@@ -162,7 +162,10 @@ class Adjuster {
       LOWLAP_RETURN_IF_ERROR(
           Solve("fixed rotations", true, std::max(rough, kFirstTolerance)));
     }
-    LOWLAP_RETURN_IF_ERROR(Solve("everything", false, rough));
+    // Without its plane a wall leaves a valley, along which the last digits of
+    // the cost would lead far away.
+    LOWLAP_RETURN_IF_ERROR(
+        Solve("everything", false, std::max(rough, kFirstTolerance)));
     bool with_planes = options_.use_lines && options_.use_coplanar &&
                        options_.coplanar_ties != CoplanarTies::kPairs;
     bool at_rest = options_.max_outlier_rounds == 0;
