@@ -66,11 +66,16 @@ TEST(BelievedTracks, ViewsWithoutRelativePoseAreJoinedOverOthers) {
 TEST(BelievedTracks, RelativePosesThatWereLeftOutHoldNothing) {
   Scene scene = SceneOf({TrackOf({0, 1, 2})});
   Match({{0, 1}, {0, 2}, {1, 2}}, &scene);
+  scene.scale_ratios.resize(2);
+  scene.scale_ratios[0].views = {0, 1, 2};
+  scene.scale_ratios[1].views = {2, 0, 1};
   {
     const BelievedTracks believed({{0, 2}, {3, 4}}, &scene);
+    EXPECT_EQ(scene.scale_ratios.size(), 1u);
     EXPECT_EQ(scene.relative_poses.size(), 2u);
     EXPECT_EQ(scene.relative_poses.count({0, 2}), 0u);
   }
+  EXPECT_EQ(scene.scale_ratios.size(), 2u);
   ASSERT_EQ(scene.relative_poses.size(), 3u);
   EXPECT_EQ(scene.relative_poses.at({0, 2}).point_inliers.size(), 1u);
 }

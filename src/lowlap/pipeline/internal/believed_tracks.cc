@@ -142,12 +142,25 @@ BelievedTracks::BelievedTracks(const std::vector<ViewPair>& left_out,
     auto pose = scene->relative_poses.extract(views);
     if (!pose.empty()) left_out_poses_.insert(std::move(pose));
   }
+  scale_ratios_ = scene->scale_ratios;
+  const auto is_left_out = [&](ViewId a, ViewId b) {
+    return left_out_poses_.count(a < b ? ViewPair{a, b} : ViewPair{b, a}) > 0;
+  };
+  scene->scale_ratios.erase(
+      std::remove_if(scene->scale_ratios.begin(), scene->scale_ratios.end(),
+                     [&](const ScaleRatio& ratio) {
+                       const ViewTriplet& views = ratio.views;
+                       return is_left_out(views.first, views.middle) ||
+                              is_left_out(views.middle, views.last);
+                     }),
+      scene->scale_ratios.end());
 }
 
 BelievedTracks::~BelievedTracks() {
   Restore(&changed_points_, &scene_->point_tracks);
   Restore(&changed_lines_, &scene_->line_tracks);
   scene_->relative_poses.merge(left_out_poses_);
+  scene_->scale_ratios = std::move(scale_ratios_);
 }
 
 }  // namespace lowlap

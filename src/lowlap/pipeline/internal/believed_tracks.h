@@ -14,8 +14,8 @@ namespace lowlap {
 /// poses state no matches any of them may. Matches of one wall agree with the
 /// right poses and with a wrong one, which would bend the adjustment its way. A
 /// track that keeps fewer than two views is gone. The relative poses that were
-/// left out are gone as well: no prior may hold what contradicts the others.
-/// All comes back in the end.
+/// left out are gone as well, and the ratios across them: no prior may hold
+/// what contradicts the others. All comes back in the end.
 class BelievedTracks {
  public:
   /// `scene` must outlive this.
@@ -29,6 +29,7 @@ class BelievedTracks {
   std::map<PointTrackId, Track> changed_points_;  // as they were
   std::map<LineTrackId, Track> changed_lines_;
   std::map<ViewPair, RelativePose> left_out_poses_;
+  std::vector<ScaleRatio> scale_ratios_;  // as they were
 };
 
 }  // namespace lowlap
