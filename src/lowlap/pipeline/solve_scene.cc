@@ -11,7 +11,7 @@
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/internal/believed_tracks.h"
+#include "lowlap/pipeline/internal/believed_evidence.h"
 #include "lowlap/pipeline/internal/check_directions.h"
 #include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/pipeline/internal/reconsider_poses.h"
@@ -223,7 +223,7 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
                       const RunContext& context, StageLog* stages,
                       SolveResult* result) {
   result->poses_before_adjustment = scene->poses;
-  std::optional<BelievedTracks> believed;
+  std::optional<BelievedEvidence> believed;
   believed.emplace(FalsePairs(result->poses), scene);
   auto refinement = RefineSolution(scene, options, context, stages);
   if (!refinement && options.adjust &&

@@ -102,7 +102,8 @@ std::optional<Mat5> CovarianceOnPlane(const RigidTransform& cam2_from_cam1,
                                       const ScenePlane& plane,
                                       const PoseRefinementOptions& options) {
   const TransferResidual residual(cam2_from_cam1, plane.normal, pairs);
-  // What neighbours share the plane, which is unknown, mostly takes up.
+  // Independent errors: with cells a false motion of one plane states so much
+  // that rotation averaging cannot tell it from a right one.
   SandwichCovariance<8> sandwich(0);
   TransferResidual::Jacobian jacobian;
   for (const int i : plane.inliers) {

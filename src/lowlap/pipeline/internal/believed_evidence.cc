@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/believed_tracks.h"
+#include "lowlap/pipeline/internal/believed_evidence.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/union_find.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -28,7 +29,7 @@ class Links {
         [&](const auto& entry) { return !(entry.second.*matches).empty(); });
   }
 
-  /// The views whose relative poses with this one were left out.
+  // The views whose relative poses with this one were left out.
   const std::set<ViewId>& LeftOutWith(ViewId view) const {
     static const std::set<ViewId> kNone;
     const auto partners = left_out_.find(view);
@@ -130,8 +131,8 @@ void Restore(Tracks* changed, Tracks* tracks) {
 
 }  // namespace
 
-BelievedTracks::BelievedTracks(const std::vector<ViewPair>& left_out,
-                               Scene* scene)
+BelievedEvidence::BelievedEvidence(const std::vector<ViewPair>& left_out,
+                                   Scene* scene)
     : scene_(scene) {
   const auto& poses = scene->relative_poses;
   Reduce(Links(left_out, poses, &RelativePose::point_inliers),
@@ -144,7 +145,7 @@ BelievedTracks::BelievedTracks(const std::vector<ViewPair>& left_out,
   }
   scale_ratios_ = scene->scale_ratios;
   const auto is_left_out = [&](ViewId a, ViewId b) {
-    return left_out_poses_.count(a < b ? ViewPair{a, b} : ViewPair{b, a}) > 0;
+    return left_out_poses_.count(OrderedPair(a, b)) > 0;
   };
   scene->scale_ratios.erase(
       std::remove_if(scene->scale_ratios.begin(), scene->scale_ratios.end(),
@@ -156,7 +157,7 @@ BelievedTracks::BelievedTracks(const std::vector<ViewPair>& left_out,
       scene->scale_ratios.end());
 }
 
-BelievedTracks::~BelievedTracks() {
+BelievedEvidence::~BelievedEvidence() {
   Restore(&changed_points_, &scene_->point_tracks);
   Restore(&changed_lines_, &scene_->line_tracks);
   scene_->relative_poses.merge(left_out_poses_);

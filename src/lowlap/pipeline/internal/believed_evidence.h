@@ -15,14 +15,14 @@ namespace lowlap {
 /// right poses and with a wrong one, which would bend the adjustment its way. A
 /// track that keeps fewer than two views is gone. The relative poses that were
 /// left out are gone as well, and the ratios across them: no prior may hold
-/// what contradicts the others. All comes back in the end.
-class BelievedTracks {
+/// what contradicts the others. All of it comes back in the end.
+class BelievedEvidence {
  public:
   /// `scene` must outlive this.
-  BelievedTracks(const std::vector<ViewPair>& left_out, Scene* scene);
-  ~BelievedTracks();
-  BelievedTracks(const BelievedTracks&) = delete;
-  BelievedTracks& operator=(const BelievedTracks&) = delete;
+  BelievedEvidence(const std::vector<ViewPair>& left_out, Scene* scene);
+  ~BelievedEvidence();
+  BelievedEvidence(const BelievedEvidence&) = delete;
+  BelievedEvidence& operator=(const BelievedEvidence&) = delete;
 
  private:
   Scene* scene_;

@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/believed_tracks.h"
+#include "lowlap/pipeline/internal/believed_evidence.h"
 
 #include <gtest/gtest.h>
 
@@ -22,17 +22,17 @@ Scene SceneOf(const std::vector<Track>& tracks) {
   return scene;
 }
 
-TEST(BelievedTracks, WhatOnlyAWrongPairJoinsIsLeftOut) {
+TEST(BelievedEvidence, WhatOnlyAWrongPairJoinsIsLeftOut) {
   Scene scene = SceneOf({TrackOf({0, 2}), TrackOf({0, 1})});
-  const BelievedTracks believed({{0, 2}}, &scene);
+  const BelievedEvidence believed({{0, 2}}, &scene);
   ASSERT_EQ(scene.point_tracks.size(), 1u);
   EXPECT_EQ(scene.point_tracks.at(1), TrackOf({0, 1}));
   EXPECT_EQ(scene.line_tracks.size(), 1u);
 }
 
-TEST(BelievedTracks, AThirdViewMayJoinTwo) {
+TEST(BelievedEvidence, AThirdViewMayJoinTwo) {
   Scene scene = SceneOf({TrackOf({0, 1, 2})});
-  const BelievedTracks believed({{0, 2}}, &scene);
+  const BelievedEvidence believed({{0, 2}}, &scene);
   EXPECT_EQ(scene.point_tracks.at(0), TrackOf({0, 1, 2}));
 }
 
@@ -45,32 +45,32 @@ void Match(const std::vector<ViewPair>& pairs, Scene* scene) {
   }
 }
 
-TEST(BelievedTracks, AThirdViewThatMatchesOneOfThemJoinsNothing) {
+TEST(BelievedEvidence, AThirdViewThatMatchesOneOfThemJoinsNothing) {
   Scene scene = SceneOf({TrackOf({0, 1, 2})});
   Match({{0, 1}, {0, 2}, {1, 2}}, &scene);
   // Other points of the views 0 and 1 match, these do not.
   scene.relative_poses.at({0, 1}).point_inliers = {{3, 4}};
-  const BelievedTracks believed({{0, 2}}, &scene);
+  const BelievedEvidence believed({{0, 2}}, &scene);
   EXPECT_EQ(scene.point_tracks.at(0), TrackOf({1, 2}));
   EXPECT_EQ(scene.line_tracks.at(0), TrackOf({0, 1, 2}));
 }
 
-TEST(BelievedTracks, ViewsWithoutRelativePoseAreJoinedOverOthers) {
+TEST(BelievedEvidence, ViewsWithoutRelativePoseAreJoinedOverOthers) {
   Scene scene = SceneOf({TrackOf({0, 1, 2, 3}), TrackOf({0, 2, 3})});
   Match({{0, 1}, {0, 2}, {1, 3}, {2, 3}}, &scene);
-  const BelievedTracks believed({{0, 2}}, &scene);
+  const BelievedEvidence believed({{0, 2}}, &scene);
   EXPECT_EQ(scene.point_tracks.at(0), TrackOf({0, 1, 2, 3}));
   EXPECT_EQ(scene.point_tracks.at(1), TrackOf({2, 3}));
 }
 
-TEST(BelievedTracks, RelativePosesThatWereLeftOutHoldNothing) {
+TEST(BelievedEvidence, RelativePosesThatWereLeftOutHoldNothing) {
   Scene scene = SceneOf({TrackOf({0, 1, 2})});
   Match({{0, 1}, {0, 2}, {1, 2}}, &scene);
   scene.scale_ratios.resize(2);
   scene.scale_ratios[0].views = {0, 1, 2};
   scene.scale_ratios[1].views = {2, 0, 1};
   {
-    const BelievedTracks believed({{0, 2}, {3, 4}}, &scene);
+    const BelievedEvidence believed({{0, 2}, {3, 4}}, &scene);
     EXPECT_EQ(scene.scale_ratios.size(), 1u);
     EXPECT_EQ(scene.relative_poses.size(), 2u);
     EXPECT_EQ(scene.relative_poses.count({0, 2}), 0u);
@@ -80,26 +80,26 @@ TEST(BelievedTracks, RelativePosesThatWereLeftOutHoldNothing) {
   EXPECT_EQ(scene.relative_poses.at({0, 2}).point_inliers.size(), 1u);
 }
 
-TEST(BelievedTracks, TheLargestPartStays) {
+TEST(BelievedEvidence, TheLargestPartStays) {
   Scene scene = SceneOf({TrackOf({0, 1, 2, 3, 4})});
-  const BelievedTracks believed(
+  const BelievedEvidence believed(
       {{0, 2}, {0, 3}, {0, 4}, {1, 2}, {1, 3}, {1, 4}}, &scene);
   EXPECT_EQ(scene.point_tracks.at(0), TrackOf({2, 3, 4}));
 }
 
-TEST(BelievedTracks, SegmentsOfOneViewAreNoTwoViews) {
+TEST(BelievedEvidence, SegmentsOfOneViewAreNoTwoViews) {
   Scene scene;
   scene.line_tracks[0] = {{0, 1}, {0, 2}, {3, 1}};
-  const BelievedTracks believed({{0, 3}}, &scene);
+  const BelievedEvidence believed({{0, 3}}, &scene);
   EXPECT_TRUE(scene.line_tracks.empty());
 }
 
-TEST(BelievedTracks, AllComeBack) {
+TEST(BelievedEvidence, AllComeBack) {
   const Scene before = SceneOf(
       {TrackOf({0, 2}), TrackOf({0, 1}), TrackOf({0, 2, 3}), TrackOf({1, 2})});
   Scene scene = before;
   {
-    const BelievedTracks believed({{0, 2}, {0, 3}}, &scene);
+    const BelievedEvidence believed({{0, 2}, {0, 3}}, &scene);
     EXPECT_FALSE(scene.point_tracks == before.point_tracks);
   }
   EXPECT_EQ(scene.point_tracks, before.point_tracks);
