@@ -68,17 +68,25 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
          NumberText(flags.solve.principal_point_stddev, 9) + "\n";
 }
 
-void PrintSilentFailures(const std::vector<SubsetOutcome>& outcomes,
-                         const Scene& scene, const SubsetBounds& bounds) {
+// What no warning tells of.
+void PrintUnsaid(const std::vector<SubsetOutcome>& outcomes, const Scene& scene,
+                 const SubsetBounds& bounds) {
+  const auto name = [&](ViewId view) {
+    return scene.views.at(view).filename.c_str();
+  };
   for (const SubsetOutcome& outcome : outcomes) {
-    if (!IsSilentFailure(outcome, bounds)) continue;
     std::string dropped;
     for (const ViewId view : outcome.dropped) {
       dropped += " " + scene.views.at(view).filename;
     }
-    std::printf(
-        "silent failure without%s: %s is off by %.3f\n", dropped.c_str(),
-        scene.views.at(outcome.worst_view).filename.c_str(), outcome.max_error);
+    if (IsSilentFailure(outcome, bounds)) {
+      std::printf("silent failure without%s: %s is off by %.3f\n",
+                  dropped.c_str(), name(outcome.worst_view), outcome.max_error);
+    }
+    for (const ViewId view : WrongFirmViews(outcome, bounds)) {
+      std::printf("named in no warning, without%s: %s is off by %.3f\n",
+                  dropped.c_str(), name(view), outcome.firm_errors.at(view));
+    }
   }
 }
 
@@ -92,7 +100,7 @@ Result<int> Finish(const std::vector<SubsetOutcome>& all,
                       {"summary.json", ToJson(summary, flags.bounds)},
                       {"results.svg", plot}},
                      flags.output));
-  PrintSilentFailures(outcomes, scene, flags.bounds);
+  PrintUnsaid(outcomes, scene, flags.bounds);
   std::printf("%s", ToText(summary, flags.bounds).c_str());
   std::printf("written to %s: results.csv summary.json results.svg\n",
               flags.output.c_str());

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/study/internal/subset_table.h"
 #include "lowlap/synthetic/synthetic_scene.h"
@@ -80,6 +81,9 @@ std::vector<SubsetOutcome> Outcomes() {
       Outcome(4, 3, 0.01, 0.02), Outcome(6, 4, 0.3, 0.7),
       Outcome(0, 3, 0.3, 0.7),   Outcome(2, 4, 0.3, 0.7)};
   outcomes[3].doubts = {"open_loop", "weak_ratio"};
+  outcomes[3].firm_errors = {{4, 0.7}, {6, 0.04}, {8, 0.3}};
+  outcomes[3].doubtful_errors = {{10, 0.6}, {12, 0.01}, {14, 0.1}};
+  outcomes[0].firm_errors = {{4, 0.02}};
   SubsetOutcome failure;
   failure.dropped = {0, 8};
   failure.num_views = 4;
@@ -98,6 +102,8 @@ TEST(SubsetTable, RecordsAreReadAsTheyWereWritten) {
     EXPECT_EQ(read->dropped, outcome.dropped);
     EXPECT_EQ(read->mean_error, outcome.mean_error);
     EXPECT_EQ(read->doubts, outcome.doubts);
+    EXPECT_EQ(read->firm_errors, outcome.firm_errors);
+    EXPECT_EQ(read->doubtful_errors, outcome.doubtful_errors);
     EXPECT_EQ(read->failure, outcome.failure);
     EXPECT_EQ(read->worst_view, outcome.worst_view);
     for (std::size_t cut = 0; cut < line.size(); ++cut) {
@@ -115,6 +121,9 @@ TEST(SubsetTable, TheCsvHasARecordForEachSubset) {
   EXPECT_EQ(records[3].at("dropped"), "6+8");
   EXPECT_EQ(records[3].at("max_error"), "0.700000");
   EXPECT_EQ(records[3].at("worst_view"), "image 2.jpg");
+  EXPECT_EQ(records[3].at("firm"), "3");
+  EXPECT_EQ(records[3].at("firm_max_error"), "0.700000");
+  EXPECT_EQ(records[1].at("firm_max_error"), "");
   EXPECT_EQ(records[3].at("reasons"), "open_loop;weak_ratio");
   EXPECT_EQ(records[6].at("mean_error"), "");
   EXPECT_EQ(records[6].at("failure"), "no \"relative\" pose, at all");
@@ -132,7 +141,16 @@ TEST(SubsetTable, Summary) {
   // A view that is missing does not excuse one that is wrong.
   EXPECT_EQ(summary.num_silent_failures, 2u);
   EXPECT_DOUBLE_EQ(summary.median_max_error, 0.7);
+  EXPECT_EQ(summary.num_good_cameras, 3u);
+  EXPECT_EQ(summary.num_good_doubted, 1u);
+  EXPECT_EQ(summary.num_wrong_cameras, 2u);
+  EXPECT_EQ(summary.num_wrong_firm, 1u);
+  EXPECT_THAT(WrongFirmViews(Outcomes()[3], bounds), ElementsAre(4));
+  EXPECT_TRUE(WrongFirmViews(Outcomes()[1], bounds).empty());
   EXPECT_THAT(ToText(summary, bounds), HasSubstr("silent failures: 2"));
+  EXPECT_THAT(ToText(summary, bounds), HasSubstr("doubted: 1 of 3 (33.3 %)"));
+  EXPECT_THAT(ToText(summary, bounds),
+              HasSubstr("beyond 0.5: 2, named in no warning: 1"));
   EXPECT_THAT(ToJson(summary, bounds), HasSubstr("\"silent_failures\": 2"));
   const auto plot = DrawSubsets(Outcomes());
   ASSERT_TRUE(plot);
@@ -198,6 +216,15 @@ TEST_F(RunSubsetsTest, ReusedRatiosGiveWhatSolvingEachSubsetGives) {
     EXPECT_EQ(outcome.max_error, evaluation.position.max);
     EXPECT_LT(outcome.max_error, 0.05);
     EXPECT_TRUE(outcome.failure.empty());
+    EXPECT_EQ(outcome.firm_errors.size() + outcome.doubtful_errors.size(),
+              static_cast<std::size_t>(outcome.num_placed));
+    for (const auto& [view, graded] : GradeViews(solved->poses)) {
+      EXPECT_EQ(outcome.firm_errors.count(view) > 0,
+                graded.grade == ViewGrade::kFirm);
+    }
+    for (const auto& [view, error] : outcome.firm_errors) {
+      EXPECT_LT(error, 0.1) << view;
+    }
   }
 }
 

@@ -18,7 +18,7 @@ const std::vector<std::string>& Stages() {
   return *stages;
 }
 
-std::optional<ErrorStatistics> PositionErrors(const AblationCase& entry) {
+std::optional<ErrorStatistics> StatisticsOf(const AblationCase& entry) {
   if (entry.errors.scope != EvaluationScope::kFull) return std::nullopt;
   return entry.errors.position;
 }
@@ -48,7 +48,7 @@ struct Row {
 
 Row PositionRow(const char* name, double ErrorStatistics::*member) {
   return {name, [member](const AblationCase& entry) {
-            const auto errors = PositionErrors(entry);
+            const auto errors = StatisticsOf(entry);
             return errors ? NumberText((*errors).*member, 4) : "-";
           }};
 }
@@ -99,7 +99,7 @@ std::size_t NumDirections(const AdjustmentSummary& adjustment) {
 std::vector<Row> TieRows() {
   return {{"mean rotation error (deg)",
            [](const AblationCase& entry) {
-             return PositionErrors(entry)
+             return StatisticsOf(entry)
                         ? NumberText(entry.errors.rotation_deg.mean, 4)
                         : "-";
            }},
@@ -133,7 +133,7 @@ std::string CaseTable(const std::string& title,
 void AddRecords(const char* name, const std::vector<AblationCase>& cases,
                 int num_views, TextTable* table) {
   for (const AblationCase& entry : cases) {
-    const auto errors = PositionErrors(entry);
+    const auto errors = StatisticsOf(entry);
     const auto cell = [&](double ErrorStatistics::*member) {
       return errors ? NumberText((*errors).*member, 9) : std::string();
     };
@@ -208,7 +208,7 @@ BarPlot CaseBars(const std::string& title, const std::string& note,
   series.name = "mean position error";
   for (const AblationCase& entry : cases) {
     plot.groups.push_back(entry.name);
-    const auto errors = PositionErrors(entry);
+    const auto errors = StatisticsOf(entry);
     series.values.push_back(errors ? std::optional(errors->mean)
                                    : std::nullopt);
   }

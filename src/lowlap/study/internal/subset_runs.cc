@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iterator>
 #include <mutex>
 #include <set>
@@ -13,6 +14,7 @@
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
+#include "lowlap/study/internal/trust/position_errors.h"
 
 namespace lowlap {
 namespace {
@@ -75,6 +77,16 @@ void JudgeSubset(const Scene& scene, const GroundTruth& truth,
         error.position_error == evaluation.position.max) {
       outcome->worst_view = error.view;
     }
+  }
+  const PositionErrors errors =
+      RobustPositionErrors(scene, truth, kWrongCamera);
+  const std::map<ViewId, GradedView> grades = GradeViews(result.poses);
+  for (const auto& [view, share] : errors.error) {
+    const auto graded = grades.find(view);
+    if (graded == grades.end() || !std::isfinite(share)) continue;
+    const bool is_firm = graded->second.grade == ViewGrade::kFirm;
+    (is_firm ? outcome->firm_errors : outcome->doubtful_errors)[view] =
+        share * errors.size;
   }
   Scene before;
   before.views = scene.views;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,10 @@ struct SubsetOutcome {
   double max_error = 0;
   ViewId worst_view = kInvalidId;
   double mean_error_before_adjustment = 0;
+  /// Of the placed cameras, by their grade (GradeViews), where they have one:
+  /// RobustPositionErrors in the truth's unit. One that is far off does not
+  /// move the others, as it does in the errors above.
+  std::map<ViewId, double> firm_errors, doubtful_errors;
   /// The solution was flagged without knowing the truth
   /// (PoseSummary::IsDoubtful), and for what: DoubtCodes.
   std::vector<std::string> doubts;

@@ -1,6 +1,7 @@
 #include "lowlap/study/internal/subset_table.h"
 
 #include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -33,9 +34,21 @@ void VisitMembers(Outcome& outcome, const Visit& visit) {
   visit("max_error", outcome.max_error);
   visit("worst_view", outcome.worst_view);
   visit("mean_error_before_adjustment", outcome.mean_error_before_adjustment);
+  visit("firm_errors", outcome.firm_errors);
+  visit("doubtful_errors", outcome.doubtful_errors);
   visit("doubts", outcome.doubts);
   visit("failure", outcome.failure);
   visit("seconds", outcome.seconds);
+}
+
+// Adds those that are good, and those that are wrong.
+void CountCameras(const std::map<ViewId, double>& errors,
+                  const SubsetBounds& bounds, std::size_t* num_good,
+                  std::size_t* num_wrong) {
+  for (const auto& [view, error] : errors) {
+    *num_good += error <= bounds.accurate ? 1 : 0;
+    *num_wrong += error > bounds.failed ? 1 : 0;
+  }
 }
 
 // (error, share of all outcomes up to it), a step for each value.
@@ -59,6 +72,13 @@ std::string Share(std::size_t part, std::size_t whole) {
          Format("%.1f", percent) + " %)";
 }
 
+// Empty without any.
+std::string LargestText(const std::map<ViewId, double>& errors) {
+  double largest = -1;
+  for (const auto& [view, error] : errors) largest = std::max(largest, error);
+  return largest < 0 ? "" : Format("%.6f", largest);
+}
+
 }  // namespace
 
 Status SubsetBounds::Validate() const {
@@ -75,6 +95,15 @@ bool IsSilentFailure(const SubsetOutcome& outcome, const SubsetBounds& bounds) {
          outcome.doubts.empty();
 }
 
+std::vector<ViewId> WrongFirmViews(const SubsetOutcome& outcome,
+                                   const SubsetBounds& bounds) {
+  std::vector<ViewId> views;
+  for (const auto& [view, error] : outcome.firm_errors) {
+    if (error > bounds.failed) views.push_back(view);
+  }
+  return views;
+}
+
 SubsetSummary SummarizeSubsets(const std::vector<SubsetOutcome>& outcomes,
                                const SubsetBounds& bounds) {
   SubsetSummary summary;
@@ -87,6 +116,11 @@ SubsetSummary SummarizeSubsets(const std::vector<SubsetOutcome>& outcomes,
       ++(outcome.doubts.empty() ? summary.num_silent_failures
                                 : summary.num_flagged_failures);
     }
+    CountCameras(outcome.firm_errors, bounds, &summary.num_good_cameras,
+                 &summary.num_wrong_cameras);
+    CountCameras(outcome.doubtful_errors, bounds, &summary.num_good_doubted,
+                 &summary.num_wrong_cameras);
+    summary.num_wrong_firm += WrongFirmViews(outcome, bounds).size();
     if (!IsComplete(outcome) || !HasErrors(outcome)) continue;
     ++summary.num_complete;
     if (outcome.mean_error <= bounds.accurate) ++summary.num_accurate_mean;
@@ -94,6 +128,7 @@ SubsetSummary SummarizeSubsets(const std::vector<SubsetOutcome>& outcomes,
     mean_errors.push_back(outcome.mean_error);
     max_errors.push_back(outcome.max_error);
   }
+  summary.num_good_cameras += summary.num_good_doubted;
   if (!mean_errors.empty()) {
     summary.median_mean_error = Median(std::move(mean_errors));
     summary.median_max_error = Median(std::move(max_errors));
@@ -111,6 +146,8 @@ std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
                    "max_error",
                    "worst_view",
                    "mean_error_before_adjustment",
+                   "firm",
+                   "firm_max_error",
                    "doubtful",
                    "reasons",
                    "failure",
@@ -129,8 +166,10 @@ std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
          error(outcome.max_error),
          known ? scene.views.at(outcome.worst_view).filename : "",
          error(outcome.mean_error_before_adjustment),
-         outcome.doubts.empty() ? "0" : "1", Joined(outcome.doubts, ";"),
-         outcome.failure, Format("%.2f", outcome.seconds)});
+         std::to_string(outcome.firm_errors.size()),
+         LargestText(outcome.firm_errors), outcome.doubts.empty() ? "0" : "1",
+         Joined(outcome.doubts, ";"), outcome.failure,
+         Format("%.2f", outcome.seconds)});
   }
   return ToCsv(table);
 }
@@ -174,7 +213,12 @@ std::string ToText(const SubsetSummary& summary, const SubsetBounds& bounds) {
          "\na camera beyond " + bad + ": " +
          std::to_string(summary.num_flagged_failures) +
          " flagged, silent failures: " +
-         std::to_string(summary.num_silent_failures) +
+         std::to_string(summary.num_silent_failures) + "\ncameras within " +
+         good + " that are doubted: " +
+         Share(summary.num_good_doubted, summary.num_good_cameras) +
+         "\ncameras beyond " + bad + ": " +
+         std::to_string(summary.num_wrong_cameras) +
+         ", named in no warning: " + std::to_string(summary.num_wrong_firm) +
          "\nseconds per subset: " +
          Format("%.2f",
                 summary.seconds /
@@ -202,7 +246,11 @@ std::string ToJson(const SubsetSummary& summary, const SubsetBounds& bounds) {
       {"median_max_error", median(summary.median_max_error)},
       {"flagged", summary.num_flagged},
       {"flagged_failures", summary.num_flagged_failures},
-      {"silent_failures", summary.num_silent_failures}};
+      {"silent_failures", summary.num_silent_failures},
+      {"good_cameras", summary.num_good_cameras},
+      {"good_cameras_doubted", summary.num_good_doubted},
+      {"wrong_cameras", summary.num_wrong_cameras},
+      {"wrong_cameras_firm", summary.num_wrong_firm}};
   return json.dump(2) + "\n";
 }
 

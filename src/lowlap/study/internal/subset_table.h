@@ -30,7 +30,12 @@ struct SubsetSummary {
   /// A camera beyond `failed` in a solution that was flagged, or was not.
   std::size_t num_flagged_failures = 0;
   std::size_t num_silent_failures = 0;
-  double median_mean_error = 0;  // of the complete ones, if there are any
+  /// Cameras of all outcomes (SubsetOutcome::firm_errors, doubtful_errors).
+  std::size_t num_good_cameras = 0;   // not beyond `accurate`
+  std::size_t num_good_doubted = 0;   // of these
+  std::size_t num_wrong_cameras = 0;  // beyond `failed`
+  std::size_t num_wrong_firm = 0;     // of these: no warning names them
+  double median_mean_error = 0;       // of the complete ones, if there are any
   double median_max_error = 0;
   double seconds = 0;  // of all subsets
 };
@@ -38,8 +43,12 @@ struct SubsetSummary {
 SubsetSummary SummarizeSubsets(const std::vector<SubsetOutcome>& outcomes,
                                const SubsetBounds& bounds);
 
-/// A camera is wrong, and nothing warned of it.
+/// A camera is wrong, and nothing warned of anything.
 bool IsSilentFailure(const SubsetOutcome& outcome, const SubsetBounds& bounds);
+
+/// The cameras that are wrong and that no warning names, by view.
+std::vector<ViewId> WrongFirmViews(const SubsetOutcome& outcome,
+                                   const SubsetBounds& bounds);
 
 /// The table as CSV: a header, and one line for each subset. `dropped` holds
 /// view ids joined by '+'. Errors are empty where fewer than three cameras are

@@ -80,6 +80,7 @@ PositionErrors RobustPositionErrors(const Scene& scene,
     }
   }
   PositionErrors errors;
+  errors.size = size;
   if (size > 0) errors.unit = best.scale / size;
   for (std::size_t n = 0; n < views.size(); ++n) {
     errors.error[views[n]] =

@@ -7,9 +7,14 @@
 
 namespace lowlap {
 
-/// Where solved cameras are, in shares of the size of the truth: the greatest
-/// distance of two of its cameras.
+/// A camera that is further off than this share of the scene's size is wrong.
+inline constexpr double kWrongCamera = 0.2;
+/// One that is no further off than this is good.
+inline constexpr double kGoodCamera = 0.05;
+
+/// Where solved cameras are, in shares of the size of the truth.
 struct PositionErrors {
+  double size = 0;  // the greatest distance of two cameras of the truth
   std::map<ViewId, double> error;  // of the views with a solved pose
   /// One unit of the solved world, in shares of the size; 0 if nothing aligns.
   double unit = 0;

@@ -12,11 +12,6 @@
 
 namespace lowlap {
 
-/// A camera that is further off than this share of the scene's size is wrong.
-inline constexpr double kWrongCamera = 0.2;
-/// One that is no further off than this is good.
-inline constexpr double kGoodCamera = 0.05;
-
 /// A camera of a solved scene against the truth.
 struct JudgedView {
   ViewId view = kInvalidId;
