@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
@@ -164,30 +165,6 @@ TEST(ReliabilityWarnings, RatiosAcrossOneCameraThatDisagree) {
   EXPECT_THAT(warnings[0].views, ElementsAre(5, 6, 7));
 }
 
-TEST(ReliabilityWarnings, AViewThatLostItsFeatures) {
-  SyntheticScene synthetic = SceneWithTrueRatios("window:3");
-  Scene scene = TrueSolution(synthetic);
-  EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
-  const auto lose = [](ViewId view, auto* observations) {
-    observations->erase(
-        std::remove_if(observations->begin(), observations->end(),
-                       [&](const auto& seen) { return seen.view == view; }),
-        observations->end());
-  };
-  for (auto& entry : scene.structure) lose(3, &entry.second.observations);
-  for (auto& entry : scene.line_structure) {
-    lose(3, &entry.second.observations);
-  }
-  const auto warnings = FindLostFeatures(scene);
-  ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(warnings[0].reason, WarningReason::kLostFeatures);
-  EXPECT_THAT(warnings[0].views, ElementsAre(3));
-  EXPECT_EQ(warnings[0].share, 0);
-  // Where the camera is not known, landmarks cannot have observations.
-  scene.views.at(3).intrinsic_id = kInvalidId;
-  EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
-}
-
 // In a chain nothing confirms a relative pose but its own matches.
 TEST(ReliabilityWarnings, ViewsThatHangOnAnUntoldRelativePose) {
   for (const char* pairs : {"chain", "window:2"}) {
@@ -241,6 +218,29 @@ TEST(ReliabilityWarnings, WeakRatiosConfirmNoUntoldPose) {
     EXPECT_EQ(summary->reliability_warnings[0].reason,
               WarningReason::kUntoldPoses);
     EXPECT_THAT(summary->reliability_warnings[0].views, ElementsAre(7));
+  }
+}
+
+// Relative poses that fit anything do not confirm each other.
+TEST(ReliabilityWarnings, ViewsThatHangOnPosesThatAreHardlyDetermined) {
+  for (const std::vector<ViewPair>& vague :
+       {std::vector<ViewPair>{{6, 7}}, {{5, 7}, {6, 7}}}) {
+    SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+    for (const ViewPair& views : vague) {
+      using Mat5 = Eigen::Matrix<double, 5, 5>;
+      Mat5 covariance = 1e-8 * Mat5::Identity();
+      covariance.topLeftCorner<3, 3>() = 0.3 * Mat3::Identity();
+      synthetic.scene.relative_poses.at(views).covariance = covariance;
+    }
+    const auto warnings = WarningsOf(synthetic.scene);
+    if (vague.size() == 1) {
+      EXPECT_THAT(warnings, IsEmpty());
+      continue;
+    }
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].reason, WarningReason::kUntoldPoses);
+    EXPECT_THAT(warnings[0].views, ElementsAre(7));
+    EXPECT_THAT(warnings[0].untold, ElementsAreArray(vague));
   }
 }
 
@@ -324,40 +324,6 @@ TEST(ReliabilityWarnings, GroupsAtOneCameraWithoutARatioThatAgrees) {
   ASSERT_EQ(without.size(), 1u);
   EXPECT_EQ(without[0].reason, WarningReason::kUnheld);
   EXPECT_THAT(without[0].views, ElementsAre(5, 6, 7));
-}
-
-// Two views of a line fit any poses, in however many pieces they see it.
-TEST(ReliabilityWarnings, PiecesOfALineInTwoViewsAreNotThreeViews) {
-  Scene scene;
-  scene.intrinsics[0] = Intrinsic();
-  for (const std::uint32_t view : {0u, 1u, 2u}) {
-    scene.views[view].intrinsic_id = 0;
-    scene.views[view].pose_id = view;
-    scene.poses[view] = Pose();
-  }
-  scene.line_tracks[0] = {{0, 0}, {0, 1}, {1, 0}, {1, 2}};
-  EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
-  scene.line_tracks[0].push_back({2, 0});
-  EXPECT_EQ(FindLostFeatures(scene).size(), 3u);
-}
-
-// A line in pieces is one feature of its view, and is lost or kept as one.
-TEST(ReliabilityWarnings, PiecesOfALineCountOnce) {
-  Scene scene;
-  scene.intrinsics[0] = Intrinsic();
-  for (const std::uint32_t view : {0u, 1u, 2u}) {
-    scene.views[view].intrinsic_id = 0;
-    scene.views[view].pose_id = view;
-    scene.poses[view] = Pose();
-  }
-  // Lost, in five pieces; the other two fit.
-  scene.line_tracks[0] = {{0, 0}, {0, 1}, {0, 2}, {0, 3},
-                          {0, 4}, {1, 0}, {2, 0}};
-  for (const std::uint32_t id : {1u, 2u}) {
-    scene.line_tracks[id] = {{0, id + 4}, {1, id}, {2, id}};
-    scene.line_structure[id].observations = scene.line_tracks[id];
-  }
-  EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
 }
 
 }  // namespace

@@ -83,8 +83,9 @@ std::string CauseOf(WarningReason reason) {
     case WarningReason::kContradictedRatios:
       return "the scale ratios that join them to the others disagree";
     case WarningReason::kUntoldPoses:
-      return "they hang on relative poses of too few matches to tell whether "
-             "they are right, which no other confirms";
+      return "they hang on relative poses that are hardly determined, or of "
+             "too few matches to tell whether they are right, which no other "
+             "confirms";
     case WarningReason::kUnheld:
       return "nothing that agrees with their places holds them";
     case WarningReason::kDoubtfulNeighbors:

@@ -19,6 +19,13 @@ namespace {
 
 double Evidence(double log10_nfa) { return 1 + std::max(0.0, -log10_nfa); }
 
+// Like a ratio that is too unsure to rely on alone (IsWeak): by its own
+// covariance it would agree with anything.
+bool IsVague(const RelativePose& pose) {
+  return std::max(RotationStddev(pose), DirectionStddev(pose)) >
+         DiagnosisOptions().max_stddev;
+}
+
 /// What of the measurements agrees with component 0 of a solution.
 class Agreement {
  public:
@@ -46,8 +53,12 @@ class Agreement {
           error_rad <= std::max(limit_rad, 3 * options.least_false_rad);
       (is_held ? in_use_ : contradicting_).push_back(ViewsOf(edge));
     }
-    for (const ViewPair& views : matches.untold) {
-      if (std::find(in_use_.begin(), in_use_.end(), views) != in_use_.end()) {
+    const std::set<ViewPair> untold(matches.untold.begin(),
+                                    matches.untold.end());
+    for (const ViewPair& views : in_use_) {
+      if (IsVague(scene.relative_poses.at(views))) {
+        vague_.push_back(views);
+      } else if (untold.count(views) > 0) {
         untold_.push_back(views);
       }
     }
@@ -201,20 +212,29 @@ class Agreement {
     return std::any_of(report.groups.begin(), report.groups.end(), holds_both);
   }
 
-  // The untold relative poses without which their views would not hold each
-  // other by the strong ratios: a weak ratio rests on the poses that it would
-  // confirm. What holds without any of them holds without one: most need no
-  // analysis of their own.
+  // The vague and untold relative poses without which their views would not
+  // hold each other by the strong ratios: a weak ratio rests on the poses that
+  // it would confirm. Untold poses may confirm each other, vague ones cannot.
+  // What holds without any of them holds without one: most need no analysis of
+  // their own.
   std::vector<ViewPair> Unconfirmed(const RatioTriplets& strong) const {
     std::vector<ViewPair> unconfirmed;
-    if (untold_.empty()) return unconfirmed;
-    const RigidityReport told = AnalyzeRigidity(Graph(untold_), strong);
+    std::vector<ViewPair> without = vague_;
+    without.insert(without.end(), untold_.begin(), untold_.end());
+    if (without.empty()) return unconfirmed;
+    const RigidityReport told = AnalyzeRigidity(Graph(without), strong);
+    for (const ViewPair& views : vague_) {
+      if (!HoldsBoth(told, views)) unconfirmed.push_back(views);
+    }
     for (const ViewPair& views : untold_) {
-      if (!HoldsBoth(told, views) &&
-          !HoldsBoth(AnalyzeRigidity(Graph({views}), strong), views)) {
+      if (HoldsBoth(told, views)) continue;
+      without = vague_;
+      without.push_back(views);
+      if (!HoldsBoth(AnalyzeRigidity(Graph(without), strong), views)) {
         unconfirmed.push_back(views);
       }
     }
+    std::sort(unconfirmed.begin(), unconfirmed.end());
     return unconfirmed;
   }
 
@@ -326,44 +346,9 @@ class Agreement {
   const ReliabilityOptions options_;
   std::set<ViewId> placed_;
   std::set<ViewPair> refuted_, agreeing_;
-  std::vector<ViewPair> in_use_, contradicting_, untold_;
+  std::vector<ViewPair> in_use_, contradicting_, vague_, untold_;
   std::vector<ScaleRatio> agreeing_ratios_, rejected_ratios_;
 };
-
-// Adds, per view, the features of the tracks and those of them that landmarks
-// observe.
-struct FeatureCount {
-  std::size_t matched = 0;
-  std::size_t fitting = 0;
-};
-
-template <class Tracks, class Landmarks>
-void CountFeatures(const Scene& scene, const Tracks& tracks,
-                   const Landmarks& landmarks, std::size_t min_views,
-                   std::map<ViewId, FeatureCount>* counts) {
-  for (const auto& [id, track] : tracks) {
-    std::set<ViewId> views;  // a line may be in pieces in one of them
-    for (const FeatureRef& ref : track) {
-      // Without an intrinsic nothing of a view can be triangulated.
-      if (scene.FindPose(ref.view) != nullptr &&
-          scene.FindIntrinsic(ref.view) != nullptr) {
-        views.insert(ref.view);
-      }
-    }
-    if (views.size() < min_views) continue;
-    std::set<ViewId> fitting;
-    if (const auto found = landmarks.find(id); found != landmarks.end()) {
-      for (const auto& seen : found->second.observations) {
-        fitting.insert(seen.view);
-      }
-    }
-    for (const ViewId view : views) {
-      FeatureCount& count = (*counts)[view];
-      ++count.matched;
-      if (fitting.count(view) > 0) ++count.fitting;
-    }
-  }
-}
 
 }  // namespace
 
@@ -374,23 +359,6 @@ std::vector<ReliabilityWarning> FindReliabilityWarnings(
   const Agreement agreement(scene, problem, solution, matches, options);
   std::vector<ReliabilityWarning> warnings = agreement.ContradictedPoses();
   for (ReliabilityWarning& warning : agreement.DoubtfulPlaces(firm)) {
-    warnings.push_back(std::move(warning));
-  }
-  return warnings;
-}
-
-std::vector<ReliabilityWarning> FindLostFeatures(const Scene& scene) {
-  std::map<ViewId, FeatureCount> counts;
-  CountFeatures(scene, scene.point_tracks, scene.structure, 2, &counts);
-  CountFeatures(scene, scene.line_tracks, scene.line_structure, 3, &counts);
-  std::vector<ReliabilityWarning> warnings;
-  for (const auto& [view, count] : counts) {
-    if (2 * count.fitting >= count.matched) continue;
-    ReliabilityWarning warning;
-    warning.reason = WarningReason::kLostFeatures;
-    warning.views = {view};
-    warning.share =
-        static_cast<double>(count.fitting) / static_cast<double>(count.matched);
     warnings.push_back(std::move(warning));
   }
   return warnings;

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lowlap/averaging/internal/hanging_views.h"
-#include "lowlap/averaging/internal/reliability_warnings.h"
+#include "lowlap/averaging/internal/lost_features.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/believed_evidence.h"

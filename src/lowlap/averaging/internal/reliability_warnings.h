@@ -30,9 +30,10 @@ struct ReliabilityOptions {
 /// - Views hold each other where the relative poses and ratios that are in use
 ///   and agree with the solution fix their places (AnalyzeRigidity). The firm
 ///   ones are the largest set that is held without weak ratios (IsWeak), and
-///   without relative poses of which their matches tell nothing (`matches`) and
-///   whose views would not hold each other without them and weak ratios; two
-///   views are none if the scene has more.
+///   without relative poses of which their matches tell nothing (`matches`) or
+///   whose stated deviation is more than that of a weak ratio, and whose views
+///   would not hold each other without them and weak ratios; two views are none
+///   if the scene has more.
 ///   Every other view hangs on what was set aside, or on other such views, and
 ///   is doubtful for it; if they are half of the placed views or more, so are
 ///   the firm ones: nothing says which of the parts is in its place. A ratio
@@ -43,12 +44,5 @@ std::vector<ReliabilityWarning> FindReliabilityWarnings(
     const Scene& scene, const TranslationProblem& problem,
     const TranslationSolution& solution, const MatchVerdicts& matches,
     const ReliabilityOptions& options, FirmEvidence* firm);
-
-/// The last reason: views with a pose and an intrinsic of whose features fewer
-/// than half are observations of a landmark. Features are those on point tracks
-/// over two such views or more, and on line tracks over three or more (two
-/// views of a line fit any poses, however many pieces of it they have); the
-/// pieces of a line in one view count once. Views without any have no entry.
-std::vector<ReliabilityWarning> FindLostFeatures(const Scene& scene);
 
 }  // namespace lowlap

@@ -78,8 +78,7 @@ void JudgeSubset(const Scene& scene, const GroundTruth& truth,
       outcome->worst_view = error.view;
     }
   }
-  const PositionErrors errors =
-      RobustPositionErrors(scene, truth, kWrongCamera);
+  const PositionErrors errors = RobustPositionErrors(scene, truth, kGoodCamera);
   const std::map<ViewId, GradedView> grades = GradeViews(result.poses);
   for (const auto& [view, share] : errors.error) {
     const auto graded = grades.find(view);
