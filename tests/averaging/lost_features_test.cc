@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
 
 #include "lowlap/synthetic/synthetic_scene.h"
 
@@ -12,6 +13,17 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+
+Scene SceneOfThreeCameras() {
+  Scene scene;
+  scene.intrinsics[0] = Intrinsic();
+  for (const std::uint32_t view : {0u, 1u, 2u}) {
+    scene.views[view].intrinsic_id = 0;
+    scene.views[view].pose_id = view;
+    scene.poses[view] = Pose();
+  }
+  return scene;
+}
 
 TEST(LostFeatures, AViewThatLostItsFeatures) {
   SyntheticOptions options;
@@ -41,13 +53,7 @@ TEST(LostFeatures, AViewThatLostItsFeatures) {
 
 // Two views of a line fit any poses, in however many pieces they see it.
 TEST(LostFeatures, PiecesOfALineInTwoViewsAreNotThreeViews) {
-  Scene scene;
-  scene.intrinsics[0] = Intrinsic();
-  for (const std::uint32_t view : {0u, 1u, 2u}) {
-    scene.views[view].intrinsic_id = 0;
-    scene.views[view].pose_id = view;
-    scene.poses[view] = Pose();
-  }
+  Scene scene = SceneOfThreeCameras();
   scene.line_tracks[0] = {{0, 0}, {0, 1}, {1, 0}, {1, 2}};
   EXPECT_THAT(FindLostFeatures(scene), IsEmpty());
   scene.line_tracks[0].push_back({2, 0});
@@ -56,13 +62,7 @@ TEST(LostFeatures, PiecesOfALineInTwoViewsAreNotThreeViews) {
 
 // A line in pieces is one feature of its view, and is lost or kept as one.
 TEST(LostFeatures, PiecesOfALineCountOnce) {
-  Scene scene;
-  scene.intrinsics[0] = Intrinsic();
-  for (const std::uint32_t view : {0u, 1u, 2u}) {
-    scene.views[view].intrinsic_id = 0;
-    scene.views[view].pose_id = view;
-    scene.poses[view] = Pose();
-  }
+  Scene scene = SceneOfThreeCameras();
   // Lost, in five pieces; the other two fit.
   scene.line_tracks[0] = {{0, 0}, {0, 1}, {0, 2}, {0, 3},
                           {0, 4}, {1, 0}, {2, 0}};
