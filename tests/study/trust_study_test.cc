@@ -70,6 +70,26 @@ TEST(RobustPositionErrors, TheGaugeIsNoErrorAndFalseCamerasMoveNoOther) {
   }
 }
 
+TEST(RobustPositionErrors, HundredsOfCamerasAreAlignedByAFew) {
+  GroundTruth truth;
+  Scene scene;
+  for (std::uint32_t view = 0; view < 400; ++view) {
+    Pose& pose = truth[view];
+    pose.center = {0.1 * view, std::sin(0.3 * view), std::cos(0.2 * view)};
+    scene.views[view].pose_id = view;
+    scene.poses[view] = pose;
+    if (view % 3 == 1) scene.poses[view].center.z() += 50;
+  }
+  for (const auto& [view, error] :
+       RobustPositionErrors(scene, truth, 0.05).error) {
+    if (view.value() % 3 == 1) {
+      EXPECT_GT(error, 0.05) << view;
+    } else {
+      EXPECT_LT(error, 1e-9) << view;
+    }
+  }
+}
+
 TEST(RobustPositionErrors, AreInfiniteWhereNothingCanBeAligned) {
   const SyntheticScene synthetic = *Simulate(SmallRoom());
   Scene scene = TrueSolution(synthetic);

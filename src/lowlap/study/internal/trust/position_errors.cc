@@ -45,6 +45,17 @@ AlignedErrors ErrorsAt(const std::vector<Vec3>& turned,
   return aligned;
 }
 
+// Indices below `count`, at most kMaxTried of them.
+std::vector<std::size_t> EvenlySpaced(std::size_t count) {
+  constexpr std::size_t kMaxTried = 30;
+  const std::size_t num_tried = std::min(count, kMaxTried);
+  std::vector<std::size_t> indices;
+  for (std::size_t n = 0; n < num_tried; ++n) {
+    indices.push_back(n * count / num_tried);
+  }
+  return indices;
+}
+
 }  // namespace
 
 PositionErrors RobustPositionErrors(const Scene& scene,
@@ -61,12 +72,16 @@ PositionErrors RobustPositionErrors(const Scene& scene,
     truth_from_solved.push_back(pose.rotation.transpose() * found->rotation);
   }
   const double size = SizeOf(truth);
+  const std::vector<std::size_t> tried = EvenlySpaced(views.size());
   AlignedErrors best;
-  for (const Mat3& rotation : truth_from_solved) {
+  for (const std::size_t n : tried) {
     std::vector<Vec3> turned;
-    for (const Vec3& center : solved) turned.push_back(rotation * center);
-    for (std::size_t i = 0; i < turned.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
+    for (const Vec3& center : solved) {
+      turned.push_back(truth_from_solved[n] * center);
+    }
+    for (const std::size_t i : tried) {
+      for (const std::size_t j : tried) {
+        if (j >= i) break;
         const Vec3 step = turned[i] - turned[j];
         const double scale =
             step.dot(true_centers[i] - true_centers[j]) / step.squaredNorm();

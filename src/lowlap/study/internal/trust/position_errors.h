@@ -23,8 +23,9 @@ struct PositionErrors {
 /// Errors after the similarity that brings most cameras within `wrong` of the
 /// truth and, of those, the one of least sum of errors (none counts for more
 /// than `wrong`): cameras that are far off have no part in it. The rotations
-/// tried are those of single cameras, scale and translation those of two. The
-/// errors are infinite if no two cameras have different places.
+/// tried are those of single cameras, scale and translation those of two, of at
+/// most 30 cameras, evenly spaced. The errors are infinite if no two of these
+/// have different places.
 PositionErrors RobustPositionErrors(const Scene& scene,
                                     const GroundTruth& truth, double wrong);
 
