@@ -221,17 +221,21 @@ TEST(ReliabilityWarnings, WeakRatiosConfirmNoUntoldPose) {
   }
 }
 
+void MakeVague(const std::vector<ViewPair>& pairs, Scene* scene) {
+  using Mat5 = Eigen::Matrix<double, 5, 5>;
+  Mat5 covariance = 1e-8 * Mat5::Identity();
+  covariance.topLeftCorner<3, 3>() = 0.3 * Mat3::Identity();
+  for (const ViewPair& views : pairs) {
+    scene->relative_poses.at(views).covariance = covariance;
+  }
+}
+
 // Relative poses that fit anything do not confirm each other.
 TEST(ReliabilityWarnings, ViewsThatHangOnPosesThatAreHardlyDetermined) {
   for (const std::vector<ViewPair>& vague :
        {std::vector<ViewPair>{{6, 7}}, {{5, 7}, {6, 7}}}) {
     SyntheticScene synthetic = SceneWithTrueRatios("window:2");
-    for (const ViewPair& views : vague) {
-      using Mat5 = Eigen::Matrix<double, 5, 5>;
-      Mat5 covariance = 1e-8 * Mat5::Identity();
-      covariance.topLeftCorner<3, 3>() = 0.3 * Mat3::Identity();
-      synthetic.scene.relative_poses.at(views).covariance = covariance;
-    }
+    MakeVague(vague, &synthetic.scene);
     const auto warnings = WarningsOf(synthetic.scene);
     if (vague.size() == 1) {
       EXPECT_THAT(warnings, IsEmpty());
@@ -242,6 +246,25 @@ TEST(ReliabilityWarnings, ViewsThatHangOnPosesThatAreHardlyDetermined) {
     EXPECT_THAT(warnings[0].views, ElementsAre(7));
     EXPECT_THAT(warnings[0].untold, ElementsAreArray(vague));
   }
+}
+
+// The first view hangs on a weak ratio, whatever its relative pose is worth.
+TEST(ReliabilityWarnings, OnlyTheRelativePosesOfTheNamedViewsAreListed) {
+  SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+  Scene& scene = synthetic.scene;
+  scene.relative_poses.erase({0, 2});
+  for (ScaleRatio& ratio : scene.scale_ratios) {
+    const ViewTriplet& v = ratio.views;
+    if (v.first == ViewId(0) || v.last == ViewId(0)) ratio.log10_nfa = -1;
+  }
+  MakeVague({{0, 1}, {5, 7}, {6, 7}}, &scene);
+  const auto warnings = WarningsOf(scene);
+  ASSERT_EQ(warnings.size(), 2u);
+  EXPECT_EQ(warnings[0].reason, WarningReason::kUntoldPoses);
+  EXPECT_THAT(warnings[0].views, ElementsAre(7));
+  EXPECT_THAT(warnings[0].untold, ElementsAre(ViewPair{5, 7}, ViewPair{6, 7}));
+  EXPECT_EQ(warnings[1].reason, WarningReason::kWeakScale);
+  EXPECT_THAT(warnings[1].views, ElementsAre(0));
 }
 
 // Two views fit any relative pose; that there were to be more says that

@@ -132,6 +132,7 @@ class Agreement {
       std::set_difference(wider.begin(), wider.end(), held.begin(), held.end(),
                           std::back_inserter(warning.views));
       held = wider;
+      KeepThoseOf(warning.views, &warning.untold);
       if (!warning.views.empty()) warnings.push_back(std::move(warning));
     };
     if (firm.views.size() > 2) held = firm.views;
@@ -185,6 +186,17 @@ class Agreement {
                        ReliabilityWarning* warning) {
     warning->views.insert(warning->views.end(), views.begin(), views.end());
     std::sort(warning->views.begin(), warning->views.end());
+  }
+
+  // The pairs with one of the views, which are sorted.
+  static void KeepThoseOf(const std::vector<ViewId>& views,
+                          std::vector<ViewPair>* pairs) {
+    const auto is_elsewhere = [&](const ViewPair& pair) {
+      return !std::binary_search(views.begin(), views.end(), pair.first) &&
+             !std::binary_search(views.begin(), views.end(), pair.second);
+    };
+    pairs->erase(std::remove_if(pairs->begin(), pairs->end(), is_elsewhere),
+                 pairs->end());
   }
 
   // What is in use and agrees, without some of it.

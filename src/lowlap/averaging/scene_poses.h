@@ -60,7 +60,8 @@ struct ReliabilityWarning {
   std::vector<ViewId> views;  // sorted
   /// kContradictedPoses and kUnheld: the relative poses that contradict.
   std::vector<ViewPair> against;
-  /// kUntoldPoses: the relative poses in use that nothing bears out.
+  /// kUntoldPoses: the relative poses of these views, in use, that nothing
+  /// bears out.
   std::vector<ViewPair> untold;
   /// kWeakScale: the ratios in use. kContradictedRatios: those rejected.
   std::vector<ViewTriplet> ratios;
