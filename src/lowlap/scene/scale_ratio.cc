@@ -3,6 +3,21 @@
 #include <algorithm>
 
 namespace lowlap {
+namespace {
+
+// Candidates and inliers of the kinds whose inliers bear those of `kind` out.
+KindSupport SumOfKindsAlike(const std::vector<KindSupport>& kinds,
+                            const KindSupport& kind) {
+  KindSupport sum;
+  for (const KindSupport& support : kinds) {
+    if (support.min_agreeing != kind.min_agreeing) continue;
+    sum.candidates += support.candidates;
+    sum.inliers += support.inliers;
+  }
+  return sum;
+}
+
+}  // namespace
 
 const char* RatioVerdictName(RatioVerdict verdict) {
   switch (verdict) {
@@ -38,12 +53,15 @@ int ScaleRatio::NumInliers() const {
 }
 
 bool ScaleRatio::HasAgreement() const {
-  return std::any_of(kinds.begin(), kinds.end(), [&](const KindSupport& of) {
-    int inliers = 0;
-    for (const KindSupport& support : kinds) {
-      if (support.min_agreeing == of.min_agreeing) inliers += support.inliers;
-    }
-    return inliers >= of.min_agreeing;
+  return std::any_of(kinds.begin(), kinds.end(), [&](const KindSupport& kind) {
+    return SumOfKindsAlike(kinds, kind).inliers >= kind.min_agreeing;
+  });
+}
+
+bool ScaleRatio::HasMajority() const {
+  return std::any_of(kinds.begin(), kinds.end(), [&](const KindSupport& kind) {
+    const KindSupport sum = SumOfKindsAlike(kinds, kind);
+    return 2 * sum.inliers > sum.candidates;
   });
 }
 

@@ -81,6 +81,11 @@ struct ScaleRatio {
   /// Whether the inliers of kinds alike bear each other out
   /// (KindSupport::min_agreeing).
   bool HasAgreement() const;
+  /// Whether most candidates of kinds alike are inliers. Where two surfaces of
+  /// different depth are neighbours in the middle view, many pairs of their
+  /// lines are coplanar at one wrong ratio, which is not chance; but they are
+  /// few of all pairs.
+  bool HasMajority() const;
 
   /// The interval that holds the true log ratio with a probability of 95 %, if
   /// the mode is right.

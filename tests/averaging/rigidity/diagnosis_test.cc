@@ -249,12 +249,13 @@ TEST(Diagnose, ARatioMakesAHingeOfTheSharedCamera) {
 }
 
 TEST(Diagnose, WeakRatiosAreNamed) {
-  for (int reason = 0; reason < 3; ++reason) {
+  for (int reason = 0; reason < 4; ++reason) {
     Scene scene = SceneWithEdges(5, kTwoTriangles);
     ScaleRatio& weak = AddRatio(1, 2, 3, &scene);
     if (reason == 0) weak.kinds[0].inliers = 3;
     if (reason == 1) weak.log10_nfa = -1;
     if (reason == 2) weak.log_ratio_stddev = 0.3;
+    if (reason == 3) weak.kinds[0].candidates = 2 * weak.kinds[0].inliers;
     Diagnosis diagnosis = DiagnosisOf(scene);
     EXPECT_FALSE(diagnosis.IsFirm()) << reason;
     EXPECT_EQ(diagnosis.by_ratios.groups.size(), 1u);

@@ -177,7 +177,7 @@ bool Diagnosis::IsFirm() const {
 }
 
 bool IsWeak(const ScaleRatio& ratio, const DiagnosisOptions& options) {
-  return ratio.NumInliers() < options.min_inliers ||
+  return ratio.NumInliers() < options.min_inliers || !ratio.HasMajority() ||
          ratio.log10_nfa > options.max_log10_nfa ||
          ratio.log_ratio_stddev > options.max_stddev;
 }

@@ -115,7 +115,8 @@ Result<ScaleDiagnosis> DiagnoseScales(const ViewGraph& graph,
 TripletPrediction PredictTripletAveraging(const Scene& scene,
                                           int min_shared_tracks = 30);
 
-/// Few inliers, chance, or a large deviation, as the options say.
+/// Few inliers, chance, or a large deviation, as the options say; or most
+/// candidates of every kind contradict it.
 bool IsWeak(const ScaleRatio& ratio, const DiagnosisOptions& options);
 
 }  // namespace lowlap
