@@ -90,6 +90,23 @@ TEST(RobustPositionErrors, HundredsOfCamerasAreAlignedByAFew) {
   }
 }
 
+TEST(RobustPositionErrors, AnExactGroupWinsOverACompromise) {
+  GroundTruth truth;
+  Scene scene;
+  for (std::uint32_t view = 0; view < 11; ++view) {
+    Pose& pose = truth[view];
+    pose.center = {1.0 * view, 0, 0};
+    scene.views[view].pose_id = view;
+    scene.poses[view] = pose;
+    // Halfway between the groups all would be within the limit of 0.5.
+    if (view % 4 == 1) scene.poses[view].center.z() += 0.8;
+  }
+  for (const auto& [view, error] :
+       RobustPositionErrors(scene, truth, 0.05).error) {
+    EXPECT_NEAR(error, view.value() % 4 == 1 ? 0.08 : 0, 1e-9) << view;
+  }
+}
+
 TEST(RobustPositionErrors, AreInfiniteWhereNothingCanBeAligned) {
   const SyntheticScene synthetic = *Simulate(SmallRoom());
   Scene scene = TrueSolution(synthetic);

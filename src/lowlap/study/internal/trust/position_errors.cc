@@ -19,28 +19,21 @@ double SizeOf(const GroundTruth& truth) {
 }
 
 struct AlignedErrors {
-  int num_near = -1;
-  double sum = 0;
+  double cost = HUGE_VAL;  // the truncated squares
   double scale = 0;
   std::vector<double> errors;
-
-  bool IsBetterThan(const AlignedErrors& other) const {
-    return num_near != other.num_near ? num_near > other.num_near
-                                      : sum < other.sum;
-  }
 };
 
 AlignedErrors ErrorsAt(const std::vector<Vec3>& turned,
                        const std::vector<Vec3>& truth, double scale,
                        const Vec3& translation, double wrong) {
   AlignedErrors aligned;
-  aligned.num_near = 0;
+  aligned.cost = 0;
   aligned.scale = scale;
   for (std::size_t n = 0; n < truth.size(); ++n) {
     const double error = (scale * turned[n] + translation - truth[n]).norm();
     aligned.errors.push_back(error);
-    aligned.num_near += error <= wrong ? 1 : 0;
-    aligned.sum += std::min(error, wrong);
+    aligned.cost += std::min(error * error, wrong * wrong);
   }
   return aligned;
 }
@@ -90,7 +83,7 @@ PositionErrors RobustPositionErrors(const Scene& scene,
                                  scale * (turned[i] + turned[j]) / 2;
         AlignedErrors aligned =
             ErrorsAt(turned, true_centers, scale, translation, wrong * size);
-        if (aligned.IsBetterThan(best)) best = std::move(aligned);
+        if (aligned.cost < best.cost) best = std::move(aligned);
       }
     }
   }
