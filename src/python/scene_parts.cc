@@ -105,6 +105,9 @@ void BindViews(py::module_& module) {
            py::arg("rotation"), py::arg("center"))
       .def_readonly("rotation", &Pose::rotation, "Camera from world, (3, 3).")
       .def_readonly("center", &Pose::center, "In the world, (3,).")
+      .def_readonly("center_covariance", &Pose::center_covariance,
+                    "(3, 3), world units squared, or None: of the error that\n"
+                    "a similarity to the true centres leaves.")
       .def("__repr__", [](const py::object& self) {
         return py::str("<lowlap.Pose: center {}>").format(self.attr("center"));
       });

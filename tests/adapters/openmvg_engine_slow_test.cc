@@ -56,10 +56,10 @@ TEST_F(OpenMvgEngineData, GivesThePosesOfTheFilesToTheByte) {
       openmvg::TranslationStepOptions options;
       options.solve.adjust = adjust;
       const auto poses = PosesOfEngine(&*host, Rotations::kLowlap, options);
-      EXPECT_EQ(poses, SolvedByCommand("-i " + listing + " -m " + matches +
-                                       " -M matches.e.bin" +
-                                       (adjust ? "" : " --no-adjust"))
-                           .poses);
+      const Scene solved =
+          SolvedByCommand("-i " + listing + " -m " + matches +
+                          " -M matches.e.bin" + (adjust ? "" : " --no-adjust"));
+      EXPECT_EQ(poses, PosesOfHost(solved.poses));
       std::cout << project.listing << (adjust ? ", adjusted: " : ": ")
                 << poses.size() << " of " << host->scene.views.size()
                 << " views placed\n";

@@ -80,7 +80,7 @@ class OpenMvgEngine : public ::testing::Test {
     EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
     const auto scene = ReadScene(out + "/scene.lowlap");
     EXPECT_THAT(scene, IsOk());
-    return scene ? scene->poses : std::map<PoseId, Pose>();
+    return scene ? PosesOfHost(scene->poses) : std::map<PoseId, Pose>();
   }
 
   TranslationStepInput Input() const {

@@ -68,6 +68,12 @@ inline Result<Host> LoadHost(const std::string& listing,
   return host;
 }
 
+/// Without their covariances, which a host's poses do not have.
+inline std::map<PoseId, Pose> PosesOfHost(std::map<PoseId, Pose> poses) {
+  for (auto& [id, pose] : poses) pose.center_covariance.reset();
+  return poses;
+}
+
 /// The poses that the engine leaves in the host's scene, as lowlap's; empty if
 /// it fails.
 inline std::map<PoseId, Pose> PosesOfEngine(

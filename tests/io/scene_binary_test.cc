@@ -70,8 +70,8 @@ std::string Payload(const std::string& bytes, const std::string& tag) {
 TEST(SceneBinary, LayoutOfTheHeader) {
   const std::string bytes = FullSceneBytes();
   EXPECT_EQ(bytes.substr(0, 8), "\x89LOWLAP\n");
-  EXPECT_EQ(LittleEndian(bytes, 8, 4), 4u);
-  EXPECT_EQ(LittleEndian(bytes, 12, 4), 14u);
+  EXPECT_EQ(LittleEndian(bytes, 8, 4), 5u);
+  EXPECT_EQ(LittleEndian(bytes, 12, 4), 15u);
   EXPECT_EQ(bytes.substr(16, 4), "ROOT");
   const std::string root = Payload(bytes, "ROOT");
   EXPECT_EQ(LittleEndian(root, 0, 8), FullScene().root_path.size());
@@ -152,10 +152,19 @@ TEST(SceneBinary, ForeignAndNewerFiles) {
               IsError(ErrorCode::kParse, "not a .lowlap file"));
   EXPECT_THAT(ParseSceneBinary(bytes + "x"),
               IsError(ErrorCode::kParse, "follows the last section"));
-  bytes[8] = 5;
+  bytes[8] = 6;
   EXPECT_THAT(ParseSceneBinary(bytes, "new.lowlap"),
               IsError(ErrorCode::kUnsupported,
-                      "new.lowlap: byte 8: version 5 is not 2 to 4"));
+                      "new.lowlap: byte 8: version 6 is not 2 to 5"));
+}
+
+TEST(SceneBinary, CovariancesAreOfPoses) {
+  const std::string bytes = FullSceneBytes();
+  std::string payload = Payload(bytes, "CCOV");
+  ASSERT_EQ(LittleEndian(payload, 8, 4), 101u);
+  payload[8] = 99;
+  EXPECT_THAT(ParseSceneBinary(WithPayload(bytes, "CCOV", payload)),
+              IsError(ErrorCode::kInvalidScene, "there is no pose 99"));
 }
 
 TEST(SceneBinary, DamageIsLocated) {

@@ -169,8 +169,8 @@ INSTANTIATE_TEST_SUITE_P(
              "\"lowlap\": {}, \"root_path\"", ErrorCode::kParse, "$.lowlap",
              "\"version\" is missing"},
         Case{"OwnVersionUnknown", "\"root_path\"",
-             "\"lowlap\": {\"version\": 5}, \"root_path\"",
-             ErrorCode::kUnsupported, "$.lowlap.version", "version 5"}),
+             "\"lowlap\": {\"version\": 6}, \"root_path\"",
+             ErrorCode::kUnsupported, "$.lowlap.version", "version 6"}),
     kCaseName);
 
 // lowlap's part, damaged in the full scene.
@@ -219,8 +219,15 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"NoDirection", "\"direction\"", "\"translation\"",
              ErrorCode::kParse,
              "$.lowlap.relative_poses[views=1,4].translation", "not known"},
-        Case{"CovarianceTooSmall", "\"covariance\": [",
-             "\"covariance\": [[0, 0, 0, 0], ", ErrorCode::kParse,
+        Case{"CovarianceOfNoPose", "{\"id\": 101, \"covariance\"",
+             "{\"id\": 99, \"covariance\"", ErrorCode::kInvalidScene,
+             "$.lowlap.center_covariances[id=99]", "there is no pose 99"},
+        Case{"CenterCovarianceTooLarge", "{\"id\": 101, \"covariance\": [",
+             "{\"id\": 101, \"covariance\": [[0, 0, 0], ", ErrorCode::kParse,
+             "$.lowlap.center_covariances[id=101].covariance",
+             "must have 3 elements, not 4"},
+        Case{"CovarianceTooSmall", "\"covariance\": [[1e-05",
+             "\"covariance\": [[0, 0, 0, 0], [1e-05", ErrorCode::kParse,
              "$.lowlap.relative_poses[views=1,4].covariance[0]",
              "must have 5 elements, not 4"},
         Case{"AlternativeOfUnknownMember", "\"alternatives\": [{",

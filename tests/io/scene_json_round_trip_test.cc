@@ -39,9 +39,24 @@ TEST(SceneFiles, FullSceneSurvivesBothForms) {
   EXPECT_EQ(*FormatSceneJson(*from_bytes), *text);
 }
 
-// Written by the last program of version 3 from FullScene.
+// Written by the last programs of their versions from FullScene.
 std::string OldFile(const char* name) {
   return std::string(LOWLAP_IO_TEST_DATA) + "/" + name;
+}
+
+Scene SceneOfVersion4() {
+  Scene scene = FullScene();
+  for (auto& [id, pose] : scene.poses) pose.center_covariance.reset();
+  return scene;
+}
+
+TEST(SceneFiles, FilesOfVersion4HaveNoCovariancesOfCentres) {
+  const Result<Scene> from_text = ReadSceneJson(OldFile("version_4.json"));
+  const Result<Scene> from_bytes = ReadSceneBinary(OldFile("version_4.lowlap"));
+  ASSERT_THAT(from_text, IsOk());
+  ASSERT_THAT(from_bytes, IsOk());
+  EXPECT_EQ(*from_text, SceneOfVersion4());
+  EXPECT_EQ(*from_bytes, SceneOfVersion4());
 }
 
 TEST(SceneFiles, FilesOfVersion3HaveTheThreeKindsOfTheirTime) {
@@ -49,7 +64,7 @@ TEST(SceneFiles, FilesOfVersion3HaveTheThreeKindsOfTheirTime) {
   const Result<Scene> from_bytes = ReadSceneBinary(OldFile("version_3.lowlap"));
   ASSERT_THAT(from_text, IsOk());
   ASSERT_THAT(from_bytes, IsOk());
-  Scene expected = FullScene();
+  Scene expected = SceneOfVersion4();
   expected.given_intrinsics.clear();
   EXPECT_EQ(*from_text, expected);
   EXPECT_EQ(*from_bytes, expected);
@@ -58,7 +73,7 @@ TEST(SceneFiles, FilesOfVersion3HaveTheThreeKindsOfTheirTime) {
 // Version 2 had neither second modes nor shares of information, and no section
 // of them.
 TEST(SceneFiles, FilesOfVersion2HaveNoDetailsOfTheRatios) {
-  Scene expected = FullScene();
+  Scene expected = SceneOfVersion4();
   expected.given_intrinsics.clear();
   for (ScaleRatio& ratio : expected.scale_ratios) {
     ratio.second_mode.reset();

@@ -5,9 +5,11 @@
 
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 
 #include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/pipeline/internal/output/summary_json.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "support/matchers.h"
 
@@ -41,6 +43,19 @@ class MakeReportTest : public ::testing::Test {
   Scene scene_;
   RunSummary summary_;
 };
+
+TEST_F(MakeReportTest, TheSummaryHasTheDeviationOfEveryCentre) {
+  const auto summary = nlohmann::json::parse(ToJson(summary_, scene_));
+  const auto& grades = summary["solve"]["poses"]["grades"];
+  ASSERT_EQ(grades.size(), scene_.views.size());
+  for (const auto& graded : grades) {
+    const double stddev = graded["center_stddev"];
+    const Pose& pose = *scene_.FindPose(graded["view"].get<std::uint32_t>());
+    const double trace = pose.center_covariance->trace();
+    EXPECT_LE(stddev * stddev, trace * (1 + 1e-12));
+    EXPECT_GE(stddev * stddev, trace / 3);
+  }
+}
 
 TEST_F(MakeReportTest, HasTheTruthAndTheStartInTheFrameOfTheScene) {
   const auto report = MakeReport(summary_, scene_, {});

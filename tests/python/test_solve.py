@@ -46,6 +46,13 @@ class SolveTest(unittest.TestCase):
         pairs = lowlap.solve(self.scene, coplanar_ties="pairs").adjustment
         self.assertEqual((pairs.planes, pairs.directions), (0, 0))
 
+    def test_says_how_far_the_centres_are_known(self):
+        for pose in lowlap.solve(self.scene).scene.poses.values():
+            self.assertEqual(pose.center_covariance.shape, (3, 3))
+        unadjusted = lowlap.solve(self.scene, no_adjust=True).scene
+        for pose in unadjusted.poses.values():
+            self.assertIsNone(pose.center_covariance)
+
     def test_says_which_directions_their_matches_contradict(self):
         scene, truth = lowlap.simulate(views=9, points=30, lines=50, noise=0.5,
                                        pairs="window:2", wrong_directions=0.2,

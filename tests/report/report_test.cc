@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "lowlap/report/internal/base64.h"
+#include "lowlap/report/internal/display_frame.h"
 #include "lowlap/report/internal/page_data.h"
 #include "lowlap/report/internal/page_source.h"
 #include "lowlap/synthetic/synthetic_scene.h"
@@ -89,6 +90,11 @@ ReportContent ContentOf(const Scene& scene) {
 
 TEST(PageData, HasAllSections) {
   Scene scene = Room(7, 60);
+  const double deviation = 0.1 / ChooseDisplayFrame(scene).scale;
+  for (auto& [id, pose] : scene.poses) {
+    pose.center_covariance =
+        Vec3(0, 1, 0.5).asDiagonal() * Mat3::Identity() * deviation * deviation;
+  }
   scene.scale_ratios.push_back({});
   scene.scale_ratios.back().views = {0, 1, 2};
   scene.scale_ratios.back().verdict = RatioVerdict::kMeaningful;
@@ -112,6 +118,7 @@ TEST(PageData, HasAllSections) {
       EXPECT_LT(std::sqrt(square), 1 + 1e-6) << camera;
     }
     EXPECT_EQ(view["position_error"], 0.25);
+    EXPECT_NEAR(view["center_stddev"], 0.1, 1e-9);
     const auto landmarks = Decode<std::uint32_t>(view["features"]["landmarks"]);
     EXPECT_EQ(Decode<std::uint16_t>(view["features"]["points"]).size(),
               2 * landmarks.size());

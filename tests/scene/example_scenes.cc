@@ -65,6 +65,8 @@ Scene FullScene() {
   scene.intrinsics[20].fy_px = 499.0;
   scene.given_intrinsics[20] = scene.intrinsics[0];
   scene.given_intrinsics[30] = scene.intrinsics[40];
+  scene.poses[101].center_covariance =
+      Mat3{{2, 0.1, -1.0 / 3}, {0.1, 5e-324, 0}, {-1.0 / 3, 0, 1e30}};
   scene.views[4].center_prior = CenterPrior{{0.5, 1, 2}, {1e22, -1.0 / 3, 0.1}};
 
   for (const ViewId id : {1u, 4u, 7u}) {

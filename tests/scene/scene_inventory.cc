@@ -74,6 +74,13 @@ class Inventory {
         Append(pose->center, &item.numbers);
         items_.push_back(item);
       }
+      const Pose* solved = scene_.FindPose(id);
+      if (Holds(SceneContent::kCenterCovariances) && solved != nullptr &&
+          solved->center_covariance) {
+        SceneItem item{"covariance", {}};
+        Append(*solved->center_covariance, &item.numbers);
+        items_.push_back(item);
+      }
       if (Holds(SceneContent::kCenterPriors) && view.center_prior) {
         SceneItem item{"prior", {}};
         Append(view.center_prior->center_in_world, &item.numbers);

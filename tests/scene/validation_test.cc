@@ -104,6 +104,15 @@ const Case kCameraCases[] = {
      "$.extrinsics[key=101].rotation", "rotation"},
     {"PoseCenterNan", [](Scene& s) { s.poses[101].center.z() = kNan; },
      "$.extrinsics[key=101].center", "finite"},
+    {"CenterCovarianceNan",
+     [](Scene& s) { (*s.poses[101].center_covariance)(1, 2) = kNan; },
+     "$.lowlap.center_covariances[id=101].covariance", "finite"},
+    {"CenterCovarianceNotSymmetric",
+     [](Scene& s) { (*s.poses[101].center_covariance)(0, 2) += 1e25; },
+     "$.lowlap.center_covariances[id=101].covariance", "symmetric"},
+    {"CenterVarianceNegative",
+     [](Scene& s) { (*s.poses[101].center_covariance)(0, 0) = -1; },
+     "$.lowlap.center_covariances[id=101].covariance", "negative variance"},
 };
 
 const Case kMeasurementCases[] = {

@@ -131,8 +131,9 @@ struct AdjustmentOptions {
   /// before it earlier.
   double function_tolerance = 1e-8;
 
-  /// Covariances of the centres, from the Hessian at the solution.
-  bool compute_center_covariances = false;
+  /// Whether poses get the covariances of their centres (Pose), and the summary
+  /// the deviations of ratios and directions.
+  bool estimate_uncertainty = true;
 
   /// kInvalidArgument for values without a meaning.
   Status Validate() const;

@@ -120,10 +120,12 @@ struct AdjustmentSummary {
   bool converged = false;  // last solve, and the rounds came to rest
   double seconds = 0;
 
-  /// World units squared, in the gauge of the adjustment (the reference pose
-  /// and the length of one baseline per component have none). Empty unless
-  /// asked for.
-  std::map<PoseId, Mat3> center_covariances;
+  /// What the observations leave open of the scale ratios and relative poses of
+  /// the scene whose views share structure, even over others, at the adjusted
+  /// centres: standard deviations of log(|c3 - c2| / |c2 - c1|), and of the
+  /// direction of c2 - c1 along the axis in which it is known least.
+  std::map<ViewTriplet, double> log_ratio_stddevs;
+  std::map<ViewPair, double> direction_stddevs_rad;
 };
 
 }  // namespace lowlap

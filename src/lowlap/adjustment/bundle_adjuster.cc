@@ -1,9 +1,8 @@
 #include "lowlap/adjustment/bundle_adjuster.h"
 
 #include <algorithm>
-#include <array>
 #include <chrono>
-#include <cmath>
+#include <map>
 #include <set>
 #include <string>
 #include <utility>
@@ -11,6 +10,8 @@
 #include "lowlap/adjustment/internal/planes/free_landmark.h"
 #include "lowlap/adjustment/internal/planes/scene_planes.h"
 #include "lowlap/adjustment/internal/rounds/calibration_score.h"
+#include "lowlap/adjustment/internal/rounds/center_covariances.h"
+#include "lowlap/adjustment/internal/rounds/kind_statistics.h"
 #include "lowlap/adjustment/internal/rounds/outlier_round.h"
 #include "lowlap/adjustment/internal/rounds/pairs.h"
 #include "lowlap/adjustment/internal/rounds/solve.h"
@@ -30,75 +31,6 @@ constexpr int kRoundsWithPlanes = 3;
 constexpr double kToleranceBeforePlanes = 1e-2;
 constexpr double kPlaneTolerance = 1e-4;
 constexpr double kFirstTolerance = 1e-3;
-
-// Root mean square error of points, lines and coplanar pairs, in pixels.
-using KindRmse = std::array<double, 3>;
-
-class Mean {
- public:
-  void Add(double error) {
-    if (!std::isfinite(error)) return;
-    sum_ += error * error;
-    ++count_;
-  }
-  double Root() const { return count_ > 0 ? std::sqrt(sum_ / count_) : 0; }
-
- private:
-  double sum_ = 0;
-  double count_ = 0;
-};
-
-template <class Track>
-double Rmse(const CameraSet& cameras, const std::vector<Track>& tracks) {
-  Mean mean;
-  for (const Track& track : tracks) {
-    if (!track.IsLandmark()) continue;
-    for (const auto& candidate : track.candidates) {
-      if (candidate.used) mean.Add(ErrorPx(cameras, track, candidate));
-    }
-  }
-  return mean.Root();
-}
-
-// Of the candidates in use.
-KindRmse ComputeRmse(const CameraSet& cameras, const StructureState& state,
-                     AdjustedCoplanarResidual residual) {
-  Mean coplanar;
-  for (const PairState& pair : state.pairs) {
-    if (!pair.used || !state.HasLines(pair)) continue;
-    coplanar.Add(PairErrorPx(cameras, state, pair, residual));
-  }
-  return {Rmse(cameras, state.points), Rmse(cameras, state.lines),
-          coplanar.Root()};
-}
-
-template <class Track>
-void CountObservations(const std::vector<Track>& tracks,
-                       KindAdjustment* summary) {
-  for (const Track& track : tracks) {
-    const std::size_t used = track.IsLandmark() ? track.UsedCount() : 0;
-    if (track.IsLandmark()) ++summary->landmarks;
-    summary->observations_used += used;
-    summary->observations_dropped += track.candidates.size() - used;
-  }
-}
-
-void CountPairs(const std::vector<PairState>& pairs, std::size_t input_pairs,
-                KindAdjustment* summary) {
-  std::set<int> linked;
-  for (const PairState& pair : pairs) {
-    if (!pair.used) {
-      summary->observations_surplus += pair.consistent ? 1 : 0;
-      continue;
-    }
-    ++summary->observations_used;
-    linked.insert(pair.first);
-    linked.insert(pair.second);
-  }
-  summary->landmarks = linked.size();
-  summary->observations_dropped =
-      input_pairs - summary->observations_used - summary->observations_surplus;
-}
 
 std::size_t CountObservationsWithoutCamera(const Scene& scene,
                                            const CameraSet& cameras) {
@@ -223,7 +155,6 @@ class Adjuster {
     summary_.final_cost = summary_.solves.back().final_cost;
     summary_.directions = state_.directions.size();
     summary_.components = last_.components;
-    summary_.center_covariances = last_.center_covariances;
     std::set<PoseId> adjusted;
     for (std::size_t n = 0; n < cameras_.poses.size(); ++n) {
       if (last_.pose_observed[n]) adjusted.insert(cameras_.poses[n].id);
@@ -241,11 +172,21 @@ class Adjuster {
       summary_.calibration_preferences =
           FindCalibrationPreferences(options_, noise_, cameras_, state_);
     }
+    if (options_.estimate_uncertainty) {
+      LOWLAP_RETURN_IF_ERROR(EstimateUncertainty());
+    }
     return summary_;
   }
 
   void WriteTo(Scene* scene, AdjustmentSummary* summary) const {
     cameras_.WriteTo(scene);
+    for (auto& [id, pose] : scene->poses) {
+      const auto found = center_covariances_.find(id);
+      pose.center_covariance.reset();
+      if (found != center_covariances_.end()) {
+        pose.center_covariance = found->second;
+      }
+    }
     WriteLandmarks(cameras_, state_.points, &scene->structure, summary);
     WriteLandmarks(cameras_, state_.lines, &scene->line_structure, summary);
     scene->coplanar_pairs.clear();
@@ -258,11 +199,31 @@ class Adjuster {
   }
 
  private:
+  Status EstimateUncertainty() {
+    if (!context_.Progress("adjustment: uncertainty", 0, 1)) {
+      return MakeError(ErrorCode::kCancelled, "stopped on request");
+    }
+    std::vector<ViewTriplet> triplets;
+    for (const ScaleRatio& ratio : scene_.scale_ratios) {
+      triplets.push_back(ratio.views);
+    }
+    std::vector<ViewPair> pairs;
+    for (const auto& entry : scene_.relative_poses) {
+      pairs.push_back(entry.first);
+    }
+    CenterUncertainty uncertainty = EstimateCenterUncertainty(
+        options_, noise_, triplets, pairs, cameras_, state_);
+    summary_.log_ratio_stddevs = std::move(uncertainty.log_ratio_stddevs);
+    summary_.direction_stddevs_rad =
+        std::move(uncertainty.direction_stddevs_rad);
+    center_covariances_ = std::move(uncertainty.covariances);
+    return {};
+  }
+
   Status Solve(const std::string& stage, bool fixed_rotations,
                double function_tolerance) {
-    const SolveRequest request{
-        stage, fixed_rotations, function_tolerance, noise_,
-        stage == kFinalStage && options_.compute_center_covariances};
+    const SolveRequest request{stage, fixed_rotations, function_tolerance,
+                               noise_};
     LOWLAP_ASSIGN_OR_RETURN(
         last_, SolveOnce(options_, request, context_, &cameras_, &state_));
     const SolveReport& report = last_.report;
@@ -347,6 +308,7 @@ class Adjuster {
   std::vector<DirectionSight> sights_;
   AdjustmentSummary summary_;
   NoiseLevels noise_;
+  std::map<PoseId, Mat3> center_covariances_;
   KindRmse initial_{};
   SolveOutcome last_;
 };

@@ -44,6 +44,12 @@ const std::vector<ContentKind>& ContentKinds() {
        [](const Scene& scene) { return scene.given_intrinsics.size(); }},
       {Content::kPoses, "poses",
        [](const Scene& scene) { return scene.poses.size(); }},
+      {Content::kCenterCovariances, "covariances of centres",
+       [](const Scene& scene) {
+         return Sum(scene.poses, [](const Pose& pose) {
+           return pose.center_covariance.has_value();
+         });
+       }},
       {Content::kCenterPriors, "measured centres",
        [](const Scene& scene) {
          return Sum(scene.views, [](const View& view) {

@@ -18,6 +18,7 @@ enum class SceneContent {
   kDistortions,  // of intrinsics that have one
   kGivenIntrinsics,
   kPoses,
+  kCenterCovariances,
   kCenterPriors,
   kKeypoints,
   kKeypointShapes,  // covariances of key points

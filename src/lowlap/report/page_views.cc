@@ -4,6 +4,7 @@
 
 #include "lowlap/report/internal/base64.h"
 #include "lowlap/report/internal/page_parts.h"
+#include "lowlap/scene/internal/center_stddev.h"
 
 namespace lowlap {
 namespace {
@@ -179,6 +180,9 @@ PageJson ViewsJson(const Scene& scene, const ReportContent& content,
     }
     if (const Pose* pose = scene.FindPose(id)) {
       json["camera"] = CameraJson(*pose, view, intrinsic, frame);
+      if (const auto stddev = CenterStddev(*pose)) {
+        json["center_stddev"] = frame.scale * *stddev;
+      }
     }
     if (before) {
       const auto pose = before->poses.find(view.pose_id);

@@ -78,6 +78,11 @@ Status ValidateCameras(const Scene& scene, const ViewTable&) {
     if (!pose.center.allFinite()) {
       return Invalid("must be finite", place + ".center");
     }
+    if (pose.center_covariance && !IsCovariance(*pose.center_covariance)) {
+      return Invalid(kNoCovariance, OwnItemPlace("center_covariances", "id",
+                                                 std::to_string(id.value())) +
+                                        ".covariance");
+    }
   }
   return {};
 }

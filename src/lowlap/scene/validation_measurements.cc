@@ -79,14 +79,8 @@ Status ValidateMotion(const Motion& motion, const std::string& place) {
   if (!std::isfinite(motion.log10_nfa)) {
     return Invalid("must be finite", place + ".log10_nfa");
   }
-  if (!motion.covariance) return {};
-  const auto& covariance = *motion.covariance;
-  const double asymmetry =
-      (covariance - covariance.transpose()).cwiseAbs().maxCoeff();
-  if (!covariance.allFinite() || covariance.diagonal().minCoeff() < 0 ||
-      !(asymmetry <= kUnitTolerance * covariance.cwiseAbs().maxCoeff())) {
-    return Invalid("must be finite and symmetric, without a negative variance",
-                   place + ".covariance");
+  if (motion.covariance && !IsCovariance(*motion.covariance)) {
+    return Invalid(kNoCovariance, place + ".covariance");
   }
   return {};
 }

@@ -43,13 +43,17 @@ struct View {
 struct Pose {
   Mat3 rotation = Mat3::Identity();  // camera from world
   Vec3 center = Vec3::Zero();        // in world
+  /// World units squared: what a similarity between all centres and the true
+  /// ones leaves of the error of this one. Absent if unknown.
+  std::optional<Mat3> center_covariance = std::nullopt;
 
   RigidTransform CamFromWorld() const {
     return RigidTransform::FromRotationAndCenter(rotation, center);
   }
 
   friend bool operator==(const Pose& a, const Pose& b) {
-    return a.rotation == b.rotation && a.center == b.center;
+    return a.rotation == b.rotation && a.center == b.center &&
+           a.center_covariance == b.center_covariance;
   }
 };
 

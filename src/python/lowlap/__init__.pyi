@@ -49,6 +49,7 @@ class Intrinsic:
 class Pose:
     rotation: Doubles
     center: Doubles
+    center_covariance: Optional[Doubles]
     def __init__(self, rotation: ArrayLike, center: ArrayLike) -> None: ...
 
 class ViewFeatures:

@@ -98,9 +98,7 @@ class BinaryRecord {
         if (!map.empty() && key <= map.rbegin()->first) {
           bytes_.Fail("ids must ascend");
         }
-        visit(*this,
-              map.emplace_hint(map.end(), key, typename Map::mapped_type{})
-                  ->second);
+        visit(*this, map.try_emplace(map.end(), key)->second);
       }
     } else {
       for (auto& [key, value] : map) {

@@ -10,6 +10,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/binary_record.h"
 #include "lowlap/io/internal/byte_archive.h"
+#include "lowlap/io/internal/center_covariances.h"
 #include "lowlap/io/internal/scene_records.h"
 #include "lowlap/io/internal/scene_version.h"
 #include "lowlap/scene/validation.h"
@@ -30,7 +31,8 @@ constexpr std::array<std::string_view, 13> kSections = {
 std::vector<std::string_view> SectionsOf(std::uint32_t version) {
   std::vector<std::string_view> sections(kSections.begin(), kSections.end());
   if (version == 3) sections.push_back("RATD");
-  if (version == 4) sections.push_back("GIVN");
+  if (version >= 4) sections.push_back("GIVN");
+  if (version >= 5) sections.push_back("CCOV");
   return sections;
 }
 
@@ -68,6 +70,13 @@ constexpr auto kVisitLandmark = [](auto& record, auto& landmark) {
 };
 
 template <class Bytes, class SceneType>
+void TransferCenterCovariances(BinaryRecord<Bytes>& record, SceneType& scene) {
+  CenterCovariances covariances = CenterCovariancesOf(scene);
+  record.MapById(covariances, kVisitCenterCovariance);
+  if constexpr (Bytes::kReads) SetCenterCovariances(covariances, scene);
+}
+
+template <class Bytes, class SceneType>
 void TransferSection(std::string_view tag, Bytes& bytes, SceneType& scene) {
   BinaryRecord record(bytes);
   if (tag == "ROOT") {
@@ -98,6 +107,8 @@ void TransferSection(std::string_view tag, Bytes& bytes, SceneType& scene) {
     record.Flat("coplanar_pairs", scene.coplanar_pairs, kVisitPair);
   } else if (tag == "GIVN") {
     record.MapById(scene.given_intrinsics, kVisitIntrinsic);
+  } else if (tag == "CCOV") {
+    TransferCenterCovariances(record, scene);
   }
 }
 

@@ -25,6 +25,11 @@ inline constexpr auto kVisitIntrinsic = [](auto& record, auto& intrinsic) {
   record.Member("distortion", intrinsic.distortion);
 };
 
+inline constexpr auto kVisitCenterCovariance = [](auto& record,
+                                                  auto& covariance) {
+  record.Member("covariance", covariance);
+};
+
 inline constexpr auto kVisitFeatures = [](auto& record, auto& features) {
   record.Flat("points", features.points_px, VisitItem());
   record.Flat("point_covariances", features.point_covariances, VisitItem(),

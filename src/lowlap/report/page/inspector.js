@@ -80,6 +80,9 @@ function describeView(view) {
           ['error of the position', number(view.position_error)],
       view.rotation_error_deg !== undefined &&
           ['error of the rotation', `${number(view.rotation_error_deg, 2)}°`],
+      view.center_stddev !== undefined &&
+          ['deviation of the position',
+           `${number(100 * view.center_stddev, 2)} % of the scene`],
       moved && ['moved by the adjustment',
                 `${number(100 * moved, 2)} % of the scene`],
     ]),

@@ -57,6 +57,10 @@ function drawCameras(tab) {
     ['line RMSE (px)',
      view => page.residuals.lines.views[view.index].rmse_px, 2],
   ];
+  if (page.views.some(view => view.center_stddev !== undefined)) {
+    columns.push(['deviation of the position (% of the scene)',
+                  view => view.center_stddev && 100 * view.center_stddev, 3]);
+  }
   if (page.hasTruth) {
     columns.push(['position error', view => view.position_error, 4],
                  ['rotation error (°)', view => view.rotation_error_deg, 3]);

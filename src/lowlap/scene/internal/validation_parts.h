@@ -41,6 +41,16 @@ inline bool IsUnit(const Vec3& v) {
   return std::abs(v.norm() - 1) <= kUnitTolerance;  // false for NaN
 }
 
+/// Finite and symmetric, without a negative variance.
+template <int kSize>
+bool IsCovariance(const Eigen::Matrix<double, kSize, kSize>& matrix) {
+  const double asymmetry = (matrix - matrix.transpose()).cwiseAbs().maxCoeff();
+  return matrix.allFinite() && matrix.diagonal().minCoeff() >= 0 &&
+         asymmetry <= kUnitTolerance * matrix.cwiseAbs().maxCoeff();
+}
+inline constexpr char kNoCovariance[] =
+    "must be finite and symmetric, without a negative variance";
+
 inline tl::unexpected<Error> Invalid(std::string message, std::string place) {
   return MakeError(ErrorCode::kInvalidScene, std::move(message), {},
                    std::move(place));

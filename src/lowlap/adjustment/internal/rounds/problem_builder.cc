@@ -302,6 +302,7 @@ void ProblemBuilder::SplitBlocks() {
                      [&](int partner) { return is_eliminated[partner]; });
     if (is_eliminated[n]) {
       eliminated_.push_back(LineBlock(n));
+      eliminated_lines_.push_back(n);
     } else {
       keep(LineBlock(n));
     }

@@ -35,6 +35,9 @@ class ProblemBuilder {
   /// Points and an independent set of the lines: what the Schur complement
   /// eliminates.
   const std::vector<double*>& eliminated() const { return eliminated_; }
+  /// The lines of these, which come first: indices into the state. The points
+  /// are those of the selection.
+  const std::vector<int>& eliminated_lines() const { return eliminated_lines_; }
   /// The other blocks of the problem, without those that are constant.
   const std::vector<double*>& kept() const { return kept_; }
   double* CenterBlock(std::size_t pose);
@@ -80,6 +83,7 @@ class ProblemBuilder {
 
   std::vector<double> blocks_;
   std::vector<double*> eliminated_, kept_;
+  std::vector<int> eliminated_lines_;
   std::vector<std::unique_ptr<ceres::LossFunction>> losses_;
   std::vector<std::unique_ptr<ceres::CostFunction>> costs_;
   std::vector<std::unique_ptr<ceres::Manifold>> intrinsic_manifolds_;

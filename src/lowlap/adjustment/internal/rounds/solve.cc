@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "lowlap/adjustment/internal/rounds/linearised_problem.h"
 #include "lowlap/adjustment/internal/rounds/problem_builder.h"
 #include "lowlap/adjustment/internal/rounds/quiet_logging.h"
 
@@ -62,52 +61,6 @@ ceres::Solver::Options SolverOptions(const AdjustmentOptions& options,
   return solver;
 }
 
-// From the tangent space of the block to its three numbers.
-Eigen::MatrixXd TangentToAmbient(const ceres::Problem& problem, double* block) {
-  const ceres::Manifold* manifold = problem.GetManifold(block);
-  if (manifold == nullptr) return Mat3::Identity();
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>
-      jacobian(3, manifold->TangentSize());
-  manifold->PlusJacobian(block, jacobian.data());
-  return jacobian;
-}
-
-// Covariances of the camera centres in world units, from the Hessian J^T J of
-// the problem at its present values with points and lines marginalised:
-//   S = H_cc - H_cl H_ll^-1 H_lc,  cov = S^-1
-// (the pseudo-inverse, should a camera be underdetermined). J is that of the
-// weighted and robustified residuals, so that the noise levels are in it. The
-// components are in their frames; `saved_references` are the reference poses in
-// world, which are absent from the result.
-std::map<PoseId, Mat3> CenterCovariances(
-    const std::vector<Component>& components,
-    const std::vector<PoseState>& saved_references, const CameraSet& cameras,
-    ProblemBuilder* builder) {
-  const ceres::Problem& problem = builder->problem();
-  const LinearisedProblem linearised(builder);
-  if (linearised.kept_size == 0) return {};
-  const Eigen::MatrixXd covariance =
-      PseudoInverse(Eigen::MatrixXd(linearised.schur_complement));
-  std::map<PoseId, Mat3> result;
-  for (std::size_t n = 0; n < components.size(); ++n) {
-    const Component& component = components[n];
-    const Mat3 world_from_frame =
-        saved_references[n].cam_from_world.toRotationMatrix().transpose();
-    for (const int pose : component.poses) {
-      double* center = builder->CenterBlock(pose);
-      const int column = linearised.KeptColumn(center);
-      if (column < 0) continue;
-      const int size = problem.ParameterBlockTangentSize(center);
-      const Eigen::MatrixXd to_world = component.Unit() * world_from_frame *
-                                       TangentToAmbient(problem, center);
-      result[cameras.poses[pose].id] =
-          to_world * covariance.block(column, column, size, size) *
-          to_world.transpose();
-    }
-  }
-  return result;
-}
-
 }  // namespace
 
 Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
@@ -151,10 +104,6 @@ Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
   }
 
   SolveOutcome outcome;
-  if (request.center_covariances) {
-    outcome.center_covariances =
-        CenterCovariances(components, saved, *cameras, &builder);
-  }
   for (std::size_t n = 0; n < components.size(); ++n) {
     LeaveComponentFrame(components[n], saved[n], cameras, state);
   }

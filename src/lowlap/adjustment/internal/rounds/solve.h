@@ -16,14 +16,12 @@ struct SolveRequest {
   bool fixed_rotations = false;
   double function_tolerance = 1e-8;
   NoiseLevels noise;
-  bool center_covariances = false;
 };
 
 struct SolveOutcome {
   SolveReport report;
   std::size_t components = 0;
   std::vector<char> pose_observed;  // by index: has residuals
-  std::map<PoseId, Mat3> center_covariances;
 };
 
 /// One run of the solver over the candidates in use (SelectForSolve). Changes

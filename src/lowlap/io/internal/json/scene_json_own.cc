@@ -1,6 +1,7 @@
 #include <map>
 #include <vector>
 
+#include "lowlap/io/internal/center_covariances.h"
 #include "lowlap/io/internal/json/json_record_reader.h"
 #include "lowlap/io/internal/json/json_record_writer.h"
 #include "lowlap/io/internal/json/scene_json_sections.h"
@@ -11,10 +12,13 @@ namespace lowlap {
 namespace {
 
 // In the order of the file.
-template <class Sections, class SceneType>
-void VisitSections(Sections& sections, SceneType& scene) {
+template <class Sections, class SceneType, class Covariances>
+void VisitSections(Sections& sections, SceneType& scene,
+                   Covariances& center_covariances) {
   sections.ById("given_intrinsics", "id", scene.given_intrinsics,
                 kVisitIntrinsic);
+  sections.ById("center_covariances", "id", center_covariances,
+                kVisitCenterCovariance);
   sections.ById("features", "view", scene.features, kVisitFeatures);
   sections.RelativePoses("relative_poses", scene.relative_poses);
   sections.ById("point_tracks", "id", scene.point_tracks, kVisitTrack);
@@ -125,17 +129,20 @@ void ReadOwnSections(const JsonValue& own, Scene& scene) {
                      std::to_string(kSceneVersion),
                  ErrorCode::kUnsupported);
   }
-  own.AllowOnly({"version", "given_intrinsics", "features", "relative_poses",
-                 "point_tracks", "line_tracks", "scale_ratios",
-                 "line_structure", "coplanar_pairs"});
+  own.AllowOnly({"version", "given_intrinsics", "center_covariances",
+                 "features", "relative_poses", "point_tracks", "line_tracks",
+                 "scale_ratios", "line_structure", "coplanar_pairs"});
   SectionReader sections(own, version.Id());
-  VisitSections(sections, scene);
+  CenterCovariances center_covariances;
+  VisitSections(sections, scene, center_covariances);
+  SetCenterCovariances(center_covariances, scene);
 }
 
 void AppendOwnSections(const Scene& scene, std::string& text) {
   text += "\"version\": " + std::to_string(kSceneVersion);
   SectionWriter sections(text);
-  VisitSections(sections, scene);
+  const CenterCovariances center_covariances = CenterCovariancesOf(scene);
+  VisitSections(sections, scene, center_covariances);
 }
 
 }  // namespace lowlap

@@ -7,6 +7,7 @@
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/core/internal/view_json.h"
+#include "lowlap/scene/internal/center_stddev.h"
 
 namespace lowlap {
 namespace {
@@ -95,10 +96,13 @@ Json OutliersJson(const std::vector<OutlierEdge>& edges) {
   return json;
 }
 
-Json GradesJson(const PoseSummary& summary) {
+Json GradesJson(const PoseSummary& summary, const Scene& scene) {
   Json grades = Json::array();
   for (const auto& [view, graded] : GradeViews(summary)) {
     Json entry = {{"view", view}, {"grade", ViewGradeName(graded.grade)}};
+    const Pose* pose = scene.FindPose(view);
+    const auto stddev = pose ? CenterStddev(*pose) : std::nullopt;
+    if (stddev) entry["center_stddev"] = *stddev;
     if (!graded.reasons.empty()) entry["reasons"] = graded.reasons;
     grades.push_back(std::move(entry));
   }
@@ -168,7 +172,7 @@ Json MotionsJson(const std::vector<HypothesisDecision>& motions) {
           {"decisions", std::move(decisions)}};
 }
 
-Json SolveJson(const SolveResult& solve) {
+Json SolveJson(const SolveResult& solve, const Scene& scene) {
   Json json;
   json["ambiguous_motions"] = MotionsJson(solve.motions);
   json["reconsidered_poses"] = Json::array();
@@ -188,7 +192,7 @@ Json SolveJson(const SolveResult& solve) {
   poses["placed"] = solve.poses.num_placed;
   poses["unplaced"] = solve.poses.unplaced;
   poses["components"] = solve.poses.components;
-  poses["grades"] = GradesJson(solve.poses);
+  poses["grades"] = GradesJson(solve.poses, scene);
   poses["outlier_edges"] = OutliersJson(solve.poses.outlier_edges);
   poses["kept_outliers"] = OutliersJson(solve.poses.kept_outliers);
   poses["replaced_directions"] = Json::array();
@@ -252,7 +256,7 @@ std::string ToJson(const RunSummary& summary, const Scene& scene) {
                                        {"reason", view.reason}});
   }
   if (!summary.notes.empty()) json["notes"] = summary.notes;
-  if (summary.solve) json["solve"] = SolveJson(*summary.solve);
+  if (summary.solve) json["solve"] = SolveJson(*summary.solve, scene);
   if (summary.evaluation_before_adjustment) {
     json["evaluation_before_adjustment"] =
         Json::parse(ToJson(*summary.evaluation_before_adjustment));

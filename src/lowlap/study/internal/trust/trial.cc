@@ -6,16 +6,11 @@
 #include <utility>
 
 #include "lowlap/pipeline/solve_scene.h"
+#include "lowlap/scene/internal/center_stddev.h"
 #include "lowlap/study/internal/trust/position_errors.h"
 
 namespace lowlap {
 namespace {
-
-double WorstDeviation(const Mat3& covariance) {
-  const Vec3 variances =
-      Eigen::SelfAdjointEigenSolver<Mat3>(covariance).eigenvalues();
-  return std::sqrt(std::max(0.0, variances.maxCoeff()));
-}
 
 void JudgeViews(const SyntheticScene& solved, const SolveResult& result,
                 bool has_truth, TrustTrial* trial) {
@@ -29,13 +24,9 @@ void JudgeViews(const SyntheticScene& solved, const SolveResult& result,
     judged.graded = std::move(grades[judged.view]);
     const auto error = errors.error.find(judged.view);
     if (has_truth && error != errors.error.end()) judged.error = error->second;
-    if (!result.adjustment) continue;
-    const auto& covariances = result.adjustment->center_covariances;
-    const auto found =
-        covariances.find(solved.scene.views.at(judged.view).pose_id);
-    if (found != covariances.end()) {
-      judged.deviation = errors.unit * WorstDeviation(found->second);
-    }
+    const Pose* pose = solved.scene.FindPose(judged.view);
+    if (pose == nullptr) continue;
+    judged.deviation = errors.unit * CenterStddev(*pose).value_or(0);
   }
 }
 
@@ -63,7 +54,6 @@ Result<TrustTrial> RunTrustTrial(TrustFamily family, std::uint64_t seed,
   auto made = MakeTrustScene(drawn, context);
   if (!made) return fail(made.error());
   SolveOptions options;
-  options.adjustment.compute_center_covariances = true;
   StageLog stages;
   const auto result = SolveScene(&made->scene, options, context, &stages);
   if (!result) return fail(result.error());

@@ -19,8 +19,8 @@ struct JudgedView {
   /// In shares of the scene's size (RobustPositionErrors). Infinite: not
   /// placed, or there is no truth.
   double error = 0;
-  /// The standard deviation that the adjustment states for the centre, in its
-  /// worst direction and the unit of the error; 0 for the camera that it holds.
+  /// The standard deviation that the adjustment states for the centre
+  /// (CenterStddev), in the unit of the error; 0 if it states none.
   double deviation = 0;
 
   bool IsFirm() const { return graded.grade == ViewGrade::kFirm; }

@@ -1,0 +1,195 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <vector>
+
+#include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "test_scene.h"
+#include "tests/support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using test::MakeTestScene;
+using test::TestScene;
+using test::TestSceneOptions;
+using testing::IsOk;
+
+AdjustmentSummary BuildAndAdjust(Scene* scene,
+                                 const AdjustmentOptions& options = {}) {
+  EXPECT_THAT(BuildStructure(scene, {}, {}), IsOk());
+  const Result<AdjustmentSummary> summary = AdjustScene(scene, options, {});
+  EXPECT_THAT(summary, IsOk());
+  return summary.value_or(AdjustmentSummary{});
+}
+
+TestSceneOptions NoisyScene(std::uint64_t seed = 1) {
+  TestSceneOptions options;
+  options.num_views = 6;
+  options.num_points = 200;
+  options.num_lines = 60;
+  options.pairs_per_triplet = 1;
+  options.noise_px = 0.5;
+  options.seed = seed;
+  return options;
+}
+
+double Stddev(const Pose& pose) {
+  return std::sqrt(pose.center_covariance->trace());
+}
+
+// Squared errors over their variances: 1 on average if deviations hold.
+struct NormalisedErrors {
+  double centers = 0, ratios = 0, directions = 0;
+};
+
+double LogRatio(const std::function<Vec3(ViewId)>& center,
+                const ViewTriplet& views) {
+  return std::log((center(views.last) - center(views.middle)).norm() /
+                  (center(views.middle) - center(views.first)).norm());
+}
+
+NormalisedErrors Normalised(const TestScene& test,
+                            const AdjustmentSummary& summary) {
+  std::vector<Vec3> solved, truth;
+  for (const auto& [id, pose] : test.scene.poses) {
+    solved.push_back(pose.center);
+    truth.push_back(test.true_poses.at(id).center);
+  }
+  const Similarity solved_from_truth = AlignPoints(truth, solved).value();
+  const auto solved_center = [&](ViewId view) {
+    return test.scene.FindPose(view)->center;
+  };
+  const auto true_center = [&](ViewId view) {
+    const Pose& pose = test.true_poses.at(test.scene.views.at(view).pose_id);
+    return Vec3(solved_from_truth * pose.center);
+  };
+  NormalisedErrors errors;
+  for (const auto& [view, of_view] : test.scene.views) {
+    const Mat3& covariance = *test.scene.FindPose(view)->center_covariance;
+    errors.centers += (solved_center(view) - true_center(view)).squaredNorm() /
+                      covariance.trace() /
+                      static_cast<double>(test.scene.views.size());
+  }
+  for (const auto& [views, stddev] : summary.log_ratio_stddevs) {
+    const double error =
+        LogRatio(solved_center, views) - LogRatio(true_center, views);
+    errors.ratios += std::pow(error / stddev, 2) /
+                     static_cast<double>(summary.log_ratio_stddevs.size());
+  }
+  for (const auto& [views, stddev] : summary.direction_stddevs_rad) {
+    // Which way the world is turned no direction tells.
+    const double error =
+        AngleBetween(solved_center(views.second) - solved_center(views.first),
+                     true_center(views.second) - true_center(views.first));
+    errors.directions +=
+        std::pow(error / stddev, 2) /
+        static_cast<double>(summary.direction_stddevs_rad.size());
+  }
+  return errors;
+}
+
+TEST(CenterCovariances, HoldTheErrorsOfCentresRatiosAndDirections) {
+  NormalisedErrors mean;
+  constexpr int kTrials = 20;
+  for (int trial = 0; trial < kTrials; ++trial) {
+    TestScene test = MakeTestScene(NoisyScene(100 + trial));
+    const AdjustmentSummary summary = BuildAndAdjust(&test.scene);
+    ASSERT_EQ(summary.log_ratio_stddevs.size(), 4u);
+    ASSERT_EQ(summary.direction_stddevs_rad.size(),
+              test.scene.relative_poses.size());
+    for (const auto& [id, pose] : test.scene.poses) {
+      ASSERT_TRUE(pose.center_covariance);
+    }
+    const NormalisedErrors errors = Normalised(test, summary);
+    mean.centers += errors.centers / kTrials;
+    mean.ratios += errors.ratios / kTrials;
+    mean.directions += errors.directions / kTrials;
+  }
+  EXPECT_GT(mean.centers, 0.5);
+  EXPECT_LT(mean.centers, 2);
+  EXPECT_GT(mean.ratios, 0.5);
+  EXPECT_LT(mean.ratios, 2);
+  // Two axes, of which the worse is stated.
+  EXPECT_GT(mean.directions, 0.5);
+  EXPECT_LT(mean.directions, 2.5);
+}
+
+TEST(CenterCovariances, FollowTheWorld) {
+  TestScene test = MakeTestScene(NoisyScene());
+  const Similarity moved = {
+      3, RotationFromAngleAxis(Vec3(0.3, -1, 0.5)), {5, -7, 2}};
+  Scene other = test::Transformed(test.scene, moved);
+  const AdjustmentSummary summary = BuildAndAdjust(&test.scene);
+  const AdjustmentSummary of_other = BuildAndAdjust(&other);
+  for (const auto& [id, pose] : test.scene.poses) {
+    const Mat3 expected = 9 * moved.rotation * *pose.center_covariance *
+                          moved.rotation.transpose();
+    const Mat3& found = *other.poses.at(id).center_covariance;
+    EXPECT_LT((found - expected).norm(), 0.01 * expected.norm());
+  }
+  ASSERT_EQ(of_other.log_ratio_stddevs.size(), 4u);
+  for (const auto& [views, stddev] : summary.log_ratio_stddevs) {
+    EXPECT_NEAR(of_other.log_ratio_stddevs.at(views), stddev, 0.01 * stddev);
+  }
+}
+
+TEST(CenterCovariances, OneThatIsHardlyKnownBlursNoOther) {
+  TestScene test = MakeTestScene(NoisyScene());
+  TestScene poor = test;
+  // The last view keeps every twentieth observation.
+  const ViewId last = poor.scene.views.rbegin()->first;
+  const auto thin = [&](auto* tracks) {
+    int count = 0;
+    for (auto it = tracks->begin(); it != tracks->end();) {
+      Track& track = it->second;
+      track.erase(std::remove_if(track.begin(), track.end(),
+                                 [&](const FeatureRef& seen) {
+                                   return seen.view == last &&
+                                          ++count % 20 != 0;
+                                 }),
+                  track.end());
+      it = track.size() < 2 ? tracks->erase(it) : std::next(it);
+    }
+  };
+  thin(&poor.scene.point_tracks);
+  thin(&poor.scene.line_tracks);
+  BuildAndAdjust(&test.scene);
+  BuildAndAdjust(&poor.scene);
+  const PoseId of_last = poor.scene.views.at(last).pose_id;
+  for (const auto& [id, pose] : poor.scene.poses) {
+    const double before = Stddev(test.scene.poses.at(id));
+    if (id == of_last) {
+      EXPECT_GT(Stddev(pose), 3 * before);
+    } else {
+      EXPECT_LT(Stddev(pose), 2 * before);
+    }
+  }
+}
+
+TEST(CenterCovariances, NoneWithoutAThirdPoseOrIfNotAskedFor) {
+  TestSceneOptions options = NoisyScene();
+  options.num_views = 2;
+  TestScene two = MakeTestScene(options);
+  two.scene.poses.begin()->second.center_covariance = Mat3::Identity();
+  EXPECT_TRUE(BuildAndAdjust(&two.scene).log_ratio_stddevs.empty());
+  TestScene test = MakeTestScene(NoisyScene());
+  test.scene.poses.begin()->second.center_covariance = Mat3::Identity();
+  AdjustmentOptions without;
+  without.estimate_uncertainty = false;
+  const AdjustmentSummary silent = BuildAndAdjust(&test.scene, without);
+  EXPECT_TRUE(silent.log_ratio_stddevs.empty());
+  EXPECT_TRUE(silent.direction_stddevs_rad.empty());
+  for (const Scene* scene : {&two.scene, &test.scene}) {
+    for (const auto& [id, pose] : scene->poses) {
+      EXPECT_FALSE(pose.center_covariance);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace lowlap
