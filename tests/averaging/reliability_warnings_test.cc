@@ -43,6 +43,14 @@ std::vector<ReliabilityWarning> WarningsOf(Scene scene) {
                  : std::vector<ReliabilityWarning>();
 }
 
+std::vector<ReliabilityWarning> WarningsOf(const Scene& scene,
+                                           const TranslationProblem& problem,
+                                           const TranslationSolution& solution,
+                                           FirmEvidence* firm) {
+  return FindReliabilityWarnings(
+      scene, FindAgreement(scene, problem, solution, {}, {}), {}, firm);
+}
+
 ScaleRatio* FindRatio(const ViewTriplet& views, Scene* scene) {
   for (ScaleRatio& ratio : scene->scale_ratios) {
     if (ratio.views == views) return &ratio;
@@ -77,17 +85,14 @@ TEST(ReliabilityWarnings, AViewThatItsRelativePosesContradict) {
   const TranslationProblem problem =
       MakeTranslationProblem(synthetic.scene, rotations, {});
   FirmEvidence firm;
-  EXPECT_THAT(FindReliabilityWarnings(synthetic.scene, problem, solution, {},
-                                      {}, &firm),
-              IsEmpty());
+  EXPECT_THAT(WarningsOf(synthetic.scene, problem, solution, &firm), IsEmpty());
   EXPECT_EQ(firm.edges.size(), problem.edges.size());
 
   const Vec3 baseline =
       solution.center_in_world[5] - solution.center_in_world[4];
   solution.center_in_world[4] +=
       0.3 * baseline.unitOrthogonal() * baseline.norm();
-  const auto warnings = FindReliabilityWarnings(synthetic.scene, problem,
-                                                solution, {}, {}, &firm);
+  const auto warnings = WarningsOf(synthetic.scene, problem, solution, &firm);
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].reason, WarningReason::kContradictedPoses);
   EXPECT_THAT(warnings[0].views, ElementsAre(4));
@@ -109,6 +114,42 @@ TEST(ReliabilityWarnings, ViewsThatHangOnAWeakRatio) {
   EXPECT_TRUE(summary->IsDoubtful());
   EXPECT_THAT(PoseWarnings(*summary, synthetic.scene),
               Contains(HasSubstr("only weak scale ratios join them")));
+}
+
+// The ratios of the scene times a factor, to 2 %.
+AdjustedEvidence Adjusted(const Scene& scene, double log_difference) {
+  AdjustedEvidence adjusted;
+  for (const ScaleRatio& ratio : scene.scale_ratios) {
+    adjusted.ratios[ratio.views] = {ratio.log_ratio + log_difference, 0.02};
+  }
+  return adjusted;
+}
+
+TEST(ReliabilityWarnings, AnAdjustmentSharpensTheRatiosThatItBearsOut) {
+  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  Scene& scene = synthetic.scene;
+  ScaleRatio& ratio = *FindRatio({3, 4, 5}, &scene);
+  ratio.log_ratio_stddev = 0.3;
+  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  ASSERT_EQ(summary->reliability_warnings.size(), 1u);
+  EXPECT_EQ(summary->reliability_warnings[0].reason, WarningReason::kWeakScale);
+  FirmEvidence firm;
+  EXPECT_THAT(FindReliabilityWarnings(scene, *summary->agreement,
+                                      Adjusted(scene, 0.5), &firm),
+              IsEmpty());
+  EXPECT_EQ(firm.ratios.size(), scene.scale_ratios.size());
+  // What contradicts the ratio does not sharpen it, nor does precision make up
+  // for evidence.
+  EXPECT_EQ(FindReliabilityWarnings(scene, *summary->agreement,
+                                    Adjusted(scene, 1), &firm)
+                .size(),
+            1u);
+  ratio.log10_nfa = -1;
+  EXPECT_EQ(FindReliabilityWarnings(scene, *summary->agreement,
+                                    Adjusted(scene, 0), &firm)
+                .size(),
+            1u);
 }
 
 TEST(ReliabilityWarnings, AllViewsWhereNoPartIsMostOfThem) {
@@ -248,6 +289,51 @@ TEST(ReliabilityWarnings, ViewsThatHangOnPosesThatAreHardlyDetermined) {
   }
 }
 
+// Whatever a relative pose tells, the structure may determine the direction;
+// but it may be made of the false matches of a pose that chance explains.
+TEST(ReliabilityWarnings, AnAdjustmentDeterminesWhatPosesDoNotTell) {
+  SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+  Scene& scene = synthetic.scene;
+  MakeVague({{5, 7}, {6, 7}}, &scene);
+  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  ASSERT_EQ(summary->reliability_warnings.size(), 1u);
+  AdjustedEvidence adjusted;
+  adjusted.direction_stddevs_rad = {{{5, 7}, 0.02}, {{6, 7}, 0.02}};
+  FirmEvidence firm;
+  const auto count_warnings = [&](const SolutionAgreement& agreement) {
+    return FindReliabilityWarnings(scene, agreement, adjusted, &firm).size();
+  };
+  EXPECT_EQ(count_warnings(*summary->agreement), 0u);
+  scene.relative_poses.at({5, 7}).log10_nfa = -1;
+  scene.relative_poses.at({6, 7}).log10_nfa = -1;
+  EXPECT_EQ(count_warnings(*summary->agreement), 1u);
+}
+
+TEST(ReliabilityWarnings, AnAdjustmentDeterminesWhatMatchesDoNotTell) {
+  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  Scene& scene = synthetic.scene;
+  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  SolutionAgreement agreement = *summary->agreement;
+  agreement.untold = {{6, 7}};
+  FirmEvidence firm;
+  const auto without = FindReliabilityWarnings(scene, agreement, {}, &firm);
+  ASSERT_EQ(without.size(), 1u);
+  EXPECT_EQ(without[0].reason, WarningReason::kUntoldPoses);
+  EXPECT_THAT(without[0].views, ElementsAre(7));
+  AdjustedEvidence adjusted;
+  adjusted.direction_stddevs_rad = {{{6, 7}, 0.3}};
+  EXPECT_EQ(FindReliabilityWarnings(scene, agreement, adjusted, &firm).size(),
+            1u);
+  adjusted.direction_stddevs_rad = {{{6, 7}, 0.02}};
+  EXPECT_THAT(FindReliabilityWarnings(scene, agreement, adjusted, &firm),
+              IsEmpty());
+  scene.relative_poses.at({6, 7}).log10_nfa = -1;
+  EXPECT_EQ(FindReliabilityWarnings(scene, agreement, adjusted, &firm).size(),
+            1u);
+}
+
 // The first view hangs on a weak ratio, whatever its relative pose is worth.
 TEST(ReliabilityWarnings, OnlyTheRelativePosesOfTheNamedViewsAreListed) {
   SyntheticScene synthetic = SceneWithTrueRatios("window:2");
@@ -331,9 +417,8 @@ TEST(ReliabilityWarnings, GroupsAtOneCameraWithoutARatioThatAgrees) {
   }
   solution.num_components = 1;
   FirmEvidence firm;
-  const auto warnings = FindReliabilityWarnings(
-      scene, MakeTranslationProblem(scene, rotations, {}), solution, {}, {},
-      &firm);
+  const auto warnings = WarningsOf(
+      scene, MakeTranslationProblem(scene, rotations, {}), solution, &firm);
   ASSERT_FALSE(warnings.empty());
   EXPECT_EQ(warnings[0].reason, WarningReason::kContradictedRatios);
   EXPECT_THAT(warnings[0].views, ElementsAre(5, 6, 7));
@@ -341,9 +426,8 @@ TEST(ReliabilityWarnings, GroupsAtOneCameraWithoutARatioThatAgrees) {
 
   // Without any ratio nothing holds them either.
   scene.scale_ratios.clear();
-  const auto without = FindReliabilityWarnings(
-      scene, MakeTranslationProblem(scene, rotations, {}), solution, {}, {},
-      &firm);
+  const auto without = WarningsOf(
+      scene, MakeTranslationProblem(scene, rotations, {}), solution, &firm);
   ASSERT_EQ(without.size(), 1u);
   EXPECT_EQ(without[0].reason, WarningReason::kUnheld);
   EXPECT_THAT(without[0].views, ElementsAre(5, 6, 7));

@@ -9,9 +9,6 @@
 
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
-#include "lowlap/core/internal/median.h"
-#include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -19,50 +16,42 @@ namespace {
 
 double Evidence(double log10_nfa) { return 1 + std::max(0.0, -log10_nfa); }
 
-// Like a ratio that is too unsure to rely on alone (IsWeak): by its own
-// covariance it would agree with anything.
-bool IsVague(const RelativePose& pose) {
-  return std::max(RotationStddev(pose), DirectionStddev(pose)) >
-         DiagnosisOptions().max_stddev;
+bool Contains(const std::vector<ViewPair>& sorted, const ViewPair& views) {
+  return std::binary_search(sorted.begin(), sorted.end(), views);
 }
 
-/// What of the measurements agrees with component 0 of a solution.
-class Agreement {
+class Warnings {
  public:
   using RatioTriplets = std::vector<ViewTriplet>;
 
-  Agreement(const Scene& scene, const TranslationProblem& problem,
-            const TranslationSolution& solution, const MatchVerdicts& matches,
-            const ReliabilityOptions& options)
-      : scene_(scene),
-        problem_(problem),
-        solution_(solution),
-        options_(options),
-        refuted_(matches.refuted.begin(), matches.refuted.end()) {
-    for (std::size_t n = 0; n < problem.views.size(); ++n) {
-      if (solution.component[n] == 0) placed_.insert(problem.views[n]);
+  Warnings(const Scene& scene, const SolutionAgreement& agreement,
+           const AdjustedEvidence& adjusted)
+      : scene_(scene), agreement_(agreement) {
+    std::map<ViewTriplet, const ScaleRatio*> ratios;
+    for (const ScaleRatio& ratio : scene.scale_ratios) {
+      ratios.emplace(ratio.views, &ratio);
     }
-    for (const DirectionEdge& edge : problem.edges) {
-      if (!IsPlaced(edge)) continue;
-      const double limit_rad =
-          options.reach *
-          std::max(options.direction_stddev_rad, edge.stddev_rad);
-      const double error_rad = ErrorRad(edge);
-      if (error_rad <= limit_rad) agreeing_.insert(ViewsOf(edge));
-      const bool is_held =
-          error_rad <= std::max(limit_rad, 3 * options.least_false_rad);
-      (is_held ? in_use_ : contradicting_).push_back(ViewsOf(edge));
+    for (const ViewTriplet& views : agreement.agreeing_ratios) {
+      agreeing_ratios_.push_back(*ratios.at(views));
+      const auto found = adjusted.ratios.find(views);
+      if (found == adjusted.ratios.end()) continue;
+      Sharpen(found->second, &agreeing_ratios_.back());
     }
-    const std::set<ViewPair> untold(matches.untold.begin(),
-                                    matches.untold.end());
-    for (const ViewPair& views : in_use_) {
-      if (IsVague(scene.relative_poses.at(views))) {
-        vague_.push_back(views);
-      } else if (untold.count(views) > 0) {
-        untold_.push_back(views);
-      }
+    for (const ViewTriplet& views : agreement.rejected_ratios) {
+      rejected_ratios_.push_back(*ratios.at(views));
     }
-    SplitRatios();
+    // By the structure, and not by chance.
+    const auto is_known = [&](const ViewPair& views) {
+      const auto found = adjusted.direction_stddevs_rad.find(views);
+      return found != adjusted.direction_stddevs_rad.end() &&
+             found->second <= DiagnosisOptions().max_stddev &&
+             scene.relative_poses.at(views).log10_nfa <=
+                 DiagnosisOptions().max_log10_nfa;
+    };
+    std::remove_copy_if(agreement.vague.begin(), agreement.vague.end(),
+                        std::back_inserter(vague_), is_known);
+    std::remove_copy_if(agreement.untold.begin(), agreement.untold.end(),
+                        std::back_inserter(untold_), is_known);
   }
 
   /// The views that most evidence contradicts.
@@ -70,11 +59,11 @@ class Agreement {
     std::map<ViewId, double> balance;
     std::map<ViewId, std::vector<ViewPair>> against;
     for (const auto& [views, pose] : scene_.relative_poses) {
-      if (placed_.count(views.first) == 0 || placed_.count(views.second) == 0) {
+      if (!IsPlaced(views.first) || !IsPlaced(views.second) ||
+          Contains(agreement_.refuted, views)) {
         continue;
       }
-      if (refuted_.count(views) > 0) continue;
-      const bool agrees = agreeing_.count(views) > 0;
+      const bool agrees = Contains(agreement_.agreeing, views);
       for (const ViewId view : {views.first, views.second}) {
         balance[view] += (agrees ? 1 : -1) * Evidence(pose.log10_nfa);
         if (!agrees) against[view].push_back(views);
@@ -105,21 +94,18 @@ class Agreement {
     untold.reason = WarningReason::kUntoldPoses;
     untold.untold = Unconfirmed(strong);
     const ViewGraph told = Graph(untold.untold);
-    *evidence = {told.pairs(), strong, {}};
-    for (const ScaleRatio& ratio : rejected_ratios_) {
-      evidence->rejected_ratios.push_back(ratio.views);
-    }
+    *evidence = {told.pairs(), strong, agreement_.rejected_ratios};
     const RigidityReport groups = AnalyzeRigidity(told, strong);
     if (groups.groups.empty()) {
-      untold.views.assign(placed_.begin(), placed_.end());
+      untold.views = agreement_.placed;
       if (!untold.untold.empty()) warnings.push_back(std::move(untold));
       return warnings;
     }
     // Two views hold each other whatever is wrong: of more, no third bears them
     // out.
-    if (placed_.size() == 2 && scene_.views.size() > 2) {
+    if (agreement_.placed.size() == 2 && scene_.views.size() > 2) {
       warnings.push_back(Unheld({}));
-      warnings.back().views.assign(placed_.begin(), placed_.end());
+      warnings.back().views = agreement_.placed;
       return warnings;
     }
     const RigidGroup& firm = groups.groups.front();
@@ -128,7 +114,7 @@ class Agreement {
     const auto warn = [&](const std::vector<ViewId>& wider,
                           ReliabilityWarning warning) {
       // Two views hold each other whatever is wrong.
-      if (wider.size() <= 2 && placed_.size() > 2) return;
+      if (wider.size() <= 2 && agreement_.placed.size() > 2) return;
       std::set_difference(wider.begin(), wider.end(), held.begin(), held.end(),
                           std::back_inserter(warning.views));
       held = wider;
@@ -136,7 +122,7 @@ class Agreement {
       if (!warning.views.empty()) warnings.push_back(std::move(warning));
     };
     if (firm.views.size() > 2) held = firm.views;
-    if (firm.views.size() < placed_.size()) {
+    if (firm.views.size() < agreement_.placed.size()) {
       const RigidityReport by_strong = AnalyzeRigidity(Graph({}), strong);
       ReliabilityWarning weak;
       warn(GroupOf(firm.edges.front(), by_strong), std::move(untold));
@@ -144,10 +130,11 @@ class Agreement {
       weak.ratios = WeakRatios(by_strong);
       warn(GroupOf(firm.edges.front(), AnalyzeRigidity(Graph({}), all)),
            std::move(weak));
-      warn({placed_.begin(), placed_.end()}, Unheld(held));
+      warn(agreement_.placed, Unheld(held));
       // The last warning says what joins the parts. Fewer than three views are
       // named already.
-      if (firm.views.size() > 2 && 2 * firm.views.size() <= placed_.size()) {
+      if (firm.views.size() > 2 &&
+          2 * firm.views.size() <= agreement_.placed.size()) {
         AddViews(firm.views, &warnings.back());
       }
     }
@@ -162,24 +149,21 @@ class Agreement {
   }
 
  private:
-  ViewPair ViewsOf(const DirectionEdge& edge) const {
-    return OrderedPair(problem_.views[edge.first], problem_.views[edge.second]);
+  bool IsPlaced(ViewId view) const {
+    return std::binary_search(agreement_.placed.begin(),
+                              agreement_.placed.end(), view);
   }
 
-  Vec3 Baseline(const DirectionEdge& edge) const {
-    return solution_.center_in_world[edge.second] -
-           solution_.center_in_world[edge.first];
-  }
-
-  bool IsPlaced(const DirectionEdge& edge) const {
-    return solution_.component[edge.first] == 0 &&
-           solution_.component[edge.second] == 0;
-  }
-
-  double ErrorRad(const DirectionEdge& edge) const {
-    const Vec3 baseline = Baseline(edge);
-    return baseline.norm() > 0 ? AngleBetween(baseline, edge.direction_in_world)
-                               : kPi;
+  // Unless the adjusted centres contradict it.
+  static void Sharpen(const AdjustedEvidence::Ratio& adjusted,
+                      ScaleRatio* ratio) {
+    constexpr double kReach = 3;
+    const double error = std::abs(adjusted.log_ratio - ratio->log_ratio);
+    if (error <= kReach * std::hypot(adjusted.log_ratio_stddev,
+                                     ratio->log_ratio_stddev)) {
+      ratio->log_ratio_stddev =
+          std::min(ratio->log_ratio_stddev, adjusted.log_ratio_stddev);
+    }
   }
 
   static void AddViews(const std::vector<ViewId>& views,
@@ -201,8 +185,7 @@ class Agreement {
 
   // What is in use and agrees, without some of it.
   ViewGraph Graph(const std::vector<ViewPair>& without) const {
-    return ViewGraph(in_use_, {placed_.begin(), placed_.end()})
-        .WithoutPairs(without);
+    return ViewGraph(agreement_.held, agreement_.placed).WithoutPairs(without);
   }
 
   static std::vector<ViewId> GroupOf(const ViewPair& edge,
@@ -270,7 +253,7 @@ class Agreement {
       return std::binary_search(held.begin(), held.end(), view);
     };
     ReliabilityWarning warning;
-    for (const ViewPair& views : contradicting_) {
+    for (const ViewPair& views : agreement_.contradicting) {
       if (!is_held(views.first) || !is_held(views.second)) {
         warning.against.push_back(views);
       }
@@ -283,40 +266,6 @@ class Agreement {
                          ? WarningReason::kContradictedRatios
                          : WarningReason::kUnheld;
     return warning;
-  }
-
-  void SplitRatios() {
-    std::map<ViewTriplet, const ScaleRatio*> ratios;
-    for (const ScaleRatio& ratio : scene_.scale_ratios) {
-      ratios.emplace(ratio.views, &ratio);
-    }
-    const std::set<ViewPair> in_use(in_use_.begin(), in_use_.end());
-    std::vector<std::pair<const ScaleRatio*, double>> errors;
-    std::vector<double> normalised;
-    for (const RatioMeasurement& used : problem_.ratios) {
-      const auto ratio = ratios.find(used.views);
-      const DirectionEdge& from = problem_.edges[used.reference];
-      const DirectionEdge& to = problem_.edges[used.target];
-      if (ratio == ratios.end() || in_use.count(ViewsOf(from)) == 0 ||
-          in_use.count(ViewsOf(to)) == 0) {
-        continue;
-      }
-      const double error =
-          std::abs(std::log(Baseline(to).norm() / Baseline(from).norm()) -
-                   used.log_ratio);
-      errors.emplace_back(ratio->second, error / used.stddev);
-      normalised.push_back(errors.back().second);
-    }
-    const double scale =
-        std::max(1.0, Median(std::move(normalised)) / kMedianOfNorm<1>);
-    // As DiagnosisOptions::max_stddev: less does not make a ratio useless.
-    constexpr double kTenth = 0.1;
-    for (const auto& [ratio, error] : errors) {
-      const double stddev = std::max(ratio->log_ratio_stddev, kRatioErrorFloor);
-      const bool agrees =
-          error <= std::max(options_.reach * scale, kTenth / stddev);
-      (agrees ? agreeing_ratios_ : rejected_ratios_).push_back(*ratio);
-    }
   }
 
   // Without ratios if those across the articulation agree well enough.
@@ -353,24 +302,19 @@ class Agreement {
   }
 
   const Scene& scene_;
-  const TranslationProblem& problem_;
-  const TranslationSolution& solution_;
-  const ReliabilityOptions options_;
-  std::set<ViewId> placed_;
-  std::set<ViewPair> refuted_, agreeing_;
-  std::vector<ViewPair> in_use_, contradicting_, vague_, untold_;
+  const SolutionAgreement& agreement_;
   std::vector<ScaleRatio> agreeing_ratios_, rejected_ratios_;
+  std::vector<ViewPair> vague_, untold_;
 };
 
 }  // namespace
 
 std::vector<ReliabilityWarning> FindReliabilityWarnings(
-    const Scene& scene, const TranslationProblem& problem,
-    const TranslationSolution& solution, const MatchVerdicts& matches,
-    const ReliabilityOptions& options, FirmEvidence* firm) {
-  const Agreement agreement(scene, problem, solution, matches, options);
-  std::vector<ReliabilityWarning> warnings = agreement.ContradictedPoses();
-  for (ReliabilityWarning& warning : agreement.DoubtfulPlaces(firm)) {
+    const Scene& scene, const SolutionAgreement& agreement,
+    const AdjustedEvidence& adjusted, FirmEvidence* firm) {
+  const Warnings all(scene, agreement, adjusted);
+  std::vector<ReliabilityWarning> warnings = all.ContradictedPoses();
+  for (ReliabilityWarning& warning : all.DoubtfulPlaces(firm)) {
     warnings.push_back(std::move(warning));
   }
   return warnings;

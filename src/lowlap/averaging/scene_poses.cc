@@ -264,10 +264,11 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
       summary.weak_ratios.push_back(views);
     }
   }
-  summary.reliability_warnings = FindReliabilityWarnings(
+  summary.agreement = std::make_shared<const SolutionAgreement>(FindAgreement(
       *scene, problem, *solution, rotations.matches,
-      {options.outlier_reach, sigma_rad, RadFromDeg(options.least_false_deg)},
-      &summary.firm_evidence);
+      {options.outlier_reach, sigma_rad, RadFromDeg(options.least_false_deg)}));
+  summary.reliability_warnings = FindReliabilityWarnings(
+      *scene, *summary.agreement, {}, &summary.firm_evidence);
   summary.contests = ContestsAmong(*scene, problem, *solution, summary);
   WarnOfHangingViews(&summary);
   summary.num_edges = static_cast<int>(problem.edges.size());

@@ -87,6 +87,9 @@ struct FirmEvidence {
   std::vector<ViewTriplet> rejected_ratios;
 };
 
+/// What of the measurements agrees with the centres before any adjustment.
+struct SolutionAgreement;
+
 /// What became of the views and edges on the way to absolute poses.
 struct PoseSummary {
   int num_views = 0;
@@ -104,6 +107,7 @@ struct PoseSummary {
   std::vector<ContestedLink> contested;
   std::vector<ViewPair> unchecked;
   std::vector<Contest> contests;  // of placed views
+  std::shared_ptr<const SolutionAgreement> agreement;
   FirmEvidence firm_evidence;
   /// Triplets whose ratio chance explains as well, used since nothing else
   /// joins one of their views.

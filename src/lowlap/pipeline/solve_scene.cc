@@ -1,6 +1,7 @@
 #include "lowlap/pipeline/solve_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -9,6 +10,7 @@
 
 #include "lowlap/averaging/internal/hanging_views.h"
 #include "lowlap/averaging/internal/lost_features.h"
+#include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/believed_evidence.h"
@@ -127,6 +129,36 @@ std::vector<ViewPair> FalsePairs(const PoseSummary& summary) {
   return pairs;
 }
 
+// The poses of the scene are those of the adjustment.
+AdjustedEvidence AdjustedEvidenceOf(const Scene& scene,
+                                    const AdjustmentSummary& adjustment) {
+  AdjustedEvidence evidence;
+  for (const auto& [views, stddev] : adjustment.log_ratio_stddevs) {
+    const Vec3& middle = scene.FindPose(views.middle)->center;
+    const double before = (scene.FindPose(views.first)->center - middle).norm();
+    const double after = (scene.FindPose(views.last)->center - middle).norm();
+    evidence.ratios[views] = {std::log(after / before), stddev};
+  }
+  evidence.direction_stddevs_rad = adjustment.direction_stddevs_rad;
+  return evidence;
+}
+
+// Doubts about the views once more, in the light of the adjustment and the
+// structure.
+void JudgeViews(const Scene& scene,
+                const std::optional<AdjustmentSummary>& adjustment,
+                PoseSummary* poses) {
+  if (adjustment && poses->agreement != nullptr) {
+    poses->reliability_warnings = FindReliabilityWarnings(
+        scene, *poses->agreement, AdjustedEvidenceOf(scene, *adjustment),
+        &poses->firm_evidence);
+  }
+  for (ReliabilityWarning& doubt : FindLostFeatures(scene)) {
+    poses->reliability_warnings.push_back(std::move(doubt));
+  }
+  WarnOfHangingViews(poses);
+}
+
 }  // namespace
 
 StructurePositions PositionsOf(const Scene& scene) {
@@ -243,10 +275,7 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
   result->adjustment = std::move(refinement->adjustment);
   result->structure_before_adjustment =
       std::move(refinement->before_adjustment);
-  for (ReliabilityWarning& doubt : FindLostFeatures(*scene)) {
-    result->poses.reliability_warnings.push_back(std::move(doubt));
-  }
-  WarnOfHangingViews(&result->poses);
+  JudgeViews(*scene, result->adjustment, &result->poses);
   return {};
 }
 

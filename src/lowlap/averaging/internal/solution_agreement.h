@@ -1,0 +1,47 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/averaging/rotations/scene_rotations.h"
+#include "lowlap/averaging/translation_problem.h"
+#include "lowlap/core/ids.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// How far from a solution a measurement contradicts it.
+struct AgreementOptions {
+  /// In robust standard deviations of all residuals of its kind.
+  double reach = 5.0;
+  /// Deviation of a direction, in radians; no stated deviation counts as less.
+  double direction_stddev_rad = kPoseErrorFloorRad;
+  /// As in PoseOptions: nor does a direction contradict that is closer than
+  /// three times this.
+  double least_false_rad = 0;
+};
+
+/// What of the measurements agrees with component 0 of a solution.
+struct SolutionAgreement {
+  std::vector<ViewId> placed;  // sorted
+  /// Relative poses of placed views that are in use: those whose directions are
+  /// within `reach` deviations of the centres, those that are not too far for
+  /// use, and the others.
+  std::vector<ViewPair> agreeing, held, contradicting;
+  /// Of those held: whose stated deviation is more than that of a weak ratio,
+  /// so that they would agree with anything; and others, of which their matches
+  /// tell nothing.
+  std::vector<ViewPair> vague, untold;
+  /// Not in use, for their own matches.
+  std::vector<ViewPair> refuted;  // sorted
+  /// Of the ratios in use across relative poses that are held, those within
+  /// `reach` deviations of the centres, or a tenth, and the others.
+  std::vector<ViewTriplet> agreeing_ratios, rejected_ratios;
+};
+
+SolutionAgreement FindAgreement(const Scene& scene,
+                                const TranslationProblem& problem,
+                                const TranslationSolution& solution,
+                                const MatchVerdicts& matches,
+                                const AgreementOptions& options);
+
+}  // namespace lowlap

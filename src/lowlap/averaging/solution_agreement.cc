@@ -1,0 +1,142 @@
+#include "lowlap/averaging/internal/solution_agreement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
+#include "lowlap/core/internal/median.h"
+#include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/median_deviation.h"
+
+namespace lowlap {
+namespace {
+
+bool IsVague(const RelativePose& pose) {
+  return std::max(RotationStddev(pose), DirectionStddev(pose)) >
+         DiagnosisOptions().max_stddev;
+}
+
+// Holds measurements against the centres of component 0.
+class Comparison {
+ public:
+  Comparison(const Scene& scene, const TranslationProblem& problem,
+             const TranslationSolution& solution,
+             const AgreementOptions& options)
+      : scene_(scene),
+        problem_(problem),
+        solution_(solution),
+        options_(options) {}
+
+  void SplitPoses(SolutionAgreement* agreement) const {
+    for (const DirectionEdge& edge : problem_.edges) {
+      if (!IsPlaced(edge)) continue;
+      const double limit_rad =
+          options_.reach *
+          std::max(options_.direction_stddev_rad, edge.stddev_rad);
+      const double error_rad = ErrorRad(edge);
+      if (error_rad <= limit_rad) agreement->agreeing.push_back(ViewsOf(edge));
+      const bool is_held =
+          error_rad <= std::max(limit_rad, 3 * options_.least_false_rad);
+      (is_held ? agreement->held : agreement->contradicting)
+          .push_back(ViewsOf(edge));
+    }
+    std::sort(agreement->agreeing.begin(), agreement->agreeing.end());
+  }
+
+  void SplitRatios(SolutionAgreement* agreement) const {
+    std::map<ViewTriplet, const ScaleRatio*> ratios;
+    for (const ScaleRatio& ratio : scene_.scale_ratios) {
+      ratios.emplace(ratio.views, &ratio);
+    }
+    const std::set<ViewPair> held(agreement->held.begin(),
+                                  agreement->held.end());
+    std::vector<std::pair<const ScaleRatio*, double>> errors;
+    std::vector<double> normalised;
+    for (const RatioMeasurement& used : problem_.ratios) {
+      const auto ratio = ratios.find(used.views);
+      const DirectionEdge& from = problem_.edges[used.reference];
+      const DirectionEdge& to = problem_.edges[used.target];
+      if (ratio == ratios.end() || held.count(ViewsOf(from)) == 0 ||
+          held.count(ViewsOf(to)) == 0) {
+        continue;
+      }
+      const double error =
+          std::abs(std::log(Baseline(to).norm() / Baseline(from).norm()) -
+                   used.log_ratio);
+      errors.emplace_back(ratio->second, error / used.stddev);
+      normalised.push_back(errors.back().second);
+    }
+    const double scale =
+        std::max(1.0, Median(std::move(normalised)) / kMedianOfNorm<1>);
+    // As DiagnosisOptions::max_stddev: less does not make a ratio useless.
+    constexpr double kTenth = 0.1;
+    for (const auto& [ratio, error] : errors) {
+      const double stddev = std::max(ratio->log_ratio_stddev, kRatioErrorFloor);
+      const bool agrees =
+          error <= std::max(options_.reach * scale, kTenth / stddev);
+      (agrees ? agreement->agreeing_ratios : agreement->rejected_ratios)
+          .push_back(ratio->views);
+    }
+  }
+
+ private:
+  ViewPair ViewsOf(const DirectionEdge& edge) const {
+    return OrderedPair(problem_.views[edge.first], problem_.views[edge.second]);
+  }
+
+  Vec3 Baseline(const DirectionEdge& edge) const {
+    return solution_.center_in_world[edge.second] -
+           solution_.center_in_world[edge.first];
+  }
+
+  bool IsPlaced(const DirectionEdge& edge) const {
+    return solution_.component[edge.first] == 0 &&
+           solution_.component[edge.second] == 0;
+  }
+
+  double ErrorRad(const DirectionEdge& edge) const {
+    const Vec3 baseline = Baseline(edge);
+    return baseline.norm() > 0 ? AngleBetween(baseline, edge.direction_in_world)
+                               : kPi;
+  }
+
+  const Scene& scene_;
+  const TranslationProblem& problem_;
+  const TranslationSolution& solution_;
+  const AgreementOptions& options_;
+};
+
+}  // namespace
+
+SolutionAgreement FindAgreement(const Scene& scene,
+                                const TranslationProblem& problem,
+                                const TranslationSolution& solution,
+                                const MatchVerdicts& matches,
+                                const AgreementOptions& options) {
+  SolutionAgreement agreement;
+  for (std::size_t n = 0; n < problem.views.size(); ++n) {
+    if (solution.component[n] == 0) {
+      agreement.placed.push_back(problem.views[n]);
+    }
+  }
+  std::sort(agreement.placed.begin(), agreement.placed.end());
+  agreement.refuted = matches.refuted;
+  std::sort(agreement.refuted.begin(), agreement.refuted.end());
+  const Comparison comparison(scene, problem, solution, options);
+  comparison.SplitPoses(&agreement);
+  const std::set<ViewPair> untold(matches.untold.begin(), matches.untold.end());
+  for (const ViewPair& views : agreement.held) {
+    if (IsVague(scene.relative_poses.at(views))) {
+      agreement.vague.push_back(views);
+    } else if (untold.count(views) > 0) {
+      agreement.untold.push_back(views);
+    }
+  }
+  comparison.SplitRatios(&agreement);
+  return agreement;
+}
+
+}  // namespace lowlap
