@@ -58,7 +58,7 @@ function drawCameras(tab) {
      view => page.residuals.lines.views[view.index].rmse_px, 2],
   ];
   if (page.views.some(view => view.center_stddev !== undefined)) {
-    columns.push(['deviation of the position (% of the scene)',
+    columns.push(['deviation (% of the scene)',
                   view => view.center_stddev && 100 * view.center_stddev, 3]);
   }
   if (page.hasTruth) {
