@@ -123,8 +123,8 @@ Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
 /// RefineSolution as SolveScene does it: `result`, which holds what became of
 /// the poses, is completed. Where there is nothing to adjust (a graph without
 /// features, views without intrinsics), or the adjustment finds no solution,
-/// the poses stay as they are, with a warning in the log. The doubts about views
-/// (PoseSummary::reliability_warnings) become those in the light of the
+/// the poses stay as they are, with a warning in the log. The doubts about
+/// views (PoseSummary::reliability_warnings) become those in the light of the
 /// adjustment (FindReliabilityWarnings) and of the structure
 /// (FindLostFeatures).
 Status FinishSolution(Scene* scene, const SolveOptions& options,

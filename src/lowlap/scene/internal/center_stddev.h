@@ -14,10 +14,9 @@ namespace lowlap {
 /// Pose::center_covariance. Absent if that is.
 inline std::optional<double> CenterStddev(const Pose& pose) {
   if (!pose.center_covariance) return std::nullopt;
-  const Vec3 variances =
-      Eigen::SelfAdjointEigenSolver<Mat3>(*pose.center_covariance,
-                                          Eigen::EigenvaluesOnly)
-          .eigenvalues();
+  const Vec3 variances = Eigen::SelfAdjointEigenSolver<Mat3>(
+                             *pose.center_covariance, Eigen::EigenvaluesOnly)
+                             .eigenvalues();
   return std::sqrt(std::max(0.0, variances.maxCoeff()));
 }
 

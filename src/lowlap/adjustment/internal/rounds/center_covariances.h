@@ -15,8 +15,8 @@ struct CenterUncertainty {
   std::map<PoseId, Mat3> covariances;
   /// Of log(|c3 - c2| / |c2 - c1|), in which no gauge has a part.
   std::map<ViewTriplet, double> log_ratio_stddevs;
-  /// Of the direction of c2 - c1 as the best observed camera would see it, along
-  /// the axis in which it is known least.
+  /// Of the direction of c2 - c1 as the best observed camera would see it,
+  /// along the axis in which it is known least.
   std::map<ViewPair, double> direction_stddevs_rad;
 };
 
