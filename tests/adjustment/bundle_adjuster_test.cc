@@ -7,13 +7,13 @@
 #include <set>
 
 #include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/scene/validation.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"
 
 namespace lowlap {
 namespace {
 
+using test::BuildAndAdjust;
 using test::ComparePoses;
 using test::MakeTestScene;
 using test::PoseErrors;
@@ -21,15 +21,6 @@ using test::TestScene;
 using test::TestSceneOptions;
 using testing::IsError;
 using testing::IsOk;
-
-AdjustmentSummary BuildAndAdjust(Scene* scene,
-                                 const AdjustmentOptions& options = {}) {
-  EXPECT_THAT(BuildStructure(scene, {}, {}), IsOk());
-  const Result<AdjustmentSummary> summary = AdjustScene(scene, options, {});
-  EXPECT_THAT(summary, IsOk());
-  EXPECT_THAT(ValidateScene(*scene), IsOk());
-  return summary.value_or(AdjustmentSummary{});
-}
 
 // Largest distance of corresponding centres, points and line ends.
 double Difference(const Scene& a, const Scene& b) {

@@ -9,23 +9,14 @@
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "test_scene.h"
-#include "tests/support/matchers.h"
 
 namespace lowlap {
 namespace {
 
+using test::BuildAndAdjust;
 using test::MakeTestScene;
 using test::TestScene;
 using test::TestSceneOptions;
-using testing::IsOk;
-
-AdjustmentSummary BuildAndAdjust(Scene* scene,
-                                 const AdjustmentOptions& options = {}) {
-  EXPECT_THAT(BuildStructure(scene, {}, {}), IsOk());
-  const Result<AdjustmentSummary> summary = AdjustScene(scene, options, {});
-  EXPECT_THAT(summary, IsOk());
-  return summary.value_or(AdjustmentSummary{});
-}
 
 TestSceneOptions NoisyScene(std::uint64_t seed = 1) {
   TestSceneOptions options;

@@ -1,13 +1,19 @@
 #include "test_scene.h"
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cmath>
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/scene/validation.h"
+#include "tests/support/matchers.h"
 
 namespace lowlap::test {
 namespace {
+
+using lowlap::testing::IsOk;
 
 struct Wall {
   Vec3 origin, right, down;  // corner and edges
@@ -300,6 +306,15 @@ PoseErrors ComparePoses(const std::map<PoseId, Pose>& truth,
                                        RotationAngleBetween(solved, expected));
   }
   return errors;
+}
+
+AdjustmentSummary BuildAndAdjust(Scene* scene,
+                                 const AdjustmentOptions& options) {
+  EXPECT_THAT(BuildStructure(scene, {}, {}), IsOk());
+  const Result<AdjustmentSummary> summary = AdjustScene(scene, options, {});
+  EXPECT_THAT(summary, IsOk());
+  EXPECT_THAT(ValidateScene(*scene), IsOk());
+  return summary.value_or(AdjustmentSummary{});
 }
 
 Scene Transformed(const Scene& scene, const Similarity& similarity) {

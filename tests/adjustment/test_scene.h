@@ -4,6 +4,7 @@
 #include <map>
 #include <vector>
 
+#include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/geometry/similarity.h"
 #include "lowlap/scene/scene.h"
 
@@ -60,6 +61,11 @@ struct PoseErrors {
 };
 PoseErrors ComparePoses(const std::map<PoseId, Pose>& truth,
                         const Scene& scene);
+
+/// The structure from the poses, adjusted; expects that both succeed and leave
+/// a valid scene.
+AdjustmentSummary BuildAndAdjust(Scene* scene,
+                                 const AdjustmentOptions& options = {});
 
 /// Poses and structure (not the features) in a world moved by `similarity`.
 Scene Transformed(const Scene& scene, const Similarity& similarity);

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <optional>
 #include <set>
 
 #include "lowlap/adjustment/internal/rounds/gradient_scatter.h"
