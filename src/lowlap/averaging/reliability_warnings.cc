@@ -94,7 +94,7 @@ class Warnings {
     untold.reason = WarningReason::kUntoldPoses;
     untold.untold = Unconfirmed(strong);
     const ViewGraph told = Graph(untold.untold);
-    *evidence = {told.pairs(), strong, agreement_.rejected_ratios};
+    *evidence = {told.pairs(), strong};
     const RigidityReport groups = AnalyzeRigidity(told, strong);
     if (groups.groups.empty()) {
       untold.views = agreement_.placed;

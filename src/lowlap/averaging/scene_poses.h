@@ -83,8 +83,6 @@ struct Contest {
 struct FirmEvidence {
   std::vector<ViewPair> edges;
   std::vector<ViewTriplet> ratios;
-  /// Of placed views, in use, but contradicted by the solution.
-  std::vector<ViewTriplet> rejected_ratios;
 };
 
 /// What of the measurements agrees with the centres before any adjustment.

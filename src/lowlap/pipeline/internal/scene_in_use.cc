@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/internal/solution_agreement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -29,8 +30,8 @@ Result<Scene> SceneInUse(Scene scene, SolveOptions options,
     }
   }
   const std::set<ViewTriplet> rejected(
-      summary.firm_evidence.rejected_ratios.begin(),
-      summary.firm_evidence.rejected_ratios.end());
+      summary.agreement->rejected_ratios.begin(),
+      summary.agreement->rejected_ratios.end());
   const auto is_out = [&](const ScaleRatio& ratio) {
     const ViewTriplet& v = ratio.views;
     return rejected.count(v) > 0 ||

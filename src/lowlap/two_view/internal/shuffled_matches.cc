@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lowlap/scene/internal/common_errors.h"
 #include "lowlap/two_view/internal/line_crossings.h"
 
 namespace lowlap {
@@ -11,8 +12,6 @@ namespace {
 
 /// The variance of a segment's end point over that of a keypoint.
 constexpr double kLineVariance = 0.25;
-/// Matches within this share of the image's diagonal err together.
-constexpr double kCommonErrorShare = 0.05;
 
 }  // namespace
 

@@ -259,10 +259,7 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
   if (groups.empty() || selection.IsEmpty()) return {};
   const std::vector<Component> components =
       FindComponents(cameras, state, selection);
-  PoseState reference;
-  for (const Component& component : components) {
-    EnterComponentFrame(component, &cameras, &state, &reference);
-  }
+  EnterComponentFrames(components, &cameras, &state);
   const QuietLogging quiet;
   SolveRequest request;
   request.noise = noise;

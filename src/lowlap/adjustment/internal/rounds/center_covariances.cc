@@ -214,10 +214,8 @@ CenterUncertainty EstimateCenterUncertainty(
   if (selection.IsEmpty()) return result;
   const std::vector<Component> components =
       FindComponents(cameras, state, selection);
-  std::vector<PoseState> references(components.size());
-  for (std::size_t n = 0; n < components.size(); ++n) {
-    EnterComponentFrame(components[n], &cameras, &state, &references[n]);
-  }
+  const std::vector<PoseState> references =
+      EnterComponentFrames(components, &cameras, &state);
   const QuietLogging quiet;
   SolveRequest request;
   request.noise = noise;

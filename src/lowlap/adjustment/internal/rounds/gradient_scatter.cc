@@ -7,6 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "lowlap/scene/internal/common_errors.h"
+
 namespace lowlap {
 namespace {
 
@@ -29,7 +31,6 @@ std::optional<Vec2> PixelOf(const CameraSet& cameras,
 
 template <class Track>
 ImagePlace FirstPlace(const CameraSet& cameras, const Track& track) {
-  constexpr double kCellsPerDiagonal = 20;
   for (const auto& seen : track.candidates) {
     if (!seen.used) continue;
     const std::optional<Vec2> pixel_px = PixelOf(cameras, seen);
@@ -37,7 +38,7 @@ ImagePlace FirstPlace(const CameraSet& cameras, const Track& track) {
         cameras.intrinsics[cameras.views[seen.view].intrinsic]
             .value.ImageDiagonal();
     if (!pixel_px || !pixel_px->allFinite()) break;
-    return {seen.view, kCellsPerDiagonal / diagonal_px * *pixel_px};
+    return {seen.view, *pixel_px / (kCommonErrorShare * diagonal_px)};
   }
   return {};
 }

@@ -12,10 +12,12 @@ namespace lowlap {
 /// the calibration of one corner of the image), and the stated noise is not the
 /// true one:
 ///   M = sum over cells (sum of the gradients of their landmarks)(...)^T.
-/// A landmark is in the cell of the first image that shows it, a twentieth of
-/// the diagonal wide; M is the mean over four grids, half a cell apart. With
-/// the Hessian S, S^-1 M S^-1 is the covariance (Liang, Zeger, "Longitudinal
-/// data analysis using generalized linear models", 1986).
+/// A landmark is in the cell of the first image that shows it, as wide as
+/// kCommonErrorShare says, so that what neighbours have in common in later
+/// images counts as far as they are neighbours there, too; M is the mean over
+/// four grids, half a cell apart. With the Hessian S, S^-1 M S^-1 is the
+/// covariance (Liang, Zeger, "Longitudinal data analysis using generalized
+/// linear models", 1986).
 Eigen::SparseMatrix<double> ScatterOfGradients(
     const LinearisedProblem& linearised, const ProblemBuilder& builder,
     const ProblemSelection& selection, const CameraSet& cameras,

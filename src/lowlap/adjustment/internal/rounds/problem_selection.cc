@@ -187,29 +187,39 @@ std::vector<Component> FindComponents(const CameraSet& cameras,
   return components;
 }
 
-void EnterComponentFrame(const Component& component, CameraSet* cameras,
-                         StructureState* state, PoseState* saved_reference) {
-  *saved_reference = cameras->poses[component.reference];
-  const Eigen::Quaterniond& turn = saved_reference->cam_from_world;
-  MoveComponent(
-      component, turn, 1 / component.Unit(),
-      [&](const Vec3& x) -> Vec3 {
-        return turn * (x - saved_reference->center) / component.Unit();
-      },
-      cameras, state);
+std::vector<PoseState> EnterComponentFrames(
+    const std::vector<Component>& components, CameraSet* cameras,
+    StructureState* state) {
+  std::vector<PoseState> references;
+  for (const Component& component : components) {
+    references.push_back(cameras->poses[component.reference]);
+    const PoseState& reference = references.back();
+    const Eigen::Quaterniond& turn = reference.cam_from_world;
+    MoveComponent(
+        component, turn, 1 / component.Unit(),
+        [&](const Vec3& x) -> Vec3 {
+          return turn * (x - reference.center) / component.Unit();
+        },
+        cameras, state);
+  }
+  return references;
 }
 
-void LeaveComponentFrame(const Component& component,
-                         const PoseState& saved_reference, CameraSet* cameras,
-                         StructureState* state) {
-  const Eigen::Quaterniond turn = saved_reference.cam_from_world.conjugate();
-  MoveComponent(
-      component, turn, component.Unit(),
-      [&](const Vec3& y) -> Vec3 {
-        return component.Unit() * (turn * y) + saved_reference.center;
-      },
-      cameras, state);
-  cameras->poses[component.reference] = saved_reference;
+void LeaveComponentFrames(const std::vector<Component>& components,
+                          const std::vector<PoseState>& references,
+                          CameraSet* cameras, StructureState* state) {
+  for (std::size_t n = 0; n < components.size(); ++n) {
+    const Component& component = components[n];
+    const PoseState& reference = references[n];
+    const Eigen::Quaterniond turn = reference.cam_from_world.conjugate();
+    MoveComponent(
+        component, turn, component.Unit(),
+        [&](const Vec3& y) -> Vec3 {
+          return component.Unit() * (turn * y) + reference.center;
+        },
+        cameras, state);
+    cameras->poses[component.reference] = reference;
+  }
 }
 
 }  // namespace lowlap

@@ -47,13 +47,15 @@ std::vector<Component> FindComponents(const CameraSet& cameras,
                                       const StructureState& state,
                                       const ProblemSelection& selection);
 
-/// Moves a component into the frame of its reference camera, with the baseline
-/// as the unit, and back. In this frame the input's position, orientation and
-/// scale have no influence on the solve.
-void EnterComponentFrame(const Component& component, CameraSet* cameras,
-                         StructureState* state, PoseState* saved_reference);
-void LeaveComponentFrame(const Component& component,
-                         const PoseState& saved_reference, CameraSet* cameras,
-                         StructureState* state);
+/// Moves every component into the frame of its reference camera, with the
+/// baseline as the unit, and back. In this frame the input's position,
+/// orientation and scale have no influence on the solve. Returned, and asked
+/// for on the way back, are the reference poses in the world.
+std::vector<PoseState> EnterComponentFrames(
+    const std::vector<Component>& components, CameraSet* cameras,
+    StructureState* state);
+void LeaveComponentFrames(const std::vector<Component>& components,
+                          const std::vector<PoseState>& references,
+                          CameraSet* cameras, StructureState* state);
 
 }  // namespace lowlap

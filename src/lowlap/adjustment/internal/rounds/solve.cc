@@ -78,10 +78,8 @@ Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
   }
   const std::vector<Component> components =
       FindComponents(*cameras, *state, selection);
-  std::vector<PoseState> saved(components.size());
-  for (std::size_t n = 0; n < components.size(); ++n) {
-    EnterComponentFrame(components[n], cameras, state, &saved[n]);
-  }
+  const std::vector<PoseState> references =
+      EnterComponentFrames(components, cameras, state);
 
   const QuietLogging quiet;
   ProblemBuilder builder(options, request, selection, components, cameras,
@@ -104,9 +102,7 @@ Result<SolveOutcome> SolveOnce(const AdjustmentOptions& options,
   }
 
   SolveOutcome outcome;
-  for (std::size_t n = 0; n < components.size(); ++n) {
-    LeaveComponentFrame(components[n], saved[n], cameras, state);
-  }
+  LeaveComponentFrames(components, references, cameras, state);
   outcome.components = components.size();
   outcome.pose_observed.assign(cameras->poses.size(), 0);
   for (const Component& component : components) {
