@@ -10,6 +10,7 @@
 #include "lowlap/synthetic/internal/coplanar_truth.h"
 #include "lowlap/synthetic/internal/observe.h"
 #include "lowlap/synthetic/internal/pair_graph.h"
+#include "lowlap/synthetic/internal/pose_evidence.h"
 #include "lowlap/synthetic/internal/pose_noise.h"
 #include "lowlap/synthetic/internal/visibility.h"
 #include "lowlap/synthetic/internal/world.h"
@@ -146,6 +147,8 @@ SyntheticScene Build(const SyntheticOptions& options, double off_wall) {
   if (options.pose_noise_factor > 0) {
     AddPoseNoiseOfPoints(options, &synthetic);
   }
+  // Before any is made wrong: those claim as much as the right ones.
+  StatePointEvidence(&synthetic.scene);
   if (options.wrong_direction_share > 0) {
     DrawWrongDirections(options, &synthetic.scene);
   }

@@ -91,9 +91,10 @@ struct SyntheticOptions {
   /// matches with noise_px: normal, with this many times the deviations of that
   /// estimate to first order (RelativePose::covariance), and at most 0.3 rad.
   double pose_noise_factor = 0.0;
-  /// Share of the relative poses whose direction is any direction.
+  /// Share of the relative poses whose direction is any direction, and which
+  /// state the evidence (log10_nfa) that their matches give the right one.
   double wrong_direction_share = 0.0;
-  /// Share of the relative poses that are any rotation and any direction.
+  /// Share of those that are any rotation and any direction, likewise.
   double wrong_pose_share = 0.0;
 
   int width_px = 1200;

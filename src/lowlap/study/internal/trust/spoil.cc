@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
+#include "lowlap/synthetic/internal/pose_evidence.h"
 
 namespace lowlap {
 namespace {
@@ -42,6 +43,7 @@ void ShuffleFeatures(Random* random, Scene* scene) {
     Shuffle(random, &features.points_px);
     Shuffle(random, &features.segments);
   }
+  StatePointEvidence(scene);
 }
 
 void DrawFeatures(Random* random, Scene* scene) {
@@ -53,6 +55,7 @@ void DrawFeatures(Random* random, Scene* scene) {
       segment.end_px = AnyPixel(view, random);
     }
   }
+  StatePointEvidence(scene);
 }
 
 void AddLookAlikes(int num_points, double noise_px, Random* random,
@@ -95,6 +98,7 @@ void AddLookAlikes(int num_points, double noise_px, Random* random,
     scene->point_tracks[PointTrackId(track++)] = {{first, match.first},
                                                   {second, match.second}};
   }
+  pose.log10_nfa = PointEvidence(*scene, pose);
 }
 
 Status EstimatePosesAnew(const RunContext& context, Scene* scene) {

@@ -9,7 +9,8 @@
 
 namespace lowlap {
 
-// What the simulator does not make worse.
+// What the simulator does not make worse. Relative poses state the evidence of
+// the matches that they have then.
 
 /// Every match becomes one of features that have nothing to do with each other:
 /// the points of a view change places, and so do its segments.
