@@ -308,6 +308,45 @@ TEST(ReliabilityWarnings, AnAdjustmentDeterminesWhatPosesDoNotTell) {
   scene.relative_poses.at({5, 7}).log10_nfa = -1;
   scene.relative_poses.at({6, 7}).log10_nfa = -1;
   EXPECT_EQ(count_warnings(*summary->agreement), 1u);
+  adjusted.evidence_of_pairs = {{{5, 7}, -2}, {{6, 7}, -2}};
+  EXPECT_EQ(count_warnings(*summary->agreement), 1u);
+  adjusted.evidence_of_pairs = {{{5, 7}, -4}, {{6, 7}, -4}};
+  EXPECT_EQ(count_warnings(*summary->agreement), 0u);
+  adjusted.direction_stddevs_rad = {{{5, 7}, 0.2}, {{6, 7}, 0.2}};
+  EXPECT_EQ(count_warnings(*summary->agreement), 1u);
+}
+
+// Unless most of its candidates contradict it.
+TEST(ReliabilityWarnings, TheStructureMayHoldTheScaleThatARatioHardlyTells) {
+  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  Scene& scene = synthetic.scene;
+  const ViewTriplet last = {5, 6, 7};
+  ScaleRatio* weak = nullptr;
+  for (ScaleRatio& ratio : scene.scale_ratios) {
+    if (ratio.views == last) weak = &ratio;
+  }
+  ASSERT_NE(weak, nullptr);
+  weak->log10_nfa = -1;
+  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  const auto reasons = [&](double log_ratio_stddev, double log10_nfa) {
+    AdjustedEvidence adjusted;
+    adjusted.ratios[last] = {weak->log_ratio, log_ratio_stddev};
+    adjusted.evidence_of_triplets[last] = log10_nfa;
+    FirmEvidence firm;
+    std::vector<WarningReason> found;
+    for (const ReliabilityWarning& warning :
+         FindReliabilityWarnings(scene, *summary->agreement, adjusted, &firm)) {
+      found.push_back(warning.reason);
+    }
+    return found;
+  };
+  EXPECT_THAT(reasons(0.02, -4), IsEmpty());
+  EXPECT_THAT(reasons(0.02, -2), ElementsAre(WarningReason::kWeakScale));
+  EXPECT_THAT(reasons(0.2, -4), ElementsAre(WarningReason::kWeakScale));
+  for (KindSupport& kind : weak->kinds) kind.candidates = 3 * kind.inliers;
+  ASSERT_FALSE(weak->HasMajority());
+  EXPECT_THAT(reasons(0.02, -4), ElementsAre(WarningReason::kWeakScale));
 }
 
 TEST(ReliabilityWarnings, AnAdjustmentDeterminesWhatMatchesDoNotTell) {

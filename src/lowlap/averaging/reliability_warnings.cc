@@ -26,7 +26,7 @@ class Warnings {
 
   Warnings(const Scene& scene, const SolutionAgreement& agreement,
            const AdjustedEvidence& adjusted)
-      : scene_(scene), agreement_(agreement) {
+      : scene_(scene), agreement_(agreement), adjusted_(adjusted) {
     std::map<ViewTriplet, const ScaleRatio*> ratios;
     for (const ScaleRatio& ratio : scene.scale_ratios) {
       ratios.emplace(ratio.views, &ratio);
@@ -40,14 +40,7 @@ class Warnings {
     for (const ViewTriplet& views : agreement.rejected_ratios) {
       rejected_ratios_.push_back(*ratios.at(views));
     }
-    // By the structure, and not by chance.
-    const auto is_known = [&](const ViewPair& views) {
-      const auto found = adjusted.direction_stddevs_rad.find(views);
-      return found != adjusted.direction_stddevs_rad.end() &&
-             found->second <= DiagnosisOptions().max_stddev &&
-             scene.relative_poses.at(views).log10_nfa <=
-                 DiagnosisOptions().max_log10_nfa;
-    };
+    const auto is_known = [&](const ViewPair& views) { return IsKnown(views); };
     std::remove_copy_if(agreement.vague.begin(), agreement.vague.end(),
                         std::back_inserter(vague_), is_known);
     std::remove_copy_if(agreement.untold.begin(), agreement.untold.end(),
@@ -88,7 +81,7 @@ class Warnings {
     RatioTriplets strong, all;
     for (const ScaleRatio& ratio : agreeing_ratios_) {
       all.push_back(ratio.views);
-      if (!IsWeak(ratio, {})) strong.push_back(ratio.views);
+      if (!IsWeak(ratio)) strong.push_back(ratio.views);
     }
     ReliabilityWarning untold;
     untold.reason = WarningReason::kUntoldPoses;
@@ -152,6 +145,31 @@ class Warnings {
   bool IsPlaced(ViewId view) const {
     return std::binary_search(agreement_.placed.begin(),
                               agreement_.placed.end(), view);
+  }
+
+  // A direction, by the structure, and not by chance.
+  bool IsKnown(const ViewPair& views) const {
+    const auto stddev = adjusted_.direction_stddevs_rad.find(views);
+    if (stddev == adjusted_.direction_stddevs_rad.end() ||
+        stddev->second > DiagnosisOptions().max_stddev) {
+      return false;
+    }
+    const auto evidence = adjusted_.evidence_of_pairs.find(views);
+    return scene_.relative_poses.at(views).log10_nfa <=
+               DiagnosisOptions().max_log10_nfa ||
+           (evidence != adjusted_.evidence_of_pairs.end() &&
+            evidence->second <= DiagnosisOptions().max_log10_nfa);
+  }
+
+  // Unless the structure knows the ratio itself.
+  bool IsWeak(const ScaleRatio& ratio) const {
+    if (!lowlap::IsWeak(ratio, {})) return false;
+    const auto adjusted = adjusted_.ratios.find(ratio.views);
+    const auto evidence = adjusted_.evidence_of_triplets.find(ratio.views);
+    return !ratio.HasMajority() || adjusted == adjusted_.ratios.end() ||
+           adjusted->second.log_ratio_stddev > DiagnosisOptions().max_stddev ||
+           evidence == adjusted_.evidence_of_triplets.end() ||
+           evidence->second > DiagnosisOptions().max_log10_nfa;
   }
 
   // Unless the adjusted centres contradict it.
@@ -238,9 +256,8 @@ class Warnings {
     std::vector<ViewTriplet> weak;
     for (const ScaleRatio& ratio : agreeing_ratios_) {
       const ViewTriplet& v = ratio.views;
-      if (IsWeak(ratio, {}) &&
-          GroupOf(OrderedPair(v.first, v.middle), strong) !=
-              GroupOf(OrderedPair(v.middle, v.last), strong)) {
+      if (IsWeak(ratio) && GroupOf(OrderedPair(v.first, v.middle), strong) !=
+                               GroupOf(OrderedPair(v.middle, v.last), strong)) {
         weak.push_back(v);
       }
     }
@@ -303,6 +320,7 @@ class Warnings {
 
   const Scene& scene_;
   const SolutionAgreement& agreement_;
+  const AdjustedEvidence& adjusted_;
   std::vector<ScaleRatio> agreeing_ratios_, rejected_ratios_;
   std::vector<ViewPair> vague_, untold_;
 };

@@ -8,9 +8,12 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/adjustment/internal/structure/prediction_evidence.h"
 #include "lowlap/averaging/internal/hanging_views.h"
 #include "lowlap/averaging/internal/lost_features.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
+#include "lowlap/averaging/internal/solution_agreement.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/believed_evidence.h"
@@ -129,8 +132,9 @@ std::vector<ViewPair> FalsePairs(const PoseSummary& summary) {
   return pairs;
 }
 
-// The poses of the scene are those of the adjustment.
+// The poses and the structure of the scene are those of the adjustment.
 AdjustedEvidence AdjustedEvidenceOf(const Scene& scene,
+                                    const SolutionAgreement& agreement,
                                     const AdjustmentSummary& adjustment) {
   AdjustedEvidence evidence;
   for (const auto& [views, stddev] : adjustment.log_ratio_stddevs) {
@@ -140,6 +144,21 @@ AdjustedEvidence AdjustedEvidenceOf(const Scene& scene,
     evidence.ratios[views] = {std::log(after / before), stddev};
   }
   evidence.direction_stddevs_rad = adjustment.direction_stddevs_rad;
+  std::vector<ViewPair> poor_poses = agreement.vague;
+  poor_poses.insert(poor_poses.end(), agreement.untold.begin(),
+                    agreement.untold.end());
+  std::vector<ViewTriplet> poor_ratios;
+  const std::set<ViewTriplet> agreeing(agreement.agreeing_ratios.begin(),
+                                       agreement.agreeing_ratios.end());
+  for (const ScaleRatio& ratio : scene.scale_ratios) {
+    if (agreeing.count(ratio.views) > 0 && IsWeak(ratio, {})) {
+      poor_ratios.push_back(ratio.views);
+    }
+  }
+  PredictionEvidence by_structure =
+      FindPredictionEvidence(scene, poor_poses, poor_ratios);
+  evidence.evidence_of_pairs = std::move(by_structure.pairs);
+  evidence.evidence_of_triplets = std::move(by_structure.triplets);
   return evidence;
 }
 
@@ -150,7 +169,8 @@ void JudgeViews(const Scene& scene,
                 PoseSummary* poses) {
   if (adjustment && poses->agreement != nullptr) {
     poses->reliability_warnings = FindReliabilityWarnings(
-        scene, *poses->agreement, AdjustedEvidenceOf(scene, *adjustment),
+        scene, *poses->agreement,
+        AdjustedEvidenceOf(scene, *poses->agreement, *adjustment),
         &poses->firm_evidence);
   }
   for (ReliabilityWarning& doubt : FindLostFeatures(scene)) {

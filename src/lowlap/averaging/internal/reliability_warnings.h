@@ -19,6 +19,10 @@ struct AdjustedEvidence {
   };
   std::map<ViewTriplet, Ratio> ratios;
   std::map<ViewPair, double> direction_stddevs_rad;
+  /// log10 NFA by the structure (FindPredictionEvidence), of relative poses and
+  /// ratios that have too little themselves.
+  std::map<ViewPair, double> evidence_of_pairs;
+  std::map<ViewTriplet, double> evidence_of_triplets;
 };
 
 /// Which placed views are doubtful by what is measured: all reasons but the
@@ -39,11 +43,13 @@ struct AdjustedEvidence {
 ///   place.
 /// - A ratio is no weaker than an adjustment that bears it out leaves it:
 ///   where it is within three deviations of `adjusted`, the smaller deviation
-///   of both counts. That a ratio has few inliers, or little evidence, stays.
-///   Where an adjustment determines the direction between two views better than
+///   of both counts.
+/// - Where an adjustment determines the direction between two views better than
 ///   a weak ratio is known, it does not matter what their relative pose tells,
-///   unless chance explains that, too (as in IsWeak): false matches have a
-///   structure of their own.
+///   unless chance explains that (as in IsWeak), and the structure as well:
+///   false matches have one of their own. Nor, likewise, how little speaks for
+///   a ratio that the adjustment determines, and chance does not explain, while
+///   most candidates do not contradict it.
 /// - Ratios across one camera are contradicted if those rejected there, between
 ///   the same parts, have more than half their evidence.
 std::vector<ReliabilityWarning> FindReliabilityWarnings(
