@@ -14,7 +14,9 @@ namespace {
 
 using test::MakeTestScene;
 using test::TestSceneOptions;
+using ::testing::Contains;
 using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::SizeIs;
 
 // The views of a test scene are 3, 5, 7, ...
@@ -79,6 +81,23 @@ TEST(PredictionEvidence, OfACameraThatIsElsewhereIsChance) {
   }
   EXPECT_GT(evidence.triplets.at({5, 7, 9}), -3);
   EXPECT_LT(evidence.triplets.at({3, 5, 7}), -20);
+}
+
+// Two cameras fell into one place, where what they share has none: the others
+// predict what they see, but not what both see.
+TEST(PredictionEvidence, CamerasThatFellTogetherAreContradicted) {
+  TestSceneOptions options = Noisy();
+  options.max_point_views = options.max_line_views = 3;
+  Scene scene = MakeTestScene(options).scene;
+  test::BuildAndAdjust(&scene);
+  EXPECT_THAT(AllEvidence(scene).contradicted, IsEmpty());
+  scene.poses.at(scene.views.at(9).pose_id).center =
+      scene.poses.at(scene.views.at(7).pose_id).center;
+  ASSERT_TRUE(BuildStructure(&scene, StructureOptions(), RunContext()));
+  const PredictionEvidence evidence = AllEvidence(scene);
+  EXPECT_EQ(evidence.pairs.at({7, 9}), 0);
+  EXPECT_THAT(evidence.contradicted, Contains(ViewPair{7, 9}));
+  EXPECT_THAT(evidence.contradicted, Not(Contains(ViewPair{3, 5})));
 }
 
 // The adjustment may do its best with what is unrelated.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -155,21 +156,45 @@ class Warnings {
       return false;
     }
     const auto evidence = adjusted_.evidence_of_pairs.find(views);
-    return scene_.relative_poses.at(views).log10_nfa <=
-               DiagnosisOptions().max_log10_nfa ||
-           (evidence != adjusted_.evidence_of_pairs.end() &&
-            evidence->second <= DiagnosisOptions().max_log10_nfa);
+    return evidence != adjusted_.evidence_of_pairs.end() &&
+           evidence->second <= DiagnosisOptions().max_log10_nfa &&
+           !IsContradicted(views.first) && !IsContradicted(views.second);
+  }
+
+  bool IsContradicted(ViewId view) const {
+    return adjusted_.contradicted.count(view) > 0;
   }
 
   // Unless the structure knows the ratio itself.
   bool IsWeak(const ScaleRatio& ratio) const {
     if (!lowlap::IsWeak(ratio, {})) return false;
     const auto adjusted = adjusted_.ratios.find(ratio.views);
-    const auto evidence = adjusted_.evidence_of_triplets.find(ratio.views);
-    return !ratio.HasMajority() || adjusted == adjusted_.ratios.end() ||
+    return adjusted == adjusted_.ratios.end() ||
            adjusted->second.log_ratio_stddev > DiagnosisOptions().max_stddev ||
-           evidence == adjusted_.evidence_of_triplets.end() ||
-           evidence->second > DiagnosisOptions().max_log10_nfa;
+           IsContradicted(ratio.views.first) ||
+           IsContradicted(ratio.views.middle) ||
+           IsContradicted(ratio.views.last) ||
+           !(IsSeen(ratio) || IsMeasuredAgain(adjusted->second, ratio.views));
+  }
+
+  // In three views, beyond chance.
+  bool IsSeen(const ScaleRatio& ratio) const {
+    const auto evidence = adjusted_.evidence_of_triplets.find(ratio.views);
+    return ratio.HasMajority() &&
+           evidence != adjusted_.evidence_of_triplets.end() &&
+           evidence->second <= DiagnosisOptions().max_log10_nfa;
+  }
+
+  bool IsMeasuredAgain(const AdjustedEvidence::Ratio& adjusted,
+                       const ViewTriplet& views) const {
+    const auto again = adjusted_.measured_again.find(views);
+    if (again == adjusted_.measured_again.end()) return false;
+    // How well the adjustment knows it is asked already.
+    DiagnosisOptions options;
+    options.max_stddev = std::numeric_limits<double>::infinity();
+    return !lowlap::IsWeak(again->second, options) &&
+           std::abs(again->second.log_ratio - adjusted.log_ratio) <=
+               DiagnosisOptions().max_stddev;
   }
 
   // Unless the adjusted centres contradict it.

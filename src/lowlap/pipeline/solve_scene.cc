@@ -8,17 +8,12 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/adjustment/internal/structure/prediction_evidence.h"
-#include "lowlap/averaging/internal/hanging_views.h"
-#include "lowlap/averaging/internal/lost_features.h"
-#include "lowlap/averaging/internal/reliability_warnings.h"
-#include "lowlap/averaging/internal/solution_agreement.h"
-#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/believed_evidence.h"
 #include "lowlap/pipeline/internal/check_directions.h"
 #include "lowlap/pipeline/internal/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/judge_views.h"
 #include "lowlap/pipeline/internal/reconsider_poses.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
@@ -130,53 +125,6 @@ std::vector<ViewPair> FalsePairs(const PoseSummary& summary) {
     if (edge.IsFalse()) pairs.push_back(edge.views);
   }
   return pairs;
-}
-
-// The poses and the structure of the scene are those of the adjustment.
-AdjustedEvidence AdjustedEvidenceOf(const Scene& scene,
-                                    const SolutionAgreement& agreement,
-                                    const AdjustmentSummary& adjustment) {
-  AdjustedEvidence evidence;
-  for (const auto& [views, stddev] : adjustment.log_ratio_stddevs) {
-    const Vec3& middle = scene.FindPose(views.middle)->center;
-    const double before = (scene.FindPose(views.first)->center - middle).norm();
-    const double after = (scene.FindPose(views.last)->center - middle).norm();
-    evidence.ratios[views] = {std::log(after / before), stddev};
-  }
-  evidence.direction_stddevs_rad = adjustment.direction_stddevs_rad;
-  std::vector<ViewPair> poor_poses = agreement.vague;
-  poor_poses.insert(poor_poses.end(), agreement.untold.begin(),
-                    agreement.untold.end());
-  std::vector<ViewTriplet> poor_ratios;
-  const std::set<ViewTriplet> agreeing(agreement.agreeing_ratios.begin(),
-                                       agreement.agreeing_ratios.end());
-  for (const ScaleRatio& ratio : scene.scale_ratios) {
-    if (agreeing.count(ratio.views) > 0 && IsWeak(ratio, {})) {
-      poor_ratios.push_back(ratio.views);
-    }
-  }
-  PredictionEvidence by_structure =
-      FindPredictionEvidence(scene, poor_poses, poor_ratios);
-  evidence.evidence_of_pairs = std::move(by_structure.pairs);
-  evidence.evidence_of_triplets = std::move(by_structure.triplets);
-  return evidence;
-}
-
-// Doubts about the views once more, in the light of the adjustment and the
-// structure.
-void JudgeViews(const Scene& scene,
-                const std::optional<AdjustmentSummary>& adjustment,
-                PoseSummary* poses) {
-  if (adjustment && poses->agreement != nullptr) {
-    poses->reliability_warnings = FindReliabilityWarnings(
-        scene, *poses->agreement,
-        AdjustedEvidenceOf(scene, *poses->agreement, *adjustment),
-        &poses->firm_evidence);
-  }
-  for (ReliabilityWarning& doubt : FindLostFeatures(scene)) {
-    poses->reliability_warnings.push_back(std::move(doubt));
-  }
-  WarnOfHangingViews(poses);
 }
 
 }  // namespace
@@ -295,8 +243,8 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
   result->adjustment = std::move(refinement->adjustment);
   result->structure_before_adjustment =
       std::move(refinement->before_adjustment);
-  JudgeViews(*scene, result->adjustment, &result->poses);
-  return {};
+  return JudgeViews(scene, result->adjustment, *options.scale_estimator,
+                    context, &result->poses);
 }
 
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <vector>
 
 #include "lowlap/averaging/internal/solution_agreement.h"
@@ -23,6 +24,11 @@ struct AdjustedEvidence {
   /// ratios that have too little themselves.
   std::map<ViewPair, double> evidence_of_pairs;
   std::map<ViewTriplet, double> evidence_of_triplets;
+  /// Views of which the structure contradicts what they share with another: it
+  /// has nothing to say for them.
+  std::set<ViewId> contradicted;
+  /// Weak ratios once more, measured between the adjusted cameras.
+  std::map<ViewTriplet, ScaleRatio> measured_again;
 };
 
 /// Which placed views are doubtful by what is measured: all reasons but the
@@ -45,11 +51,11 @@ struct AdjustedEvidence {
 ///   where it is within three deviations of `adjusted`, the smaller deviation
 ///   of both counts.
 /// - Where an adjustment determines the direction between two views better than
-///   a weak ratio is known, it does not matter what their relative pose tells,
-///   unless chance explains that (as in IsWeak), and the structure as well:
-///   false matches have one of their own. Nor, likewise, how little speaks for
-///   a ratio that the adjustment determines, and chance does not explain, while
-///   most candidates do not contradict it.
+///   a weak ratio is known, and chance does not explain (as in IsWeak) that its
+///   structure predicts what they share, it does not matter what their relative
+///   pose tells. Nor, likewise, how little speaks for a ratio that the
+///   adjustment determines while most candidates do not contradict it; or that
+///   is not weak when it is measured again, and the same to a tenth.
 /// - Ratios across one camera are contradicted if those rejected there, between
 ///   the same parts, have more than half their evidence.
 std::vector<ReliabilityWarning> FindReliabilityWarnings(

@@ -102,6 +102,10 @@ class SharedTracks {
   std::vector<std::vector<std::size_t>> of_pose_;  // sorted
 };
 
+bool IsMajority(std::ptrdiff_t count, const std::vector<float>& all) {
+  return 2 * static_cast<std::size_t>(count) > all.size();
+}
+
 class Structure {
  public:
   explicit Structure(const Scene& scene)
@@ -109,22 +113,36 @@ class Structure {
         points_(cameras_, LoadPoints(scene, cameras_)),
         lines_(cameras_, LoadLines(scene, cameras_, false)) {}
 
+  struct Evidence {
+    double log10_nfa = 0;
+    bool is_contradicted = true;
+  };
+
   // The ends are the first and the last. nullopt: a view has no pose.
-  std::optional<double> Log10NfaOf(const std::vector<ViewId>& views) const {
+  std::optional<Evidence> EvidenceOf(const std::vector<ViewId>& views) const {
     std::vector<int> poses;
     for (const ViewId view : views) {
       const int index = cameras_.Find(view);
       if (index < 0) return std::nullopt;
       poses.push_back(cameras_.views[index].pose);
     }
-    double least = 0;
+    Evidence evidence;
     for (const int end : {poses.front(), poses.back()}) {
       std::vector<float> squared_px;
       points_.AddPredictedSquares(poses, end, &squared_px);
       lines_.AddPredictedSquares(poses, end, &squared_px);
-      least = std::min(least, std::log10(2.0) + Log10Nfa(squared_px));
+      const double log10_nfa = std::log10(2.0) + Log10Nfa(squared_px);
+      evidence.log10_nfa = std::min(evidence.log10_nfa, log10_nfa);
+      evidence.is_contradicted =
+          evidence.is_contradicted && squared_px.size() > kSampleSize &&
+          !IsMajority(std::count_if(squared_px.begin(), squared_px.end(),
+                                    [](float squared) {
+                                      return squared <=
+                                             kMaxThresholdPx * kMaxThresholdPx;
+                                    }),
+                      squared_px);
     }
-    return least;
+    return evidence;
   }
 
  private:
@@ -133,7 +151,8 @@ class Structure {
     const AContrarioLadder ladder(static_cast<int>(squared_px.size()),
                                   kSampleSize, 1, cameras_.PointToLine(),
                                   kMinThresholdPx, kMaxThresholdPx);
-    return ladder.Score(squared_px).log10_nfa;
+    const AContrarioScore score = ladder.Score(squared_px);
+    return IsMajority(score.num_inliers, squared_px) ? score.log10_nfa : 0;
   }
 
   const CameraSet cameras_;
@@ -150,13 +169,15 @@ PredictionEvidence FindPredictionEvidence(
   if (pairs.empty() && triplets.empty()) return evidence;
   const Structure structure(scene);
   for (const ViewPair& views : pairs) {
-    const auto log10_nfa = structure.Log10NfaOf({views.first, views.second});
-    if (log10_nfa) evidence.pairs[views] = *log10_nfa;
+    const auto of_pair = structure.EvidenceOf({views.first, views.second});
+    if (!of_pair) continue;
+    evidence.pairs[views] = of_pair->log10_nfa;
+    if (of_pair->is_contradicted) evidence.contradicted.push_back(views);
   }
   for (const ViewTriplet& views : triplets) {
-    const auto log10_nfa =
-        structure.Log10NfaOf({views.first, views.middle, views.last});
-    if (log10_nfa) evidence.triplets[views] = *log10_nfa;
+    const auto of_triplet =
+        structure.EvidenceOf({views.first, views.middle, views.last});
+    if (of_triplet) evidence.triplets[views] = of_triplet->log10_nfa;
   }
   return evidence;
 }

@@ -15,6 +15,10 @@ namespace lowlap {
 struct PredictionEvidence {
   std::map<ViewPair, double> pairs;
   std::map<ViewTriplet, double> triplets;
+  /// The pairs that share more than six tracks, of which the structure predicts
+  /// less than half to within 16 px in either view: something is wrong with the
+  /// place of one of the two.
+  std::vector<ViewPair> contradicted;
 };
 
 /// Of a view v of a pair or triplet a datum is every track with candidates in
@@ -27,9 +31,10 @@ struct PredictionEvidence {
 /// AContrarioLadder: six tracks, of two measurements each beyond what a
 /// landmark takes, fix the eleven unknowns of three views.
 ///
-/// 0 where chance explains all, or where six tracks or fewer are shared. Cost:
-/// two refinements of every shared track. The scene must be valid
-/// (ValidateScene).
+/// 0 where chance explains all, where most tracks are not within e (an
+/// adjustment from a bad start may still come to satisfy some), or where six
+/// tracks or fewer are shared. Cost: two refinements of every shared track. The
+/// scene must be valid (ValidateScene).
 PredictionEvidence FindPredictionEvidence(
     const Scene& scene, const std::vector<ViewPair>& pairs,
     const std::vector<ViewTriplet>& triplets);

@@ -1,0 +1,132 @@
+#include "lowlap/pipeline/internal/judge_views.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "lowlap/adjustment/internal/structure/prediction_evidence.h"
+#include "lowlap/averaging/internal/hanging_views.h"
+#include "lowlap/averaging/internal/lost_features.h"
+#include "lowlap/averaging/internal/reliability_warnings.h"
+#include "lowlap/averaging/internal/solution_agreement.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
+#include "lowlap/core/internal/propagate.h"
+#include "lowlap/scale/scale_ratios.h"
+
+namespace lowlap {
+namespace {
+
+// The ratios between the cameras as they are.
+Result<std::map<ViewTriplet, ScaleRatio>> MeasureBetweenCameras(
+    Scene* scene, const std::vector<ViewTriplet>& triplets,
+    const ScaleEstimator& estimator, const RunContext& context) {
+  std::map<ViewPair, RelativePose> given;
+  const auto take_over = [&](ViewId a, ViewId b) {
+    RelativePose& pose = scene->relative_poses.at(OrderedPair(a, b));
+    given.emplace(pose.views, pose);
+    const RigidTransform cam2_from_cam1 =
+        scene->FindPose(pose.views.second)->CamFromWorld() *
+        scene->FindPose(pose.views.first)->CamFromWorld().Inverse();
+    pose.rotation = cam2_from_cam1.rotation;
+    pose.direction = cam2_from_cam1.translation.normalized();
+  };
+  for (const ViewTriplet& views : triplets) {
+    take_over(views.first, views.middle);
+    take_over(views.middle, views.last);
+  }
+  auto estimated = EstimateScaleRatios(*scene, triplets, estimator, context);
+  for (auto& [views, pose] : given) {
+    scene->relative_poses.at(views) = std::move(pose);
+  }
+  if (!estimated) return tl::unexpected<Error>(estimated.error());
+  std::map<ViewTriplet, ScaleRatio> ratios;
+  for (ScaleRatio& ratio : *estimated) {
+    ratios.emplace(ratio.views, std::move(ratio));
+  }
+  return ratios;
+}
+
+// The poses and the structure of the scene are those of the adjustment.
+Result<AdjustedEvidence> FindAdjustedEvidence(
+    Scene* scene, const SolutionAgreement& agreement,
+    const AdjustmentSummary& adjustment, const ScaleEstimator& estimator,
+    const RunContext& context) {
+  AdjustedEvidence evidence;
+  for (const auto& [views, stddev] : adjustment.log_ratio_stddevs) {
+    const Vec3& middle = scene->FindPose(views.middle)->center;
+    const double before =
+        (scene->FindPose(views.first)->center - middle).norm();
+    const double after = (scene->FindPose(views.last)->center - middle).norm();
+    evidence.ratios[views] = {std::log(after / before), stddev};
+  }
+  evidence.direction_stddevs_rad = adjustment.direction_stddevs_rad;
+  std::vector<ViewPair> poor_poses = agreement.vague;
+  poor_poses.insert(poor_poses.end(), agreement.untold.begin(),
+                    agreement.untold.end());
+  std::vector<ViewTriplet> weak_ratios;
+  const std::set<ViewTriplet> agreeing(agreement.agreeing_ratios.begin(),
+                                       agreement.agreeing_ratios.end());
+  for (const ScaleRatio& ratio : scene->scale_ratios) {
+    if (agreeing.count(ratio.views) > 0 &&
+        evidence.ratios.count(ratio.views) > 0 && IsWeak(ratio, {})) {
+      weak_ratios.push_back(ratio.views);
+    }
+  }
+  PredictionEvidence by_structure =
+      FindPredictionEvidence(*scene, poor_poses, weak_ratios);
+  evidence.evidence_of_pairs = std::move(by_structure.pairs);
+  evidence.evidence_of_triplets = std::move(by_structure.triplets);
+  for (const ViewPair& views : by_structure.contradicted) {
+    evidence.contradicted.insert({views.first, views.second});
+  }
+  LOWLAP_ASSIGN_OR_RETURN(
+      evidence.measured_again,
+      MeasureBetweenCameras(scene, weak_ratios, estimator, context));
+  return evidence;
+}
+
+// Weak ratios that turned out strong, or without which their views are held.
+void DropNeedless(PoseSummary* poses) {
+  const std::set<ViewTriplet> strong(poses->firm_evidence.ratios.begin(),
+                                     poses->firm_evidence.ratios.end());
+  std::set<ViewId> doubtful;
+  for (const ReliabilityWarning& warning : poses->reliability_warnings) {
+    doubtful.insert(warning.views.begin(), warning.views.end());
+  }
+  const auto is_needless = [&](const ViewTriplet& v) {
+    return strong.count(v) > 0 ||
+           (doubtful.count(v.first) == 0 && doubtful.count(v.middle) == 0 &&
+            doubtful.count(v.last) == 0);
+  };
+  poses->weak_ratios.erase(
+      std::remove_if(poses->weak_ratios.begin(), poses->weak_ratios.end(),
+                     is_needless),
+      poses->weak_ratios.end());
+}
+
+}  // namespace
+
+Status JudgeViews(Scene* scene,
+                  const std::optional<AdjustmentSummary>& adjustment,
+                  const ScaleEstimator& estimator, const RunContext& context,
+                  PoseSummary* poses) {
+  if (adjustment && poses->agreement != nullptr) {
+    LOWLAP_ASSIGN_OR_RETURN(
+        const AdjustedEvidence evidence,
+        FindAdjustedEvidence(scene, *poses->agreement, *adjustment, estimator,
+                             context));
+    poses->reliability_warnings = FindReliabilityWarnings(
+        *scene, *poses->agreement, evidence, &poses->firm_evidence);
+    DropNeedless(poses);
+  }
+  for (ReliabilityWarning& doubt : FindLostFeatures(*scene)) {
+    poses->reliability_warnings.push_back(std::move(doubt));
+  }
+  WarnOfHangingViews(poses);
+  return {};
+}
+
+}  // namespace lowlap

@@ -1,0 +1,78 @@
+#include <gtest/gtest.h>
+
+#include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/pipeline/solve_scene.h"
+#include "lowlap/synthetic/synthetic_scene.h"
+
+namespace lowlap {
+namespace {
+
+// Of hardly any points: relative poses are off by degrees, and state nothing
+// that chance would not. But lines are seen in several views.
+SyntheticScene RoomOfLines(std::uint64_t seed) {
+  SyntheticOptions options;
+  options.kind = SyntheticKind::kRoom;
+  options.pairs = "loop:2";
+  options.num_views = 8;
+  options.points_per_wall = 6;
+  options.lines_per_wall = 60;
+  options.noise_px = 1;
+  options.pose_noise_factor = 1;
+  options.seed = seed;
+  return *Simulate(options);
+}
+
+int CountFirm(const PoseSummary& summary) {
+  int count = 0;
+  for (const auto& entry : GradeViews(summary)) {
+    count += entry.second.grade == ViewGrade::kFirm;
+  }
+  return count;
+}
+
+TEST(JudgeViews, TheStructureConfirmsWhatRelativePosesDoNotTell) {
+  int num_firm = 0, num_firm_before = 0;
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    SyntheticScene room = RoomOfLines(seed);
+    SyntheticScene before = room;
+    StageLog stages;
+    const auto result =
+        SolveScene(&room.scene, SolveOptions(), RunContext(), &stages);
+    ASSERT_TRUE(result) << result.error().ToString();
+    SolveOptions without;
+    without.adjust = false;
+    const auto unadjusted =
+        SolveScene(&before.scene, without, RunContext(), &stages);
+    ASSERT_TRUE(unadjusted) << unadjusted.error().ToString();
+    num_firm_before += CountFirm(unadjusted->poses);
+    const int firm = CountFirm(result->poses);
+    num_firm += firm;
+    if (firm < 8) continue;
+    EXPECT_LT(EvaluatePoses(room.scene, room.true_poses).position.max, 0.2);
+    // Nothing that is listed as weak places a firm view.
+    EXPECT_TRUE(result->poses.weak_ratios.empty());
+  }
+  // Of 48.
+  EXPECT_GE(num_firm, 40);
+  EXPECT_LE(num_firm_before, 30);
+}
+
+// The relative poses between the adjusted cameras serve for a while.
+TEST(JudgeViews, LeavesTheMeasurementsAsTheyAre) {
+  SyntheticScene room = RoomOfLines(1);
+  SolveOptions options;
+  options.reconsider_poses = false;
+  StageLog stages;
+  const Scene given = room.scene;
+  const auto result = SolveScene(&room.scene, options, RunContext(), &stages);
+  ASSERT_TRUE(result) << result.error().ToString();
+  for (const auto& [views, pose] : room.scene.relative_poses) {
+    const RelativePose& before = given.relative_poses.at(views);
+    EXPECT_EQ(pose.rotation, before.rotation);
+    EXPECT_EQ(pose.point_inliers, before.point_inliers);
+  }
+}
+
+}  // namespace
+}  // namespace lowlap
