@@ -221,5 +221,44 @@ TEST(CenterCovariances, NoneWithoutAThirdPoseOrIfNotAskedFor) {
   }
 }
 
+// A focal length that is 3 % off, and held: the centres are wrong by more than
+// noise would make them, and say so.
+TEST(CenterCovariances, CountACalibrationThatTheImagesContradict) {
+  double normalised = 0, without = 0;
+  constexpr int kSeeds = 4;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    TestScene test = MakeTestScene(NoisyScene(seed));
+    for (auto& entry : test.scene.intrinsics) {
+      entry.second.fx_px *= 1.03;
+      entry.second.fy_px *= 1.03;
+    }
+    TestScene untested = test;
+    const AdjustmentSummary summary = BuildAndAdjust(&test.scene);
+    EXPECT_FALSE(summary.calibration_preferences.empty());
+    normalised += Normalised(test, summary).centers / kSeeds;
+    AdjustmentOptions options;
+    options.test_calibration = false;
+    const AdjustmentSummary silent = BuildAndAdjust(&untested.scene, options);
+    without += Normalised(untested, silent).centers / kSeeds;
+  }
+  EXPECT_GT(without, 8);
+  EXPECT_LT(normalised, 4);
+  EXPECT_GT(normalised, 0.1);
+}
+
+TEST(CenterCovariances, DoNotDependOnATestThatFindsNothing) {
+  TestScene test = MakeTestScene(NoisyScene());
+  TestScene untested = test;
+  const AdjustmentSummary summary = BuildAndAdjust(&test.scene);
+  ASSERT_TRUE(summary.calibration_preferences.empty());
+  AdjustmentOptions options;
+  options.test_calibration = false;
+  BuildAndAdjust(&untested.scene, options);
+  for (const auto& [id, pose] : test.scene.poses) {
+    EXPECT_EQ(*pose.center_covariance,
+              *untested.scene.poses.at(id).center_covariance);
+  }
+}
+
 }  // namespace
 }  // namespace lowlap

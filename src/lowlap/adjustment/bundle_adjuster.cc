@@ -10,6 +10,7 @@
 #include "lowlap/adjustment/internal/planes/free_landmark.h"
 #include "lowlap/adjustment/internal/planes/scene_planes.h"
 #include "lowlap/adjustment/internal/rounds/calibration_score.h"
+#include "lowlap/adjustment/internal/rounds/calibration_shift.h"
 #include "lowlap/adjustment/internal/rounds/center_covariances.h"
 #include "lowlap/adjustment/internal/rounds/kind_statistics.h"
 #include "lowlap/adjustment/internal/rounds/outlier_round.h"
@@ -213,6 +214,9 @@ class Adjuster {
     }
     CenterUncertainty uncertainty = EstimateCenterUncertainty(
         options_, noise_, triplets, pairs, cameras_, state_);
+    LOWLAP_RETURN_IF_ERROR(
+        AddCalibrationShift(options_, noise_, summary_.calibration_preferences,
+                            scene_, context_, cameras_, state_, &uncertainty));
     summary_.log_ratio_stddevs = std::move(uncertainty.log_ratio_stddevs);
     summary_.direction_stddevs_rad =
         std::move(uncertainty.direction_stddevs_rad);

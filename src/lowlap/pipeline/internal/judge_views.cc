@@ -70,8 +70,10 @@ Result<AdjustedEvidence> FindAdjustedEvidence(
   const std::set<ViewTriplet> agreeing(agreement.agreeing_ratios.begin(),
                                        agreement.agreeing_ratios.end());
   for (const ScaleRatio& ratio : scene->scale_ratios) {
-    if (agreeing.count(ratio.views) > 0 &&
-        evidence.ratios.count(ratio.views) > 0 && IsWeak(ratio, {})) {
+    const auto adjusted = evidence.ratios.find(ratio.views);
+    if (adjusted != evidence.ratios.end() &&
+        std::isfinite(adjusted->second.log_ratio) &&
+        agreeing.count(ratio.views) > 0 && IsWeak(ratio, {})) {
       weak_ratios.push_back(ratio.views);
     }
   }

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/adjustment/adjustment_options.h"
+#include "lowlap/adjustment/adjustment_summary.h"
+#include "lowlap/adjustment/internal/rounds/center_covariances.h"
+#include "lowlap/adjustment/internal/structure/structure_state.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+
+namespace lowlap {
+
+/// A calibration that the images contradict moves the cameras all the same:
+/// adds to `uncertainty` how far. From the adjusted state the same observations
+/// are solved once with what the images prefer (CalibrationPreference), and the
+/// least similarity of each component is taken out. The step of a centre, d,
+/// tells how much is at stake rather than where to, since what is preferred is
+/// as uncertain: it adds |d|^2 / 3 in every direction. Changes of log ratios
+/// and directions add their squares.
+///
+/// Nothing is added where nothing is preferred, or the solve fails. Errors:
+/// kCancelled.
+Status AddCalibrationShift(
+    const AdjustmentOptions& options, const NoiseLevels& noise,
+    const std::vector<CalibrationPreference>& preferences, const Scene& scene,
+    const RunContext& context, const CameraSet& cameras, StructureState state,
+    CenterUncertainty* uncertainty);
+
+}  // namespace lowlap
