@@ -1,7 +1,6 @@
 #include "lowlap/pipeline/solve_scene.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <set>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
 
 #include "lowlap/adjustment/internal/rounds/problem_selection.h"
 #include "lowlap/adjustment/internal/rounds/solve.h"
