@@ -1,7 +1,6 @@
 #include "lowlap/synthetic/internal/pose_evidence.h"
 
 #include <algorithm>
-#include <cmath>
 #include <vector>
 
 #include "lowlap/geometry/internal/epipolar.h"
@@ -14,15 +13,6 @@ constexpr int kSampleSize = 5;
 constexpr int kModelsPerSample = 10;
 constexpr double kMinThresholdPx = 0.1;
 constexpr double kMaxThresholdPx = 16;
-
-// The Sampson distance is that of the point to its epipolar line over sqrt(2),
-// where the gradients of the two images are alike.
-BackgroundLaw SampsonLaw(const Intrinsic& camera) {
-  BackgroundLaw law =
-      BackgroundLaw::PointToLine(camera.ImageArea(), camera.ImageDiagonal());
-  law.coefficient *= std::sqrt(2.0);
-  return law;
-}
 
 }  // namespace
 
@@ -45,7 +35,8 @@ double PointEvidence(const Scene& scene, const RelativePose& pose) {
   if (squared_px.size() <= kSampleSize) return 0;
   const AContrarioLadder ladder(
       static_cast<int>(squared_px.size()), kSampleSize, kModelsPerSample,
-      SampsonLaw(camera1), kMinThresholdPx, kMaxThresholdPx);
+      BackgroundLaw::Sampson(camera1.ImageArea(), camera1.ImageDiagonal()),
+      kMinThresholdPx, kMaxThresholdPx);
   return std::min(0.0, ladder.Score(squared_px).log10_nfa);
 }
 

@@ -16,6 +16,13 @@ struct BackgroundLaw {
   static BackgroundLaw PointToLine(double image_area, double image_diagonal) {
     return {2 * image_diagonal / image_area, 1};
   }
+  /// Sampson distance from an epipolar line: that to the line over sqrt(2),
+  /// where the gradients of the two images are alike.
+  static BackgroundLaw Sampson(double image_area, double image_diagonal) {
+    BackgroundLaw law = PointToLine(image_area, image_diagonal);
+    law.coefficient *= 1.4142135623730951;
+    return law;
+  }
   static BackgroundLaw PointToPoint(double image_area) {
     return {3.14159265358979323846 / image_area, 2};
   }

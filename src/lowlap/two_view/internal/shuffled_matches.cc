@@ -1,7 +1,6 @@
 #include "lowlap/two_view/internal/shuffled_matches.h"
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "lowlap/scene/internal/common_errors.h"
@@ -63,11 +62,10 @@ ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random) {
 BackgroundLaw SampsonLaw(const TwoViewInput& input) {
   BackgroundLaw law;
   for (const Vec2& size : {input.image_size1_px, input.image_size2_px}) {
-    law.coefficient = std::max(
-        law.coefficient,
-        BackgroundLaw::PointToLine(size.prod(), size.norm()).coefficient);
+    law.coefficient =
+        std::max(law.coefficient,
+                 BackgroundLaw::Sampson(size.prod(), size.norm()).coefficient);
   }
-  law.coefficient *= std::sqrt(2.0);
   return law;
 }
 

@@ -19,9 +19,7 @@ struct ShuffledMatches {
 
 ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random);
 
-/// The Sampson distance is the point's distance to its epipolar line divided by
-/// the square root of two (equal focal lengths), so that its law is that much
-/// steeper. The smaller image, where chance is larger, decides.
+/// BackgroundLaw::Sampson of the image where chance is larger.
 BackgroundLaw SampsonLaw(const TwoViewInput& input);
 
 }  // namespace lowlap

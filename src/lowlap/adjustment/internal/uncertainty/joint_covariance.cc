@@ -1,4 +1,4 @@
-#include "lowlap/adjustment/internal/rounds/joint_covariance.h"
+#include "lowlap/adjustment/internal/uncertainty/joint_covariance.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

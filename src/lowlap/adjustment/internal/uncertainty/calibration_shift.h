@@ -4,8 +4,8 @@
 
 #include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/adjustment/adjustment_summary.h"
-#include "lowlap/adjustment/internal/rounds/center_covariances.h"
 #include "lowlap/adjustment/internal/structure/structure_state.h"
+#include "lowlap/adjustment/internal/uncertainty/center_covariances.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 

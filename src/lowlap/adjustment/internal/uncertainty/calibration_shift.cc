@@ -1,4 +1,4 @@
-#include "lowlap/adjustment/internal/rounds/calibration_shift.h"
+#include "lowlap/adjustment/internal/uncertainty/calibration_shift.h"
 
 #include <algorithm>
 #include <cmath>
@@ -135,8 +135,9 @@ Status AddCalibrationShift(
   // Directions are those of the calibration that is held.
   state.directions.clear();
   RefreshRays(scene, moved, &state);
-  const auto solved = SolveOnce(options, {"", false, kTolerance, noise},
-                                context, &moved, &state);
+  const auto solved =
+      SolveOnce(options, {"preferred calibration", false, kTolerance, noise},
+                context, &moved, &state);
   if (!solved) {
     return solved.error().code == ErrorCode::kCancelled
                ? tl::unexpected<Error>(solved.error())

@@ -1,4 +1,4 @@
-#include "lowlap/adjustment/internal/rounds/center_covariances.h"
+#include "lowlap/adjustment/internal/uncertainty/center_covariances.h"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -7,11 +7,11 @@
 #include <map>
 #include <set>
 
-#include "lowlap/adjustment/internal/rounds/gradient_scatter.h"
-#include "lowlap/adjustment/internal/rounds/joint_covariance.h"
 #include "lowlap/adjustment/internal/rounds/linearised_problem.h"
 #include "lowlap/adjustment/internal/rounds/problem_builder.h"
 #include "lowlap/adjustment/internal/rounds/quiet_logging.h"
+#include "lowlap/adjustment/internal/uncertainty/gradient_scatter.h"
+#include "lowlap/adjustment/internal/uncertainty/joint_covariance.h"
 
 namespace lowlap {
 namespace {

@@ -1,4 +1,4 @@
-#include "lowlap/adjustment/internal/rounds/gradient_scatter.h"
+#include "lowlap/adjustment/internal/uncertainty/gradient_scatter.h"
 
 #include <algorithm>
 #include <array>
