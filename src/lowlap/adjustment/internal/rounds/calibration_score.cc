@@ -17,7 +17,6 @@ namespace {
 
 using MatX = Eigen::MatrixXd;
 using VecX = Eigen::VectorXd;
-using SparseMat = Eigen::SparseMatrix<double>;
 
 constexpr std::size_t kMaxSeparate = 16;
 constexpr double kFalseAlarms = 0.01;

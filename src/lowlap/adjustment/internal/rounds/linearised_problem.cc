@@ -79,7 +79,7 @@ class Elimination {
     }
   }
 
-  Eigen::SparseMatrix<double> SchurComplement() const {
+  SparseMat SchurComplement() const {
     std::vector<Eigen::Triplet<double>> entries;
     for (const auto& [blocks, sum] : sums_) {
       const int row = jacobian_.start[blocks.first] - first_kept_;

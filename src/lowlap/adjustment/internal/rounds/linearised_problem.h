@@ -8,6 +8,8 @@
 
 namespace lowlap {
 
+using SparseMat = Eigen::SparseMatrix<double>;
+
 /// The problem at its present values to first order, without the landmarks that
 /// the Schur complement eliminates. With the weighted and robustified residuals
 /// r and their Jacobian J, so that the noise levels are in both and J^T r is
@@ -21,7 +23,7 @@ struct LinearisedProblem {
 
   /// S = H_cc - H_cl H_ll^-1 H_lc, with the pseudo-inverse of landmarks that
   /// are underdetermined.
-  Eigen::SparseMatrix<double> schur_complement;
+  SparseMat schur_complement;
   Eigen::VectorXd kept_diagonal;  // of H_cc
   /// What every landmark adds to the gradient of the kept columns once it is
   /// eliminated: J_c^T (r - J_l H_ll^-1 J_l^T r) over its residuals. Residuals

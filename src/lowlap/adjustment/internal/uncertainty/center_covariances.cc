@@ -16,7 +16,6 @@
 namespace lowlap {
 namespace {
 
-using SparseMat = Eigen::SparseMatrix<double>;
 using Factor = Eigen::SimplicialLDLT<SparseMat>;
 using Places = std::vector<Eigen::Index>;  // in the component
 

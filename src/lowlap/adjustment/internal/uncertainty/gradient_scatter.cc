@@ -45,10 +45,11 @@ ImagePlace FirstPlace(const CameraSet& cameras, const Track& track) {
 
 }  // namespace
 
-Eigen::SparseMatrix<double> ScatterOfGradients(
-    const LinearisedProblem& linearised, const ProblemBuilder& builder,
-    const ProblemSelection& selection, const CameraSet& cameras,
-    const StructureState& state) {
+SparseMat ScatterOfGradients(const LinearisedProblem& linearised,
+                             const ProblemBuilder& builder,
+                             const ProblemSelection& selection,
+                             const CameraSet& cameras,
+                             const StructureState& state) {
   std::vector<ImagePlace> places;  // of the first rows of the gradients
   for (const int n : builder.eliminated_lines()) {
     places.push_back(FirstPlace(cameras, state.lines[n]));
@@ -58,7 +59,6 @@ Eigen::SparseMatrix<double> ScatterOfGradients(
   }
   places.resize(static_cast<std::size_t>(linearised.gradients.rows()));
 
-  using SparseMat = Eigen::SparseMatrix<double>;
   SparseMat scatter(linearised.kept_size, linearised.kept_size);
   for (const Vec2& shift :
        {Vec2(0, 0), Vec2(0.5, 0), Vec2(0, 0.5), Vec2(0.5, 0.5)}) {

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <Eigen/SparseCore>
-
 #include "lowlap/adjustment/internal/rounds/linearised_problem.h"
 #include "lowlap/adjustment/internal/rounds/problem_builder.h"
 
@@ -18,9 +16,10 @@ namespace lowlap {
 /// four grids, half a cell apart. With the Hessian S, S^-1 M S^-1 is the
 /// covariance (Liang, Zeger, "Longitudinal data analysis using generalized
 /// linear models", 1986).
-Eigen::SparseMatrix<double> ScatterOfGradients(
-    const LinearisedProblem& linearised, const ProblemBuilder& builder,
-    const ProblemSelection& selection, const CameraSet& cameras,
-    const StructureState& state);
+SparseMat ScatterOfGradients(const LinearisedProblem& linearised,
+                             const ProblemBuilder& builder,
+                             const ProblemSelection& selection,
+                             const CameraSet& cameras,
+                             const StructureState& state);
 
 }  // namespace lowlap

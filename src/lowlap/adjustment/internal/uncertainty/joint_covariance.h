@@ -1,12 +1,12 @@
 #pragma once
 
 #include <Eigen/SparseCholesky>
-#include <Eigen/SparseCore>
 #include <map>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "lowlap/adjustment/internal/rounds/linearised_problem.h"
 #include "lowlap/geometry/types.h"
 
 namespace lowlap {
@@ -21,7 +21,6 @@ using BlockMap = std::map<PlacePair, Mat3>;
 /// the columns of S to the centres. It is never formed as a whole.
 class JointCovariance {
  public:
-  using SparseMat = Eigen::SparseMatrix<double>;
   using Factor = Eigen::SimplicialLDLT<SparseMat>;
 
   /// `scatter` null: S.
