@@ -5,7 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <string>
+#include <vector>
 
+#include "lowlap/features/internal/thumbnail.h"
 #include "support/matchers.h"
 
 namespace lowlap {
@@ -71,6 +74,23 @@ TEST_F(ImageTest, SizeAgreesWithTheDecodedImageInEveryFormat) {
     EXPECT_EQ(size->width_px, 300);
     EXPECT_EQ(size->height_px, 17);
     EXPECT_THAT(ReadGrayImage(Path(name)), IsOk());
+  }
+}
+
+// OpenCV throws for a longer side, and its message means nothing to a user.
+TEST_F(ImageTest, RefusesAnImageThatIsTooLong) {
+  std::vector<std::uint8_t> bmp;
+  cv::imencode(".bmp", cv::Mat(2, 2, CV_8UC3, cv::Scalar(1, 2, 3)), bmp);
+  bmp.at(22) = 0, bmp.at(23) = 0, bmp.at(24) = 0x11;  // the height
+  const std::string bytes(bmp.begin(), bmp.end());
+  for (const Status& read :
+       {Status(DecodeImageSize(bytes, "a.bmp").map([](auto&&) {})),
+        Status(DecodeGrayImage(bytes, "a.bmp").map([](auto&&) {})),
+        Status(MakeThumbnail(bytes, 64, "a.bmp").map([](auto&&) {}))}) {
+    ASSERT_THAT(read, IsError(ErrorCode::kUnsupported,
+                              "an image of 2 x 1114112 pixels; a side of "
+                              "1048576 is the most"));
+    EXPECT_EQ(read.error().file, "a.bmp");
   }
 }
 

@@ -32,6 +32,14 @@ TEST(CatchOpenCv, ExceptionsOfOpenCvBecomeErrors) {
   EXPECT_THAT(status, IsError(ErrorCode::kNumerical, "sum: OpenCV"));
 }
 
+TEST(ReadWithOpenCv, ExceptionsBecomeErrorsOfTheFile) {
+  const Status status = ReadWithOpenCv("a.bmp", []() -> Status {
+    CV_Error(cv::Error::StsAssert, "size.height");
+  });
+  ASSERT_THAT(status, IsError(ErrorCode::kParse, "size.height"));
+  EXPECT_EQ(status.error().file, "a.bmp");
+}
+
 // It is no error of the image: who runs the stage says so.
 TEST(CatchOpenCv, MemoryThatCannotBeHadStaysAnException) {
   EXPECT_THROW(CatchOpenCv("image", []() -> Status { throw std::bad_alloc(); }),

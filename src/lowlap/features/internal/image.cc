@@ -1,5 +1,6 @@
 #include "lowlap/features/internal/image.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <opencv2/core/version.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -28,14 +29,20 @@ Result<ImageSize> CheckedSize(const std::string& bytes,
                      path);
   }
   const ImageSize size = head->size;
-  if (static_cast<double>(size.width_px) * size.height_px <= kMaxImagePixels) {
-    return size;
+  const auto refuse = [&](const std::string& most) {
+    return MakeError(ErrorCode::kUnsupported,
+                     "an image of " + std::to_string(size.width_px) + " x " +
+                         std::to_string(size.height_px) + " pixels; " + most +
+                         " is the most",
+                     path);
+  };
+  if (static_cast<double>(size.width_px) * size.height_px > kMaxImagePixels) {
+    return refuse("300 megapixels");
   }
-  return MakeError(ErrorCode::kUnsupported,
-                   "an image of " + std::to_string(size.width_px) + " x " +
-                       std::to_string(size.height_px) +
-                       " pixels; 300 megapixels is the most",
-                   path);
+  if (std::max(size.width_px, size.height_px) > kMaxImageSidePx) {
+    return refuse("a side of " + std::to_string(kMaxImageSidePx));
+  }
+  return size;
 }
 
 }  // namespace
@@ -58,7 +65,7 @@ Result<GrayImage> ReadGrayImage(const std::string& path) {
 Result<GrayImage> DecodeGrayImage(const std::string& bytes,
                                   const std::string& path) {
   LOWLAP_RETURN_IF_ERROR(CheckedSize(bytes, path));
-  auto decoded = CatchOpenCv("cannot be read", [&]() -> Result<GrayImage> {
+  return ReadWithOpenCv(path, [&]() -> Result<GrayImage> {
     GrayImage image;
     const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
                           const_cast<char*>(bytes.data()));
@@ -74,9 +81,6 @@ Result<GrayImage> DecodeGrayImage(const std::string& bytes,
                         pixels.end<std::uint8_t>());
     return image;
   });
-  if (!decoded)
-    decoded.error() = {ErrorCode::kParse, decoded.error().message, path, {}};
-  return decoded;
 }
 
 Result<ImageSize> ReadImageSize(const std::string& path) {

@@ -27,12 +27,14 @@ struct ImageSize {
 /// Larger images are refused before they are decoded: a file of a hundred
 /// kilobytes can ask for gigabytes.
 inline constexpr double kMaxImagePixels = 3e8;
+/// The longest side that OpenCV decodes.
+inline constexpr int kMaxImageSidePx = 1 << 20;
 
 /// Reads a JPEG, PNG, TIFF, BMP, WebP, PBM, PGM or PPM file, colour converted
 /// to grey. The pixels are as stored: an EXIF orientation is ignored, because
 /// intrinsics refer to the sensor. Errors: kNotFound, kParse (not an image, or
-/// a JPEG file that is cut off), kUnsupported (more than kMaxImagePixels), with
-/// the path.
+/// a JPEG file that is cut off), kUnsupported (more than kMaxImagePixels, or
+/// longer than kMaxImageSidePx), with the path.
 Result<GrayImage> ReadGrayImage(const std::string& path);
 
 /// The same from a file's bytes; `path` is for messages only.

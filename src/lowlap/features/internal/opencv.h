@@ -4,6 +4,7 @@
 #include <new>
 #include <opencv2/core.hpp>
 #include <string>
+#include <utility>
 
 #include "lowlap/core/result.h"
 #include "lowlap/features/internal/image.h"
@@ -44,6 +45,17 @@ auto CatchOpenCv(const std::string& what, Function&& function)
   } catch (const std::exception& e) {
     return MakeError(ErrorCode::kNumerical, what + ": " + e.what());
   }
+}
+
+/// The same for what is decoded from a file, which the error names: kParse.
+template <class Function>
+auto ReadWithOpenCv(const std::string& path, Function&& function)
+    -> decltype(function()) {
+  auto result = CatchOpenCv("cannot be read", std::forward<Function>(function));
+  if (!result) {
+    result.error() = {ErrorCode::kParse, result.error().message, path, {}};
+  }
+  return result;
 }
 
 }  // namespace lowlap

@@ -48,7 +48,7 @@ Result<std::string> MakeThumbnail(const std::string& bytes, int max_width_px,
     cv::imencode(".jpg", image, jpeg, {cv::IMWRITE_JPEG_QUALITY, 80});
     return std::string(jpeg.begin(), jpeg.end());
   };
-  return CatchOpenCv(path, make);
+  return ReadWithOpenCv(path, make);
 }
 
 }  // namespace lowlap
