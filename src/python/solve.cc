@@ -263,6 +263,9 @@ void BindSolve(py::module_& module) {
                              poses(&PoseSummary::kept_outliers),
                              "In use though they contradict the poses: without "
                              "them views would be lost.")
+      .def_property_readonly("left_out_ratios",
+                             poses(&PoseSummary::left_out_ratios),
+                             "Without them the directions agree.")
       .def_property_readonly(
           "replaced_directions",
           [](const Solution& s) { return s.poses().matches.replaced; })

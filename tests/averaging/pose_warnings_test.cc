@@ -80,6 +80,14 @@ TEST(PoseWarnings, NameWeakRatios) {
       ElementsAre(HasSubstr(": a.jpg, b.jpg, c.jpg; c.jpg, d.jpg, e.jpg.")));
 }
 
+TEST(PoseWarnings, NameTheRatioThatWasLeftOut) {
+  PoseSummary summary;
+  summary.left_out_ratios = {{0, 1, 2}};
+  EXPECT_THAT(Warnings(summary),
+              ElementsAre(AllOf(HasSubstr("Scale ratios left out"),
+                                HasSubstr("(1): a.jpg, b.jpg, c.jpg."))));
+}
+
 TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
   PoseSummary summary;
   ReliabilityWarning contradicted;

@@ -62,6 +62,7 @@ class SolveTest(unittest.TestCase):
         for replaced in solution.replaced_directions:
             self.assertGreater(replaced.error_deg, 10)
         self.assertEqual(solution.kept_outliers, [])
+        self.assertEqual(solution.left_out_ratios, [])
         self.assertEqual(solution.contests, [])
         for pose in solution.reconsidered_poses:
             self.assertGreaterEqual(pose.gained_digits, 1)

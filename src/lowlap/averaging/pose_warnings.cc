@@ -170,6 +170,9 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
       "centres, since views would be lost without them",
       summary.kept_outliers.size(),
       writer.Pairs(PairsOf(summary.kept_outliers)));
+  add("Scale ratios left out because only without them the directions of the "
+      "relative poses agree",
+      summary.left_out_ratios.size(), writer.Triplets(summary.left_out_ratios));
   std::vector<ViewPair> replaced;
   for (const ReplacedDirection& edge : summary.matches.replaced) {
     replaced.push_back(edge.views);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/internal/contradicted_ratio.h"
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/internal/hanging_views.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
@@ -52,11 +53,6 @@ std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
     }
   }
   return outliers;
-}
-
-int CountPlaced(const TranslationSolution& solution) {
-  return static_cast<int>(
-      std::count(solution.component.begin(), solution.component.end(), 0));
 }
 
 // Ratios that are not meaningful, but the only ones that something agrees on
@@ -203,6 +199,7 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
 
   double sigma_rad = 0;
   std::vector<OutlierEdge> kept;
+  std::vector<ViewTriplet> left_out_ratios;
   while (true) {
     const std::vector<OutlierEdge> wrong =
         DirectionOutliers(problem, *solution, options, &sigma_rad);
@@ -214,7 +211,21 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
     auto again = averager.Solve(smaller, context);
     if (!again) return tl::unexpected<Error>(again.error());
     if (CountPlaced(*again) < CountPlaced(*solution)) {
-      kept = wrong;
+      LOWLAP_ASSIGN_OR_RETURN(
+          auto without, SolveWithoutContradictedRatio(
+                            problem, averager, *solution,
+                            [&](const TranslationSolution& other) {
+                              return DirectionOutliers(problem, other, options,
+                                                       &sigma_rad)
+                                  .empty();
+                            },
+                            context));
+      if (without) {
+        left_out_ratios = {without->ratio};
+        solution = std::move(without->solution);
+      } else {
+        kept = wrong;
+      }
       break;
     }
     outliers = std::move(more);
@@ -242,6 +253,7 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   summary.num_placed = static_cast<int>(placed.size());
   summary.outlier_edges = std::move(outliers);
   summary.kept_outliers = std::move(kept);
+  summary.left_out_ratios = std::move(left_out_ratios);
   summary.matches = rotations.matches;
   summary.loops = rotations.loops;
   const auto is_placed = [&](ViewId view) { return placed.count(view) > 0; };
@@ -272,7 +284,8 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   summary.contests = ContestsAmong(*scene, problem, *solution, summary);
   WarnOfHangingViews(&summary);
   summary.num_edges = static_cast<int>(problem.edges.size());
-  summary.num_ratios = static_cast<int>(problem.ratios.size());
+  summary.num_ratios =
+      static_cast<int>(problem.ratios.size() - summary.left_out_ratios.size());
   summary.median_rotation_residual_deg =
       DegFromRad(rotations.median_residual_rad);
   return summary;

@@ -99,6 +99,9 @@ struct PoseSummary {
   /// In use though their directions contradict the solved centres: without them
   /// views would be lost. By views.
   std::vector<OutlierEdge> kept_outliers;
+  /// The ratio, if any, that was left out since only without it the directions
+  /// agree with one another.
+  std::vector<ViewTriplet> left_out_ratios;
   MatchVerdicts matches;
   // As in SceneRotations; the last two among the placed views only.
   std::vector<LoopClosing> loops;
@@ -136,10 +139,13 @@ void SetPoses(const TranslationProblem& problem,
 /// scene.poses from scene.relative_poses and scene.scale_ratios, with the
 /// rotations and the choice of relative poses of AverageSceneRotations, and the
 /// chosen translation strategy. Relative poses whose direction contradicts the
-/// solved centres are left out in turn, unless that loses a view (then they are
-/// listed: `kept_outliers`), and the solution is repeated. Views that no
-/// meaningful ratio joins are placed by ratios that are not, if at least two
-/// points or lines, or three coplanar pairs, agree on them; these are listed
+/// solved centres are left out in turn, unless that loses a view, and the
+/// solution is repeated. Where it loses one, a ratio of little evidence is left
+/// out instead, if without it nothing contradicts
+/// (SolveWithoutContradictedRatio; `left_out_ratios`); else the relative poses
+/// stay (`kept_outliers`). Views that no meaningful ratio joins are placed by
+/// ratios that are not, if at least two points or lines, or three coplanar
+/// pairs, agree on them; these are listed
 /// (`weak_ratios`). The poses of the largest component replace scene.poses; the
 /// others have no common scale with it and are listed. Gauge: that of SetPoses.
 /// Errors, with the scene unchanged: invalid options, those of the strategy.

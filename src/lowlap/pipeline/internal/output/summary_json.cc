@@ -195,6 +195,7 @@ Json SolveJson(const SolveResult& solve, const Scene& scene) {
   poses["grades"] = GradesJson(solve.poses, scene);
   poses["outlier_edges"] = OutliersJson(solve.poses.outlier_edges);
   poses["kept_outliers"] = OutliersJson(solve.poses.kept_outliers);
+  poses["left_out_ratios"] = solve.poses.left_out_ratios;
   poses["replaced_directions"] = Json::array();
   for (const ReplacedDirection& edge : solve.poses.matches.replaced) {
     poses["replaced_directions"].push_back(

@@ -1,0 +1,88 @@
+#include "lowlap/averaging/internal/contradicted_ratio.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "lowlap/core/internal/propagate.h"
+#include "lowlap/geometry/internal/rotation.h"
+
+namespace lowlap {
+namespace {
+
+double Cost(const TranslationProblem& problem,
+            const TranslationSolution& solution) {
+  std::vector<double> lengths(problem.edges.size(), 0);  // 0: not placed
+  double cost = 0;
+  for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+    const DirectionEdge& edge = problem.edges[e];
+    if (solution.component[edge.first] != 0 ||
+        solution.component[edge.second] != 0) {
+      continue;
+    }
+    const Vec3 baseline = solution.center_in_world[edge.second] -
+                          solution.center_in_world[edge.first];
+    lengths[e] = baseline.norm();
+    const double angle_rad =
+        lengths[e] > 0 ? AngleBetween(baseline, edge.direction_in_world) : kPi;
+    cost += std::log1p(std::pow(angle_rad / edge.stddev_rad, 2));
+  }
+  for (const RatioMeasurement& ratio : problem.ratios) {
+    const double from = lengths[ratio.reference], to = lengths[ratio.target];
+    if (!(from > 0 && to > 0)) continue;
+    cost += std::log1p(
+        std::pow((std::log(to / from) - ratio.log_ratio) / ratio.stddev, 2));
+  }
+  return cost;
+}
+
+double MinusLogNfa(const RatioMeasurement& ratio) {
+  return std::log(10) * std::max(0.0, -ratio.log10_nfa);
+}
+
+}  // namespace
+
+int CountPlaced(const TranslationSolution& solution) {
+  return static_cast<int>(
+      std::count(solution.component.begin(), solution.component.end(), 0));
+}
+
+Result<std::optional<SolutionWithoutRatio>> SolveWithoutContradictedRatio(
+    const TranslationProblem& problem, const TranslationAverager& averager,
+    const TranslationSolution& solution,
+    const std::function<bool(const TranslationSolution&)>& agrees,
+    const RunContext& context) {
+  constexpr std::size_t kMaxTried = 50;
+  double least_cost = Cost(problem, solution);
+  std::vector<RatioMeasurement> candidates;
+  for (const RatioMeasurement& ratio : problem.ratios) {
+    const DirectionEdge& edge = problem.edges[ratio.reference];
+    if (solution.component[edge.first] == 0 &&
+        MinusLogNfa(ratio) < least_cost) {
+      candidates.push_back(ratio);
+    }
+  }
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const RatioMeasurement& a, const RatioMeasurement& b) {
+                     return a.log10_nfa > b.log10_nfa;
+                   });
+  candidates.resize(std::min(candidates.size(), kMaxTried));
+  std::optional<SolutionWithoutRatio> best;
+  for (const RatioMeasurement& candidate : candidates) {
+    TranslationProblem without = problem;
+    without.ratios.erase(std::find_if(
+        without.ratios.begin(), without.ratios.end(),
+        [&](const auto& ratio) { return ratio.views == candidate.views; }));
+    LOWLAP_ASSIGN_OR_RETURN(auto again, averager.Solve(without, context));
+    if (CountPlaced(again) < CountPlaced(solution) || !agrees(again)) continue;
+    const double cost = Cost(without, again) + MinusLogNfa(candidate);
+    if (cost >= least_cost) continue;
+    least_cost = cost;
+    best = SolutionWithoutRatio{candidate.views, std::move(again)};
+  }
+  return best;
+}
+
+}  // namespace lowlap

@@ -1,0 +1,125 @@
+#include "lowlap/averaging/internal/contradicted_ratio.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "lowlap/averaging/scene_poses.h"
+#include "lowlap/evaluation/pose_errors.h"
+#include "lowlap/synthetic/synthetic_scene.h"
+
+namespace lowlap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+// Twelve views with true ratios; that of 5-6-7 chance explains as well, and
+// that of 8-9-10 is `factor` times too large.
+SyntheticScene SceneWithAFalseRatio(const std::string& pairs, double factor,
+                                    double log10_nfa) {
+  SyntheticOptions options;
+  options.num_views = 12;
+  options.pairs = pairs;
+  SyntheticScene synthetic = *Simulate(options);
+  synthetic.scene.scale_ratios = TrueSolution(synthetic).scale_ratios;
+  for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
+    ratio.verdict = ratio.views == ViewTriplet{5, 6, 7}
+                        ? RatioVerdict::kNotMeaningful
+                        : RatioVerdict::kMeaningful;
+    ratio.log10_nfa = -50;
+    ratio.log_ratio_stddev = 0.01;
+    if (ratio.views == ViewTriplet{8, 9, 10}) {
+      ratio.log10_nfa = log10_nfa;
+      ratio.log_ratio += std::log(factor);
+    }
+  }
+  return synthetic;
+}
+
+TEST(ContradictedRatio, IsLeftOutWhereItOpensALoop) {
+  for (const double factor : {0.01, 5.0, 100.0}) {
+    SyntheticScene synthetic = SceneWithAFalseRatio("cycle", factor, -2);
+    const auto summary =
+        SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+    ASSERT_TRUE(summary) << summary.error().ToString();
+    EXPECT_EQ(summary->num_placed, 12) << factor;
+    EXPECT_THAT(summary->left_out_ratios, ElementsAre(ViewTriplet{8, 9, 10}))
+        << factor;
+    EXPECT_THAT(summary->kept_outliers, IsEmpty());
+    EXPECT_LT(EvaluatePoses(synthetic.scene, synthetic.true_poses).position.max,
+              1e-6)
+        << factor;
+  }
+}
+
+TEST(ContradictedRatio,
+     StaysWhereItHasMoreEvidenceThanDirectionsHaveAgainstIt) {
+  SyntheticScene synthetic = SceneWithAFalseRatio("cycle", 100, -50);
+  const auto summary =
+      SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_THAT(summary->left_out_ratios, IsEmpty());
+  EXPECT_FALSE(summary->kept_outliers.empty());
+}
+
+TEST(ContradictedRatio, IsNotFoundInAChain) {
+  SyntheticScene synthetic = SceneWithAFalseRatio("chain", 100, -2);
+  const auto summary =
+      SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_THAT(summary->left_out_ratios, IsEmpty());
+}
+
+TEST(ContradictedRatio, NoneIsLeftOutOfARightLoop) {
+  SyntheticScene synthetic = SceneWithAFalseRatio("cycle", 1, -2);
+  const auto summary =
+      SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_THAT(summary->left_out_ratios, IsEmpty());
+  EXPECT_LT(EvaluatePoses(synthetic.scene, synthetic.true_poses).position.max,
+            1e-6);
+}
+
+// Places a view unless one of the ratios is missing.
+class NeedsAllRatios : public TranslationAverager {
+ public:
+  explicit NeedsAllRatios(std::size_t count) : count_(count) {}
+  std::string Name() const override { return "all"; }
+  Result<TranslationSolution> Solve(const TranslationProblem& problem,
+                                    const RunContext&) const override {
+    TranslationSolution solution;
+    solution.component.assign(problem.views.size(), 0);
+    if (problem.ratios.size() < count_) solution.component.back() = -1;
+    solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
+    solution.num_components = 1;
+    return solution;
+  }
+
+ private:
+  std::size_t count_;
+};
+
+TEST(ContradictedRatio, IsKeptIfAViewWouldBeLost) {
+  TranslationProblem problem;
+  problem.views = {0, 1, 2};
+  problem.edges.resize(2);
+  problem.edges[0] = {0, 1};
+  problem.edges[1] = {1, 2};
+  RatioMeasurement ratio;
+  ratio.reference = 0;
+  ratio.target = 1;
+  problem.ratios = {ratio};
+  const NeedsAllRatios averager(1);
+  const auto solution = averager.Solve(problem, RunContext());
+  const auto without = SolveWithoutContradictedRatio(
+      problem, averager, *solution,
+      [](const TranslationSolution&) { return true; }, RunContext());
+  ASSERT_TRUE(without);
+  EXPECT_FALSE(without->has_value());
+}
+
+}  // namespace
+}  // namespace lowlap
