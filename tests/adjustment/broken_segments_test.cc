@@ -137,7 +137,8 @@ TEST(BrokenSegmentsTest, AreOneTrackAndOneLandmarkEach) {
   EXPECT_EQ(of_broken.adjustment.lines.observations_dropped, 0u);
   std::size_t with_pieces = 0;
   std::set<FeatureRef> seen;
-  for (const auto& [id, line] : broken.line_structure) {
+  for (const auto& entry : broken.line_structure) {
+    const LineLandmark& line = entry.second;
     std::set<ViewId> views;
     for (const FeatureRef& ref : line.observations) {
       views.insert(ref.view);
