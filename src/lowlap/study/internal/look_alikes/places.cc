@@ -11,6 +11,8 @@
 namespace lowlap {
 namespace {
 
+// Draws stand in braces: within parentheses every compiler has its own order.
+
 constexpr int kWidthPx = 800;
 constexpr int kHeightPx = 600;
 constexpr double kFocalPx = 640;
@@ -42,8 +44,8 @@ RigidTransform PoseOf(const Camera& camera) {
 TonePatch PatchWithin(const Vec2& corner_m, const Vec2& size_m,
                       Random* random) {
   TonePatch patch;
-  const Vec2 low(random->Uniform(0, 0.7), random->Uniform(0, 0.7));
-  const Vec2 share(random->Uniform(0.1, 0.3), random->Uniform(0.1, 0.3));
+  const Vec2 low{random->Uniform(0, 0.7), random->Uniform(0, 0.7)};
+  const Vec2 share{random->Uniform(0.1, 0.3), random->Uniform(0.1, 0.3)};
   patch.corner_m = corner_m + low.cwiseProduct(size_m);
   patch.size_m = share.cwiseProduct(size_m);
   patch.tone = random->Uniform(0.1, 0.9);
@@ -71,8 +73,8 @@ void PaintTile(Random* random, Texture* texture) {
 
 // A frame, panes in it, and what else is the same at every window.
 void PaintWindow(Random* random, Texture* texture) {
-  texture->cell_m = Vec2(random->Uniform(2, 4), random->Uniform(2.8, 3.6));
-  const Vec2 size(random->Uniform(1, 1.6), random->Uniform(1.2, 2));
+  texture->cell_m = Vec2{random->Uniform(2, 4), random->Uniform(2.8, 3.6)};
+  const Vec2 size{random->Uniform(1, 1.6), random->Uniform(1.2, 2)};
   const Vec2 corner = 0.5 * (texture->cell_m - size);
   texture->cell.push_back({corner, size, random->Uniform(0.75, 0.95)});
   const std::uint32_t columns = 1 + random->Index(3);
@@ -89,7 +91,7 @@ void PaintWindow(Random* random, Texture* texture) {
 
 // A board with goods of one kind on it.
 void PaintShelf(Random* random, Texture* texture) {
-  texture->cell_m = Vec2(random->Uniform(0.12, 0.3), random->Uniform(0.3, 0.5));
+  texture->cell_m = Vec2{random->Uniform(0.12, 0.3), random->Uniform(0.3, 0.5)};
   const Vec2& cell = texture->cell_m;
   texture->cell.push_back(
       {Vec2::Zero(), Vec2(cell.x(), 0.03), random->Uniform(0.2, 0.5)});
@@ -120,10 +122,10 @@ void HangPosters(std::uint32_t most, Random* random, Surface* surface) {
   const std::uint32_t count = random->Index(most + 1);
   for (std::uint32_t n = 0; n < count; ++n) {
     Poster poster;
-    poster.size_m = Vec2(random->Uniform(0.3, 1.0), random->Uniform(0.3, 1.0));
+    poster.size_m = Vec2{random->Uniform(0.3, 1.0), random->Uniform(0.3, 1.0)};
     poster.corner_m =
-        Vec2(random->Uniform(0, surface->size_m.x() - poster.size_m.x()),
-             random->Uniform(0, surface->size_m.y() - poster.size_m.y()));
+        Vec2{random->Uniform(0, surface->size_m.x() - poster.size_m.x()),
+             random->Uniform(0, surface->size_m.y() - poster.size_m.y())};
     poster.seed = random->NextBits();
     surface->texture.posters.push_back(poster);
   }
@@ -152,8 +154,9 @@ Place MakePlace(RepeatedKind kind, const Texture& repeated, Random* random) {
     if (n == repeats) {
       surface.texture = repeated;
       surface.texture.grain = 0.02;
-      surface.texture.cell_origin_m = Vec2(random->Uniform(), random->Uniform())
-                                          .cwiseProduct(repeated.cell_m);
+      surface.texture.cell_origin_m =
+          Vec2{random->Uniform(), random->Uniform()}.cwiseProduct(
+              repeated.cell_m);
     }
     surface.texture.grain_seed = random->NextBits();
     HangPosters(n == repeats ? 1 : 3, random, &surface);
@@ -168,21 +171,21 @@ Camera DrawCamera(RepeatedKind kind, const Place& place, Random* random) {
   switch (kind) {
     case RepeatedKind::kTiles:
       camera.center_in_world =
-          Vec3(along_m, random->Uniform(-0.9 * d, -0.7 * d),
-               random->Uniform(1.3, 1.7));
+          Vec3{along_m, random->Uniform(-0.9 * d, -0.7 * d),
+               random->Uniform(1.3, 1.7)};
       camera.target_in_world =
-          Vec3(along_m + random->Uniform(-1, 1),
-               camera.center_in_world.y() + random->Uniform(1.5, 3), 0.3);
+          Vec3{along_m + random->Uniform(-1, 1),
+               camera.center_in_world.y() + random->Uniform(1.5, 3), 0.3};
       break;
     case RepeatedKind::kWindows:
       camera.center_in_world = Vec3(along_m, random->Uniform(-14, -8), 1.6);
       camera.target_in_world =
-          Vec3(along_m + random->Uniform(-5, 5), 0, random->Uniform(2.5, 5));
+          Vec3{along_m + random->Uniform(-5, 5), 0, random->Uniform(2.5, 5)};
       break;
     case RepeatedKind::kShelves:
       camera.center_in_world = Vec3(along_m, random->Uniform(-3, -1.5), 1.5);
-      camera.target_in_world = Vec3(along_m + random->Uniform(-0.8, 0.8), 0,
-                                    random->Uniform(1, 1.5));
+      camera.target_in_world = Vec3{along_m + random->Uniform(-0.8, 0.8), 0,
+                                    random->Uniform(1, 1.5)};
       break;
   }
   return camera;
@@ -193,10 +196,10 @@ Camera StepAside(const Camera& camera, Random* random) {
   const Vec3 ahead = camera.target_in_world - camera.center_in_world;
   const double reach_m = ahead.norm();
   Camera moved = camera;
+  const double side = random->Index(2) == 0 ? -1 : 1;
   moved.center_in_world +=
-      reach_m *
-      Vec3(random->Uniform(0.1, 0.3) * (random->Index(2) == 0 ? -1.0 : 1.0),
-           random->Uniform(-0.05, 0.1), random->Uniform(-0.03, 0.03));
+      reach_m * Vec3{side * random->Uniform(0.1, 0.3),
+                     random->Uniform(-0.05, 0.1), random->Uniform(-0.03, 0.03)};
   moved.target_in_world += reach_m * Vec3(random->Uniform(-0.1, 0.1), 0, 0);
   return moved;
 }
