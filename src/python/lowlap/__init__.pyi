@@ -297,6 +297,7 @@ class Solution:
     components: List[List[int]]
     outlier_edges: List[OutlierEdge]
     kept_outliers: List[OutlierEdge]
+    left_out_ratios: List[Triplet]
     replaced_directions: List[ReplacedDirection]
     reconsidered_poses: List[ReconsideredPose]
     untold_edges: List[Pair]
