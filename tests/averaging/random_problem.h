@@ -16,6 +16,12 @@ inline Vec3 RandomVector(Random* random, double size) {
           random->Uniform(-size, size)};
 }
 
+/// Draws its last coordinate first: in one order for every compiler.
+inline Vec3 GaussianVector(Random* random, double stddev) {
+  const double z = random->Gaussian(stddev), y = random->Gaussian(stddev);
+  return {random->Gaussian(stddev), y, z};
+}
+
 inline Mat3 RandomRotation(Random* random) {
   return RotationFromAngleAxis(RandomVector(random, 1.5));
 }

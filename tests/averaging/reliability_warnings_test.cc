@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
+#include "averaging/true_ratios.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/averaging/scene_poses.h"
-#include "lowlap/synthetic/synthetic_scene.h"
 
 namespace lowlap {
 namespace {
@@ -18,16 +18,12 @@ using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-SyntheticScene SceneWithTrueRatios(const std::string& pairs) {
+SyntheticScene WellMeasuredScene(const std::string& pairs) {
   SyntheticOptions options;
   options.num_views = 8;
   options.pairs = pairs;
-  SyntheticScene synthetic = *Simulate(options);
-  synthetic.scene.scale_ratios = TrueSolution(synthetic).scale_ratios;
+  SyntheticScene synthetic = SceneWithTrueRatios(options);
   for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
-    ratio.verdict = RatioVerdict::kMeaningful;
-    ratio.log10_nfa = -50;
-    ratio.log_ratio_stddev = 0.01;
     ratio.kinds = {{"lines", 20, 20}};
   }
   for (auto& entry : synthetic.scene.relative_poses) {
@@ -60,20 +56,19 @@ ScaleRatio* FindRatio(const ViewTriplet& views, Scene* scene) {
 
 TEST(ReliabilityWarnings, NoneWhereAllIsWell) {
   for (const char* pairs : {"chain", "cycle", "window:3"}) {
-    EXPECT_THAT(WarningsOf(SceneWithTrueRatios(pairs).scene), IsEmpty())
-        << pairs;
+    EXPECT_THAT(WarningsOf(WellMeasuredScene(pairs).scene), IsEmpty()) << pairs;
   }
 }
 
 TEST(ReliabilityWarnings, NoneForOneWrongRelativePoseOfMany) {
-  SyntheticScene synthetic = SceneWithTrueRatios("window:3");
+  SyntheticScene synthetic = WellMeasuredScene("window:3");
   RelativePose& wrong = synthetic.scene.relative_poses.at({3, 5});
   wrong.direction = -wrong.direction;
   EXPECT_THAT(WarningsOf(synthetic.scene), IsEmpty());
 }
 
 TEST(ReliabilityWarnings, AViewThatItsRelativePosesContradict) {
-  const SyntheticScene synthetic = SceneWithTrueRatios("window:3");
+  const SyntheticScene synthetic = WellMeasuredScene("window:3");
   std::map<ViewId, Mat3> rotations;
   TranslationSolution solution;
   for (const auto& [view, pose] : synthetic.true_poses) {
@@ -100,7 +95,7 @@ TEST(ReliabilityWarnings, AViewThatItsRelativePosesContradict) {
 }
 
 TEST(ReliabilityWarnings, ViewsThatHangOnAWeakRatio) {
-  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  SyntheticScene synthetic = WellMeasuredScene("chain");
   FindRatio({3, 4, 5}, &synthetic.scene)->log10_nfa = -1;
   const auto summary =
       SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
@@ -126,7 +121,7 @@ AdjustedEvidence Adjusted(const Scene& scene, double log_difference) {
 }
 
 TEST(ReliabilityWarnings, AnAdjustmentSharpensTheRatiosThatItBearsOut) {
-  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  SyntheticScene synthetic = WellMeasuredScene("chain");
   Scene& scene = synthetic.scene;
   ScaleRatio& ratio = *FindRatio({3, 4, 5}, &scene);
   ratio.log_ratio_stddev = 0.3;
@@ -153,7 +148,7 @@ TEST(ReliabilityWarnings, AnAdjustmentSharpensTheRatiosThatItBearsOut) {
 }
 
 TEST(ReliabilityWarnings, AllViewsWhereNoPartIsMostOfThem) {
-  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  SyntheticScene synthetic = WellMeasuredScene("chain");
   FindRatio({2, 3, 4}, &synthetic.scene)->log10_nfa = -1;
   FindRatio({4, 5, 6}, &synthetic.scene)->log10_nfa = -1;
   const auto warnings = WarningsOf(synthetic.scene);
@@ -163,7 +158,7 @@ TEST(ReliabilityWarnings, AllViewsWhereNoPartIsMostOfThem) {
 }
 
 TEST(ReliabilityWarnings, NoViewIsNamedTwice) {
-  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  SyntheticScene synthetic = WellMeasuredScene("chain");
   for (ScaleRatio& ratio : synthetic.scene.scale_ratios) ratio.log10_nfa = -1;
   std::vector<ViewId> named;
   for (const ReliabilityWarning& warning : WarningsOf(synthetic.scene)) {
@@ -175,7 +170,7 @@ TEST(ReliabilityWarnings, NoViewIsNamedTwice) {
 }
 
 TEST(ReliabilityWarnings, AWeakRatioBesideStrongOnesIsNoWarning) {
-  SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+  SyntheticScene synthetic = WellMeasuredScene("window:2");
   FindRatio({3, 4, 5}, &synthetic.scene)->log10_nfa = -1;
   EXPECT_THAT(WarningsOf(synthetic.scene), IsEmpty());
 }
@@ -183,7 +178,7 @@ TEST(ReliabilityWarnings, AWeakRatioBesideStrongOnesIsNoWarning) {
 // Triangles 0-1-2-... and 4-...-7 that meet in view 4 alone, where one ratio
 // says something else than the others.
 TEST(ReliabilityWarnings, RatiosAcrossOneCameraThatDisagree) {
-  SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+  SyntheticScene synthetic = WellMeasuredScene("window:2");
   Scene& scene = synthetic.scene;
   scene.relative_poses.erase({3, 5});
   scene.scale_ratios.erase(
@@ -209,7 +204,7 @@ TEST(ReliabilityWarnings, RatiosAcrossOneCameraThatDisagree) {
 // In a chain nothing confirms a relative pose but its own matches.
 TEST(ReliabilityWarnings, ViewsThatHangOnAnUntoldRelativePose) {
   for (const char* pairs : {"chain", "window:2"}) {
-    SyntheticScene synthetic = SceneWithTrueRatios(pairs);
+    SyntheticScene synthetic = WellMeasuredScene(pairs);
     auto rotations =
         AverageSceneRotations(synthetic.scene, PoseOptions(), RunContext());
     ASSERT_TRUE(rotations);
@@ -235,7 +230,7 @@ TEST(ReliabilityWarnings, ViewsThatHangOnAnUntoldRelativePose) {
 // Either of two untold relative poses would hold the last view by a ratio.
 TEST(ReliabilityWarnings, WeakRatiosConfirmNoUntoldPose) {
   for (const bool is_weak : {false, true}) {
-    SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+    SyntheticScene synthetic = WellMeasuredScene("window:2");
     for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
       const ViewTriplet& v = ratio.views;
       if (is_weak && (v.first == ViewId(7) || v.last == ViewId(7))) {
@@ -275,7 +270,7 @@ void MakeVague(const std::vector<ViewPair>& pairs, Scene* scene) {
 TEST(ReliabilityWarnings, ViewsThatHangOnPosesThatAreHardlyDetermined) {
   for (const std::vector<ViewPair>& vague :
        {std::vector<ViewPair>{{6, 7}}, {{5, 7}, {6, 7}}}) {
-    SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+    SyntheticScene synthetic = WellMeasuredScene("window:2");
     MakeVague(vague, &synthetic.scene);
     const auto warnings = WarningsOf(synthetic.scene);
     if (vague.size() == 1) {
@@ -292,7 +287,7 @@ TEST(ReliabilityWarnings, ViewsThatHangOnPosesThatAreHardlyDetermined) {
 // Whatever a relative pose tells, the structure may determine the direction;
 // but not by chance, nor where it contradicts what the views share.
 TEST(ReliabilityWarnings, AnAdjustmentDeterminesWhatPosesDoNotTell) {
-  SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+  SyntheticScene synthetic = WellMeasuredScene("window:2");
   Scene& scene = synthetic.scene;
   MakeVague({{5, 7}, {6, 7}}, &scene);
   const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
@@ -318,7 +313,7 @@ TEST(ReliabilityWarnings, AnAdjustmentDeterminesWhatPosesDoNotTell) {
 }
 
 TEST(ReliabilityWarnings, TheStructureMayHoldTheScaleThatARatioHardlyTells) {
-  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  SyntheticScene synthetic = WellMeasuredScene("chain");
   Scene& scene = synthetic.scene;
   const ViewTriplet last = {5, 6, 7};
   const auto weak = std::find_if(
@@ -361,7 +356,7 @@ TEST(ReliabilityWarnings, TheStructureMayHoldTheScaleThatARatioHardlyTells) {
 }
 
 TEST(ReliabilityWarnings, AnAdjustmentDeterminesWhatMatchesDoNotTell) {
-  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  SyntheticScene synthetic = WellMeasuredScene("chain");
   Scene& scene = synthetic.scene;
   const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
   ASSERT_TRUE(summary);
@@ -384,7 +379,7 @@ TEST(ReliabilityWarnings, AnAdjustmentDeterminesWhatMatchesDoNotTell) {
 
 // The first view hangs on a weak ratio, whatever its relative pose is worth.
 TEST(ReliabilityWarnings, OnlyTheRelativePosesOfTheNamedViewsAreListed) {
-  SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+  SyntheticScene synthetic = WellMeasuredScene("window:2");
   Scene& scene = synthetic.scene;
   scene.relative_poses.erase({0, 2});
   for (ScaleRatio& ratio : scene.scale_ratios) {
@@ -405,7 +400,7 @@ TEST(ReliabilityWarnings, OnlyTheRelativePosesOfTheNamedViewsAreListed) {
 // something is wrong.
 TEST(ReliabilityWarnings, TwoViewsThatAreLeftOfMore) {
   for (const int num_views : {2, 8}) {
-    SyntheticScene synthetic = SceneWithTrueRatios("chain");
+    SyntheticScene synthetic = WellMeasuredScene("chain");
     Scene& scene = synthetic.scene;
     for (auto it = scene.relative_poses.begin();
          it != scene.relative_poses.end();) {
@@ -427,7 +422,7 @@ TEST(ReliabilityWarnings, TwoViewsThatAreLeftOfMore) {
 
 // Nothing is left that holds even two views.
 TEST(ReliabilityWarnings, AllViewsIfNoRelativePoseIsTold) {
-  SyntheticScene synthetic = SceneWithTrueRatios("chain");
+  SyntheticScene synthetic = WellMeasuredScene("chain");
   auto rotations =
       AverageSceneRotations(synthetic.scene, PoseOptions(), RunContext());
   ASSERT_TRUE(rotations);
@@ -449,7 +444,7 @@ TEST(ReliabilityWarnings, AllViewsIfNoRelativePoseIsTold) {
 // Two groups that share camera 4 alone, and no ratio across it: what joined
 // them otherwise has been left out.
 TEST(ReliabilityWarnings, GroupsAtOneCameraWithoutARatioThatAgrees) {
-  SyntheticScene synthetic = SceneWithTrueRatios("window:2");
+  SyntheticScene synthetic = WellMeasuredScene("window:2");
   Scene& scene = synthetic.scene;
   scene.relative_poses.erase({3, 5});
   std::map<ViewId, Mat3> rotations;

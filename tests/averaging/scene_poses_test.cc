@@ -3,25 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "averaging/true_ratios.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/synthetic/synthetic_scene.h"
 
 namespace lowlap {
 namespace {
-
-// A simulated scene with the true ratios of all its triplets.
-SyntheticScene SceneWithTrueRatios(const SyntheticOptions& options) {
-  SyntheticScene synthetic = *Simulate(options);
-  synthetic.scene.scale_ratios = TrueSolution(synthetic).scale_ratios;
-  for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
-    ratio.verdict = RatioVerdict::kMeaningful;
-    ratio.log10_nfa = -50;
-    ratio.log_ratio_stddev = 0.01;
-  }
-  return synthetic;
-}
 
 TEST(SolveScenePoses, ExactMeasurementsGiveExactPoses) {
   for (const char* pairs : {"chain", "cycle", "window:2"}) {

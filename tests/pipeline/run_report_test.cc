@@ -57,6 +57,13 @@ TEST_F(MakeReportTest, TheSummaryHasTheDeviationOfEveryCentre) {
   }
 }
 
+TEST_F(MakeReportTest, TheSummaryHasTheRatiosThatWereLeftOut) {
+  summary_.solve->poses.left_out_ratios = {{0, 1, 2}};
+  const auto summary = nlohmann::json::parse(ToJson(summary_, scene_));
+  EXPECT_EQ(summary["solve"]["poses"]["left_out_ratios"],
+            nlohmann::json::parse("[[0, 1, 2]]"));
+}
+
 TEST_F(MakeReportTest, HasTheTruthAndTheStartInTheFrameOfTheScene) {
   const auto report = MakeReport(summary_, scene_, {});
   ASSERT_THAT(report, IsOk());

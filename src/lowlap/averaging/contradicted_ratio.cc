@@ -44,11 +44,6 @@ double MinusLogNfa(const RatioMeasurement& ratio) {
 
 }  // namespace
 
-int CountPlaced(const TranslationSolution& solution) {
-  return static_cast<int>(
-      std::count(solution.component.begin(), solution.component.end(), 0));
-}
-
 Result<std::optional<SolutionWithoutRatio>> SolveWithoutContradictedRatio(
     const TranslationProblem& problem, const TranslationAverager& averager,
     const TranslationSolution& solution,
@@ -56,31 +51,31 @@ Result<std::optional<SolutionWithoutRatio>> SolveWithoutContradictedRatio(
     const RunContext& context) {
   constexpr std::size_t kMaxTried = 50;
   double least_cost = Cost(problem, solution);
-  std::vector<RatioMeasurement> candidates;
-  for (const RatioMeasurement& ratio : problem.ratios) {
-    const DirectionEdge& edge = problem.edges[ratio.reference];
+  std::vector<std::size_t> candidates;
+  for (std::size_t r = 0; r < problem.ratios.size(); ++r) {
+    const DirectionEdge& edge = problem.edges[problem.ratios[r].reference];
     if (solution.component[edge.first] == 0 &&
-        MinusLogNfa(ratio) < least_cost) {
-      candidates.push_back(ratio);
+        MinusLogNfa(problem.ratios[r]) < least_cost) {
+      candidates.push_back(r);
     }
   }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const RatioMeasurement& a, const RatioMeasurement& b) {
-                     return a.log10_nfa > b.log10_nfa;
-                   });
+  std::stable_sort(
+      candidates.begin(), candidates.end(), [&](std::size_t a, std::size_t b) {
+        return problem.ratios[a].log10_nfa > problem.ratios[b].log10_nfa;
+      });
   candidates.resize(std::min(candidates.size(), kMaxTried));
   std::optional<SolutionWithoutRatio> best;
-  for (const RatioMeasurement& candidate : candidates) {
-    TranslationProblem without = problem;
-    without.ratios.erase(std::find_if(
-        without.ratios.begin(), without.ratios.end(),
-        [&](const auto& ratio) { return ratio.views == candidate.views; }));
+  TranslationProblem without = problem;
+  for (const std::size_t r : candidates) {
+    without.ratios = problem.ratios;
+    without.ratios.erase(without.ratios.begin() +
+                         static_cast<std::ptrdiff_t>(r));
     LOWLAP_ASSIGN_OR_RETURN(auto again, averager.Solve(without, context));
-    if (CountPlaced(again) < CountPlaced(solution) || !agrees(again)) continue;
-    const double cost = Cost(without, again) + MinusLogNfa(candidate);
+    if (again.NumPlaced() < solution.NumPlaced() || !agrees(again)) continue;
+    const double cost = Cost(without, again) + MinusLogNfa(problem.ratios[r]);
     if (cost >= least_cost) continue;
     least_cost = cost;
-    best = SolutionWithoutRatio{candidate.views, std::move(again)};
+    best = SolutionWithoutRatio{problem.ratios[r].views, std::move(again)};
   }
   return best;
 }

@@ -189,7 +189,7 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
         *scene, rotations.cam_from_world, PairsOf(outliers), weak, with_tracks);
     auto again = averager.Solve(wider, context);
     if (!again) return tl::unexpected<Error>(again.error());
-    if (CountPlaced(*again) > CountPlaced(*solution)) {
+    if (again->NumPlaced() > solution->NumPlaced()) {
       problem = std::move(wider);
       solution = std::move(again);
     } else {
@@ -210,7 +210,7 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
         *scene, rotations.cam_from_world, PairsOf(more), weak, with_tracks);
     auto again = averager.Solve(smaller, context);
     if (!again) return tl::unexpected<Error>(again.error());
-    if (CountPlaced(*again) < CountPlaced(*solution)) {
+    if (again->NumPlaced() < solution->NumPlaced()) {
       LOWLAP_ASSIGN_OR_RETURN(
           auto without, SolveWithoutContradictedRatio(
                             problem, averager, *solution,

@@ -16,6 +16,10 @@ constexpr double kWeakRatioFloor = 0.2;
 
 }  // namespace
 
+int TranslationSolution::NumPlaced() const {
+  return static_cast<int>(std::count(component.begin(), component.end(), 0));
+}
+
 double DirectionStddev(const RelativePose& pose) {
   if (!pose.covariance) return kDefaultDirectionRad;
   const double variance =

@@ -74,6 +74,9 @@ struct TranslationSolution {
   std::vector<Vec3> center_in_world;
   int num_components = 0;
   int num_iterations = 0;
+
+  /// Views in component 0.
+  int NumPlaced() const;
 };
 
 /// A translation averaging strategy.

@@ -58,8 +58,7 @@ inline RotationGraph MakeRotationGraph(std::size_t num_views,
     for (std::size_t step = 1; step <= window; ++step) {
       const std::size_t b = (a + step) % num_views;
       const bool is_false = random.Uniform() < false_share;
-      const Vec3 noise(random.Gaussian(0.003), random.Gaussian(0.003),
-                       random.Gaussian(0.003));
+      const Vec3 noise = GaussianVector(&random, 0.003);
       graph.Add(a, b, is_false ? RandomVector(&random, false_rad) : noise,
                 is_false);
       // False matches tend to be fewer: evidence tells something, not all.

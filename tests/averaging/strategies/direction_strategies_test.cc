@@ -43,9 +43,9 @@ RandomProblem MakeRing(std::size_t num_views, std::size_t reach,
 void AddNoise(double stddev_rad, std::uint64_t seed, RandomProblem* made) {
   Random random(seed);
   for (DirectionEdge& edge : made->problem.edges) {
-    const Vec3 error{random.Gaussian(stddev_rad), random.Gaussian(stddev_rad),
-                     random.Gaussian(stddev_rad)};
-    edge.direction_in_world = (edge.direction_in_world + error).normalized();
+    edge.direction_in_world =
+        (edge.direction_in_world + GaussianVector(&random, stddev_rad))
+            .normalized();
   }
 }
 
@@ -56,9 +56,7 @@ void AddWrongDirections(std::size_t period, std::uint64_t seed,
   std::size_t n = 0;
   for (DirectionEdge& edge : made->problem.edges) {
     if (n++ % period != period - 1) continue;
-    const Vec3 direction{random.Gaussian(), random.Gaussian(),
-                         random.Gaussian()};
-    edge.direction_in_world = direction.normalized();
+    edge.direction_in_world = GaussianVector(&random, 1).normalized();
   }
 }
 
@@ -280,7 +278,7 @@ TEST_P(RobustStrategy, WithstandsWrongDirectionsThatBendLeastSquares) {
     const double robust = Error(made, Solve(GetParam(), made.problem));
     const double squares = Error(made, Solve("l2_chordal", made.problem));
     EXPECT_LT(robust, 0.05) << period;
-    EXPECT_GT(squares, 5 * robust) << period;
+    EXPECT_GT(squares, 0.2) << period;
     RecordProperty("wrong_1_in_" + std::to_string(period),
                    std::to_string(robust) + " vs " + std::to_string(squares));
   }

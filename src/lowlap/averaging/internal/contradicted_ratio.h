@@ -32,7 +32,4 @@ Result<std::optional<SolutionWithoutRatio>> SolveWithoutContradictedRatio(
     const std::function<bool(const TranslationSolution&)>& agrees,
     const RunContext& context);
 
-/// Views in component 0.
-int CountPlaced(const TranslationSolution& solution);
-
 }  // namespace lowlap
