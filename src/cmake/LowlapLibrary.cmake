@@ -1,5 +1,5 @@
 option(LOWLAP_UNITY_BUILD
-       "Compile the sources of a library ten at a time: much faster from nothing, slower after an edit"
+       "Compile the sources of a folder some at a time: much faster from nothing, slower after an edit"
        ON)
 
 # lowlap_library(<name> SOURCES <files> [DEPENDS <targets>] [PRIVATE_DEPENDS <targets>])

@@ -51,13 +51,13 @@ Vec2 Project(const std::string& model, const std::vector<double>& p, double u,
   return {fx * x + p[pp], fy * y + p[pp + 1]};
 }
 
-struct Case {
+struct CameraCase {
   const char* model;
   std::vector<double> params;
 };
 
-const std::vector<Case>& HeldCameras() {
-  static const std::vector<Case> cases = {
+const std::vector<CameraCase>& HeldCameras() {
+  static const std::vector<CameraCase> cases = {
       {"SIMPLE_PINHOLE", {500, 400.25, 300}},
       {"PINHOLE", {500, 510, 400.25, 300}},
       {"SIMPLE_RADIAL", {500, 400, 300.5, -0.12}},
@@ -139,7 +139,7 @@ TEST(ColmapCamera, APanoramaHasNoShift) {
 }
 
 TEST(ColmapCamera, WhatNoModelEqualsIsRefusedByName) {
-  const std::vector<Case> refused = {
+  const std::vector<CameraCase> refused = {
       {"FOV", {500, 500, 400, 300, 0.9}},
       {"EUCM", {500, 500, 400, 300, 0.5, 1}},
       {"DIVISION", {500, 500, 400, 300, -0.1}},

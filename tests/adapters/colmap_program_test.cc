@@ -105,7 +105,7 @@ class RealColmap : public ::testing::Test {
 };
 
 TEST_F(RealColmap, SolvesItsDatabaseAndTakesTheResult) {
-  const std::string sample = SourceFolder() + "/sfm_data/samples/room";
+  const std::string sample = RoomFolder();
   const std::string database = Path("database.db");
   const std::string images = sample + "/images";
   double fx = 0, fy = 0, cx = 0, cy = 0, zero = 0;

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <string>
 
+#include "third_party_adapters/openmvg/internal/sfm_data_bin.h"
+
 namespace lowlap::openmvg {
 
 // Files that OpenMVG 2.1 wrote, as hexadecimal digits.
@@ -75,5 +77,8 @@ inline std::string FromHex(const std::string& digits) {
   }
   return bytes;
 }
+
+/// What kTwoViewsHex holds.
+inline Scene TwoViews() { return *ParseSfmDataBin(FromHex(kTwoViewsHex)); }
 
 }  // namespace lowlap::openmvg

@@ -13,12 +13,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Scene TwoViews() {
-  const Result<Scene> scene = ParseSfmDataBin(FromHex(kTwoViewsHex));
-  EXPECT_TRUE(scene.has_value());
-  return scene.value_or(Scene());
-}
-
 /// The bytes of kTwoViewsHex with its maps in ascending order.
 std::string TwoViewsAscending() {
   const std::string bytes = FromHex(kTwoViewsHex);

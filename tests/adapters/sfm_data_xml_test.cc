@@ -11,8 +11,6 @@ namespace {
 
 using ::testing::HasSubstr;
 
-Scene TwoViews() { return *ParseSfmDataBin(FromHex(kTwoViewsHex)); }
-
 std::string TwoViewsXml() {
   const Result<std::string> xml = FormatSfmDataXml(TwoViews());
   EXPECT_TRUE(xml.has_value());

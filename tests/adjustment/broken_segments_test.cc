@@ -110,7 +110,7 @@ struct Built {
   AdjustmentSummary adjustment;
 };
 
-Built BuildAndAdjust(Scene* scene) {
+Built BuildTracksAndAdjust(Scene* scene) {
   scene->line_tracks = BuildLineTracks(*scene, {});
   const auto structure = BuildStructure(scene, {}, {});
   EXPECT_THAT(structure, IsOk());
@@ -127,8 +127,8 @@ TEST(BrokenSegmentsTest, AreOneTrackAndOneLandmarkEach) {
   Scene broken = test.scene;
   const ViewId view = std::next(whole.views.begin(), 2)->first;
   ASSERT_GT(BreakSegments(view, &broken), 20u);
-  const Built of_whole = BuildAndAdjust(&whole);
-  const Built of_broken = BuildAndAdjust(&broken);
+  const Built of_whole = BuildTracksAndAdjust(&whole);
+  const Built of_broken = BuildTracksAndAdjust(&broken);
   ASSERT_EQ(broken.line_tracks.size(), whole.line_tracks.size());
   EXPECT_EQ(of_broken.structure.lines.landmarks,
             of_whole.structure.lines.landmarks);
@@ -172,8 +172,8 @@ TEST(BrokenSegmentsTest, MoveTheCamerasNoMoreThanWholeOnes) {
     for (const auto& [view, image] : test.scene.views) {
       BreakSegments(view, &broken, 1.2 * kNoisePx);
     }
-    BuildAndAdjust(&whole);
-    const Built adjusted = BuildAndAdjust(&broken);
+    BuildTracksAndAdjust(&whole);
+    const Built adjusted = BuildTracksAndAdjust(&broken);
     error_of_whole += ComparePoses(test.true_poses, whole).mean_center;
     error_of_broken += ComparePoses(test.true_poses, broken).mean_center;
     EXPECT_TRUE(adjusted.adjustment.converged);

@@ -27,7 +27,7 @@ double LogRatioOf(const Vec3& first, const Vec3& middle, const Vec3& last) {
 }
 
 // A solved chain; its ratios are the true ones.
-Scene SolvedChain() {
+Scene TrueChain() {
   SyntheticOptions options;
   options.num_views = 5;
   options.pairs = "chain";
@@ -86,7 +86,7 @@ TEST(ScaleRatioPrior, FailsWithoutABaseline) {
 }
 
 TEST(ScaleRatioPrior, LeavesOutWhatIsFalseOrUnknown) {
-  Scene scene = SolvedChain();
+  Scene scene = TrueChain();
   EXPECT_EQ(LoadScaleRatioPriors(scene, CameraSet(scene)).size(), 3u);
   scene.scale_ratios[0].log_ratio += 1;
   scene.scale_ratios[1].log_ratio_stddev = 0;
@@ -94,7 +94,7 @@ TEST(ScaleRatioPrior, LeavesOutWhatIsFalseOrUnknown) {
 }
 
 TEST(ScaleRatioPrior, TrustsWhatChanceExplainsLess) {
-  Scene scene = SolvedChain();
+  Scene scene = TrueChain();
   scene.scale_ratios[0].verdict = RatioVerdict::kNotMeaningful;
   const auto priors = LoadScaleRatioPriors(scene, CameraSet(scene));
   ASSERT_EQ(priors.size(), 3u);
@@ -104,7 +104,7 @@ TEST(ScaleRatioPrior, TrustsWhatChanceExplainsLess) {
 // Points of neighbours alone, and no coplanar pair: nothing but the ratios
 // carries the scale.
 TEST(ScaleRatioPrior, HoldsTheScaleThatNoStructureCarries) {
-  Scene scene = SolvedChain();
+  Scene scene = TrueChain();
   scene.line_structure.clear();
   scene.line_tracks.clear();
   scene.coplanar_pairs.clear();

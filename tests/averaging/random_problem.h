@@ -112,4 +112,14 @@ inline double GaugeFreeError(const std::vector<Vec3>& truth,
   return worst / extent;
 }
 
+/// That of the views in the first component.
+inline double ErrorOfFirstPart(const RandomProblem& made,
+                               const TranslationSolution& solution) {
+  std::vector<bool> placed;
+  for (const int component : solution.component) {
+    placed.push_back(component == 0);
+  }
+  return GaugeFreeError(made.centers, solution.center_in_world, placed);
+}
+
 }  // namespace lowlap

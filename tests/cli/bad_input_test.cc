@@ -113,7 +113,7 @@ TEST_F(BadInput, TruthThatSaysNothing) {
   ExpectRefused("subsets --drop 1 " + Room() + gt + Out(), says);
   ExpectRefused("evaluate " + Truth() + gt, says);
   // A folder of true cameras of other images.
-  const std::string other = SourceFolder() + "/sfm_data/samples/room";
+  const std::string other = RoomFolder();
   ExpectRefused("evaluate " + Truth() + " " + other,
                 "samples/room: no view of the scene has a true pose");
 }

@@ -10,17 +10,6 @@
 namespace lowlap {
 namespace {
 
-RelativePose TrueRelativePose(const Scene& scene, ViewId first, ViewId second) {
-  const RigidTransform transform =
-      scene.FindPose(second)->CamFromWorld() *
-      scene.FindPose(first)->CamFromWorld().Inverse();
-  RelativePose relative;
-  relative.views = {first, second};
-  relative.rotation = transform.rotation;
-  relative.direction = transform.translation.normalized();
-  return relative;
-}
-
 void Turn(RelativePose* pose, double deg) {
   pose->rotation =
       RotationFromAngleAxis({0, 0, RadFromDeg(deg)}) * pose->rotation;

@@ -44,4 +44,17 @@ inline void Transform(const Similarity& to_from_scene, Scene& scene) {
   }
 }
 
+/// The relative pose of two views of a solved scene.
+inline RelativePose TrueRelativePose(const Scene& scene, ViewId first,
+                                     ViewId second) {
+  const RigidTransform transform =
+      scene.FindPose(second)->CamFromWorld() *
+      scene.FindPose(first)->CamFromWorld().Inverse();
+  RelativePose relative;
+  relative.views = {first, second};
+  relative.rotation = transform.rotation;
+  relative.direction = transform.translation.normalized();
+  return relative;
+}
+
 }  // namespace lowlap

@@ -11,17 +11,6 @@ namespace lowlap {
 namespace {
 
 /// The relative pose of two solved views, from their translations.
-RelativePose TrueRelativePose(const Scene& scene, ViewId first, ViewId second) {
-  const RigidTransform transform =
-      scene.FindPose(second)->CamFromWorld() *
-      scene.FindPose(first)->CamFromWorld().Inverse();
-  RelativePose relative;
-  relative.views = {first, second};
-  relative.rotation = transform.rotation;
-  relative.direction = transform.translation.normalized();
-  return relative;
-}
-
 TEST(EvaluateRelativePoses, TheTruthHasNoError) {
   Scene scene = RandomScene(5, 1);
   for (const ViewPair pair : {ViewPair{0, 2}, ViewPair{0, 8}, ViewPair{4, 6}}) {

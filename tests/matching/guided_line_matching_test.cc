@@ -42,7 +42,7 @@ LineDescriptor Flip(LineDescriptor descriptor, int bits) {
   return descriptor;
 }
 
-struct View {
+struct SeenLines {
   ViewFeatures features;
   std::vector<LineDescriptor> descriptors;
 
@@ -89,8 +89,8 @@ class GuidedLineMatchingTest : public ::testing::Test {
                             seeds, options);
   }
 
-  View first_;
-  View second_;
+  SeenLines first_;
+  SeenLines second_;
   std::vector<FeatureMatch> truth_;
 };
 

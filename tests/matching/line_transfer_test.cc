@@ -13,11 +13,11 @@ using ::testing::ElementsAre;
 using testing::ExpectRefused;
 using ::testing::IsEmpty;
 
-const RigidTransform kCam2FromCam1 = {
+const RigidTransform kView2FromView1 = {
     RotationFromAngleAxis(Vec3(0.05, -0.4, 0.02)), Vec3(0.9, 0.1, 0.42)};
 
-NormalizedSegment View(const RigidTransform& cam_from_world, const Vec3& a,
-                       const Vec3& b) {
+NormalizedSegment SegmentIn(const RigidTransform& cam_from_world, const Vec3& a,
+                            const Vec3& b) {
   NormalizedSegment segment;
   const Vec3 start = cam_from_world * a, end = cam_from_world * b;
   segment.start = start / start.z();
@@ -29,11 +29,11 @@ NormalizedSegment View(const RigidTransform& cam_from_world, const Vec3& a,
 // Whether the match of segment a1-b1 (camera 1's frame) seen in view 1 and
 // a2-b2 seen in view 2 is kept.
 bool IsKept(const Vec3& a1, const Vec3& b1, const Vec3& a2, const Vec3& b2,
-            const RigidTransform& cam2_from_cam1 = kCam2FromCam1,
+            const RigidTransform& cam2_from_cam1 = kView2FromView1,
             const LineFilterOptions& options = {}) {
   NormalizedFeatures first, second;
-  first.segments = {View({}, a1, b1)};
-  second.segments = {View(kCam2FromCam1, a2, b2)};
+  first.segments = {SegmentIn({}, a1, b1)};
+  second.segments = {SegmentIn(kView2FromView1, a2, b2)};
   return !FilterLineMatches({{0, 0}}, first, second, cam2_from_cam1, options)
               .empty();
 }
@@ -50,7 +50,7 @@ TEST(FilterLineMatchesTest, KeepsTheSameSegmentInEitherDirection) {
 
 TEST(FilterLineMatchesTest, TheScaleOfTheBaselineIsFree) {
   for (const double scale : {0.01, 100.0}) {
-    RigidTransform scaled = kCam2FromCam1;
+    RigidTransform scaled = kView2FromView1;
     scaled.translation *= scale;
     EXPECT_TRUE(IsKept(Along(0), Along(1), Along(0), Along(1), scaled));
   }
@@ -63,12 +63,12 @@ TEST(FilterLineMatchesTest, OverlapIsMeasuredOnTheShorterSegment) {
   EXPECT_FALSE(IsKept(Along(0), Along(0.4), Along(0.6), Along(1)));
   LineFilterOptions loose;
   loose.min_overlap = 0.1;
-  EXPECT_TRUE(
-      IsKept(Along(0), Along(0.5), Along(0.4), Along(1), kCam2FromCam1, loose));
+  EXPECT_TRUE(IsKept(Along(0), Along(0.5), Along(0.4), Along(1),
+                     kView2FromView1, loose));
 }
 
 TEST(FilterLineMatchesTest, DropsLinesBehindTheCameras) {
-  RigidTransform reversed = kCam2FromCam1;
+  RigidTransform reversed = kView2FromView1;
   reversed.translation = -reversed.translation;
   EXPECT_FALSE(IsKept(Along(0), Along(1), Along(0), Along(1), reversed));
 }
@@ -79,14 +79,14 @@ TEST(FilterLineMatchesTest, KeepsASegmentOfWhichACameraSeesOnlyThePartInFront) {
   pose.translation = Vec3(0.5, 0.3, 4);
   NormalizedFeatures first, second;
   const Vec3 a(1, -0.8, -2), b(1.2, -0.8, 2), c(1.4, -0.8, 6);
-  first.segments = {View({}, b, c)};
-  second.segments = {View(pose, a, c)};
+  first.segments = {SegmentIn({}, b, c)};
+  second.segments = {SegmentIn(pose, a, c)};
   EXPECT_THAT(FilterLineMatches({{0, 0}}, first, second, pose, {}),
               ElementsAre(FeatureMatch{0, 0}));
 }
 
 TEST(FilterLineMatchesTest, DropsLinesInAnEpipolarPlane) {
-  const Vec3 center2 = kCam2FromCam1.Center();
+  const Vec3 center2 = kView2FromView1.Center();
   const Vec3 a(0.2, 0.7, 4);
   const Vec3 b = a + 0.8 * center2;  // parallel to the baseline
   EXPECT_FALSE(IsKept(a, b, a, b));
@@ -94,12 +94,12 @@ TEST(FilterLineMatchesTest, DropsLinesInAnEpipolarPlane) {
 
 TEST(FilterLineMatchesTest, DropsInvalidSegmentsAndIndices) {
   NormalizedFeatures first, second;
-  first.segments = {NormalizedSegment{}, View({}, kStart, kEnd)};
-  second.segments = {View(kCam2FromCam1, kStart, kEnd)};
+  first.segments = {NormalizedSegment{}, SegmentIn({}, kStart, kEnd)};
+  second.segments = {SegmentIn(kView2FromView1, kStart, kEnd)};
   EXPECT_THAT(FilterLineMatches({{0, 0}, {1, 0}, {5, 0}, {1, 7}}, first, second,
-                                kCam2FromCam1, {}),
+                                kView2FromView1, {}),
               ElementsAre(FeatureMatch{1, 0}));
-  EXPECT_THAT(FilterLineMatches({}, {}, {}, kCam2FromCam1, {}), IsEmpty());
+  EXPECT_THAT(FilterLineMatches({}, {}, {}, kView2FromView1, {}), IsEmpty());
 }
 
 TEST(LineFilterOptionsTest, RejectsBadValues) {

@@ -32,8 +32,7 @@ class MatchedPointsTest : public ::testing::Test {
          {"02", "03", "04", "05", "06", "07", "08", "09", "10"}) {
       others.push_back(std::string("00") + name + ".jpg");
     }
-    auto scene = SceneFromImages(
-        SourceFolder() + "/sfm_data/samples/room/images", intrinsics, others);
+    auto scene = SceneFromImages(RoomFolder() + "/images", intrinsics, others);
     ASSERT_THAT(scene, IsOk());
     FeatureOptions options;
     options.detect_lines = false;

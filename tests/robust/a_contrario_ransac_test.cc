@@ -63,7 +63,7 @@ class LineKernel {
   std::vector<Point> points_;
 };
 
-const BackgroundLaw kLaw = BackgroundLaw::PointToLine(1e6, 1414);
+const BackgroundLaw kLineLaw = BackgroundLaw::PointToLine(1e6, 1414);
 
 std::vector<Point> LineWithOutliers(int num_inliers, int num_outliers,
                                     double noise, Random& random) {
@@ -85,7 +85,7 @@ std::vector<Point> LineWithOutliers(int num_inliers, int num_outliers,
 AContrarioRansacResult<LineKernel::Model> Fit(const std::vector<Point>& points,
                                               std::uint64_t seed) {
   const LineKernel kernel(points);
-  const AContrarioLadder ladder(kernel.NumData(), 2, 1, kLaw, 0.1, 30);
+  const AContrarioLadder ladder(kernel.NumData(), 2, 1, kLineLaw, 0.1, 30);
   Random random(seed);
   return AContrarioRansac(kernel, ladder, {}, random);
 }
@@ -145,7 +145,7 @@ TEST(AContrarioRansac, GivesNoModelForAMinimalSampleOnly) {
 
 TEST(EarlyBailOut, KeepsWhatMayWinAndDropsWhatCannot) {
   const int n = 1000;
-  const AContrarioLadder ladder(n, 2, 1, kLaw, 0.1, 30);
+  const AContrarioLadder ladder(n, 2, 1, kLineLaw, 0.1, 30);
   EarlyBailOut bail_out(ladder, n);
   std::vector<int> counts(ladder.NumSteps() + 1, 0);
   counts.back() = 100;

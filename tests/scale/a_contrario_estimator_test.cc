@@ -7,15 +7,18 @@
 #include <vector>
 
 #include "lowlap/scale/scale_estimator.h"
+#include "scale/estimate.h"
 #include "scale/even_evidence.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap {
 namespace {
 
+using testing::EstimateRatio;
 using testing::Even;
 using testing::EvidenceOf;
 using testing::MakeSyntheticTriplet;
+using testing::PairsOnly;
 using testing::SyntheticTriplet;
 using testing::SyntheticTripletOptions;
 using testing::ValidTriplet;
@@ -125,21 +128,6 @@ TEST(AContrarioScaleEstimator, JudgesByItsForm) {
   EXPECT_FALSE(ratio.second_mode.has_value());
 }
 
-ScaleRatio Estimate(const TripletView& view, const ScaleOptions& options = {}) {
-  const Result<ScaleRatio> ratio = MakeScaleEstimator(options)->Estimate(view);
-  EXPECT_TRUE(ratio.has_value()) << ratio.error().ToString();
-  return *ratio;
-}
-
-SyntheticTripletOptions Pairs(int num_lines, double noise_px,
-                              double wrong_share) {
-  SyntheticTripletOptions options;
-  options.num_lines_ij = options.num_lines_jk = num_lines;
-  options.noise_px = noise_px;
-  options.wrong_share = wrong_share;
-  return options;
-}
-
 // The promise: on features that have nothing in common, at most one ratio in a
 // hundred is called meaningful.
 class PureNoise : public ::testing::TestWithParam<
@@ -157,7 +145,8 @@ TEST_P(PureNoise, IsMeaningfulAtMostOnceInAHundredTriplets) {
   int meaningful = 0;
   for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
     const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 5000 + seed);
-    meaningful += Estimate(triplet.view).verdict == RatioVerdict::kMeaningful;
+    meaningful +=
+        EstimateRatio(triplet.view).verdict == RatioVerdict::kMeaningful;
   }
   EXPECT_LE(meaningful, kTriplets / 100);
 }
@@ -173,27 +162,27 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& kind) { return kind.param.first; });
 
 TEST(AContrarioScaleEstimator, ThePaperFormTakesNoiseForACertainty) {
-  SyntheticTripletOptions options = Pairs(60, 1.0, 0);
+  SyntheticTripletOptions options = PairsOnly(60, 1.0, 0);
   options.pure_noise = true;
   const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 1);
   ScaleOptions paper;
   paper.nfa_form = NfaForm::kPaper;
-  EXPECT_LT(Estimate(triplet.view, paper).log10_nfa, -80);
-  EXPECT_EQ(Estimate(triplet.view).verdict, RatioVerdict::kNotMeaningful);
+  EXPECT_LT(EstimateRatio(triplet.view, paper).log10_nfa, -80);
+  EXPECT_EQ(EstimateRatio(triplet.view).verdict, RatioVerdict::kNotMeaningful);
 }
 
 // Large triplets try a subset; it must be as good as trying all.
 TEST(AContrarioScaleEstimator, TheSubsetFindsWhatTheExhaustiveSearchFinds) {
   for (std::uint64_t seed = 0; seed < 8; ++seed) {
-    SyntheticTripletOptions options = Pairs(80, 1.0, 0.3);
+    SyntheticTripletOptions options = PairsOnly(80, 1.0, 0.3);
     options.num_points = 250;
     const SyntheticTriplet triplet = MakeSyntheticTriplet(options, seed);
     ScaleOptions exhaustive;
     exhaustive.search = RatioSearch::kExhaustive;
-    const ScaleRatio reference = Estimate(triplet.view, exhaustive);
+    const ScaleRatio reference = EstimateRatio(triplet.view, exhaustive);
     ScaleOptions subset;
     subset.search = RatioSearch::kFeatures;
-    const ScaleRatio ratio = Estimate(triplet.view, subset);
+    const ScaleRatio ratio = EstimateRatio(triplet.view, subset);
     EXPECT_LE(reference.log10_nfa, ratio.log10_nfa + 1e-9);
     EXPECT_LT(ratio.log10_nfa, 0.95 * reference.log10_nfa);
     EXPECT_NEAR(ratio.log_ratio, reference.log_ratio,
@@ -205,7 +194,7 @@ TEST(AContrarioScaleEstimator, OneFeatureIsNotMeaningful) {
   SyntheticTripletOptions options;
   options.num_points = 1;
   const SyntheticTriplet triplet = MakeSyntheticTriplet(options, 1);
-  const ScaleRatio ratio = Estimate(triplet.view);
+  const ScaleRatio ratio = EstimateRatio(triplet.view);
   EXPECT_EQ(ratio.verdict, RatioVerdict::kNotMeaningful);
   EXPECT_NEAR(ratio.log_ratio, triplet.true_log_ratio, 1e-6);
 }

@@ -15,7 +15,7 @@ using testing::MakeSyntheticPlanes;
 using testing::SyntheticPlanes;
 using testing::SyntheticPlanesOptions;
 
-ScaleRatio Estimate(const SyntheticPlanes& scene) {
+ScaleRatio EstimateOn(const SyntheticPlanes& scene) {
   return AContrarioScaleEstimator(scene.Kinds()).Estimate(scene.View()).value();
 }
 
@@ -26,7 +26,7 @@ TEST(RatioFromPlanes, IsFoundWithoutAnySharedFeature) {
   int meaningful = 0, within = 0;
   for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
     const SyntheticPlanes scene = MakeSyntheticPlanes(options, seed);
-    const ScaleRatio ratio = Estimate(scene);
+    const ScaleRatio ratio = EstimateOn(scene);
     if (ratio.verdict != RatioVerdict::kMeaningful) continue;
     ++meaningful;
     const double error = ratio.log_ratio - scene.true_log_ratio;
@@ -105,7 +105,7 @@ TEST(RatioFromPlanes, IsSeldomMeaningfulForUnrelatedPlanes) {
   int meaningful = 0, with_points = 0;
   for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
     const SyntheticPlanes scene = MakeSyntheticPlanes(options, seed);
-    const ScaleRatio ratio = Estimate(scene);
+    const ScaleRatio ratio = EstimateOn(scene);
     with_points += ratio.kinds.front().candidates > 0;
     meaningful += ratio.verdict == RatioVerdict::kMeaningful;
   }
@@ -121,7 +121,7 @@ TEST(RatioFromPlanes, IsInvertedWhenTheEndsAreSwapped) {
   swapped.geometry = swapped.geometry.Swapped();
   const EvidenceKinds kinds = {std::make_shared<PlanePointsKind>(
       PlanesByPair{{{1, 0}, scene.PlanesJk()}, {{1, 2}, scene.PlanesIj()}})};
-  const ScaleRatio a = Estimate(scene);
+  const ScaleRatio a = EstimateOn(scene);
   const ScaleRatio b =
       AContrarioScaleEstimator(kinds).Estimate(swapped).value();
   EXPECT_NEAR(a.log_ratio, -b.log_ratio, 1e-4);

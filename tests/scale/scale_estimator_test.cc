@@ -12,36 +12,24 @@
 #include "lowlap/scale/evidence/internal/coplanar_candidates.h"
 #include "lowlap/scale/internal/candidate_limits.h"
 #include "lowlap/scale/internal/uncertainty/ratio_inliers.h"
+#include "scale/estimate.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap {
 namespace {
 
+using testing::EstimateRatio;
 using testing::MakeSyntheticTriplet;
+using testing::PairsOnly;
 using testing::SwapEnds;
 using testing::SyntheticTriplet;
 using testing::SyntheticTripletOptions;
-
-ScaleRatio Estimate(const TripletView& view, const ScaleOptions& options = {}) {
-  const Result<ScaleRatio> ratio = MakeScaleEstimator(options)->Estimate(view);
-  EXPECT_TRUE(ratio.has_value()) << ratio.error().ToString();
-  return *ratio;
-}
 
 SyntheticTripletOptions Mixed(double noise_px, double wrong_share) {
   SyntheticTripletOptions options;
   options.num_points = 40;
   options.num_lines = 25;
   options.num_lines_ij = options.num_lines_jk = 50;
-  options.noise_px = noise_px;
-  options.wrong_share = wrong_share;
-  return options;
-}
-
-SyntheticTripletOptions Pairs(int num_lines, double noise_px,
-                              double wrong_share) {
-  SyntheticTripletOptions options;
-  options.num_lines_ij = options.num_lines_jk = num_lines;
   options.noise_px = noise_px;
   options.wrong_share = wrong_share;
   return options;
@@ -74,7 +62,7 @@ class EveryKind : public ::testing::TestWithParam<KindCase> {
 TEST_P(EveryKind, IsExactWithoutNoise) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const SyntheticTriplet triplet = MakeSyntheticTriplet(Mixed(0, 0), seed);
-    const ScaleRatio ratio = Estimate(triplet.view, Options());
+    const ScaleRatio ratio = EstimateRatio(triplet.view, Options());
     EXPECT_EQ(ratio.verdict, RatioVerdict::kMeaningful);
     EXPECT_NEAR(ratio.log_ratio, triplet.true_log_ratio, 1e-4);
     for (const std::string feature : {"points", "lines", "coplanar"}) {
@@ -94,7 +82,7 @@ TEST_P(EveryKind, SurvivesNoiseAndWrongMatches) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const SyntheticTriplet triplet =
         MakeSyntheticTriplet(Mixed(0.5, 0.3), seed);
-    const ScaleRatio ratio = Estimate(triplet.view, Options());
+    const ScaleRatio ratio = EstimateRatio(triplet.view, Options());
     good += ratio.verdict == RatioVerdict::kMeaningful &&
             std::abs(ratio.log_ratio - triplet.true_log_ratio) < 0.03;
   }
@@ -105,8 +93,8 @@ TEST_P(EveryKind, NegatesTheLogRatioWhenTheEndsAreSwapped) {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     const SyntheticTriplet triplet =
         MakeSyntheticTriplet(Mixed(0.5, 0.3), seed);
-    const ScaleRatio ratio = Estimate(triplet.view, Options());
-    const ScaleRatio swapped = Estimate(SwapEnds(triplet.view), Options());
+    const ScaleRatio ratio = EstimateRatio(triplet.view, Options());
+    const ScaleRatio swapped = EstimateRatio(SwapEnds(triplet.view), Options());
     EXPECT_NEAR(ratio.log_ratio, -swapped.log_ratio,
                 0.2 * ratio.log_ratio_stddev);
     EXPECT_NEAR(ratio.log10_nfa, swapped.log10_nfa,
@@ -132,9 +120,9 @@ TEST(ScaleEstimator, ErrorGrowsInProportionToTheNoise) {
     std::vector<double> errors;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {
       const SyntheticTriplet triplet =
-          MakeSyntheticTriplet(Pairs(50, noise_px, 0.1), seed);
-      errors.push_back(
-          std::abs(Estimate(triplet.view).log_ratio - triplet.true_log_ratio));
+          MakeSyntheticTriplet(PairsOnly(50, noise_px, 0.1), seed);
+      errors.push_back(std::abs(EstimateRatio(triplet.view).log_ratio -
+                                triplet.true_log_ratio));
     }
     medians.push_back(Median(errors));
   }
@@ -163,9 +151,9 @@ TEST(ScaleEstimator, SurvivesSeventyPercentWrongCoplanarPairs) {
   constexpr int kTriplets = 40;
   for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
     const SyntheticTriplet triplet =
-        MakeSyntheticTriplet(Pairs(80, 1.0, 0.45), seed);
+        MakeSyntheticTriplet(PairsOnly(80, 1.0, 0.45), seed);
     wrong_share += WrongPairShare(triplet) / kTriplets;
-    const ScaleRatio ratio = Estimate(triplet.view);
+    const ScaleRatio ratio = EstimateRatio(triplet.view);
     meaningful += ratio.verdict == RatioVerdict::kMeaningful;
     errors.push_back(std::abs(ratio.log_ratio - triplet.true_log_ratio));
   }
@@ -187,7 +175,7 @@ TEST(ScaleEstimator, StatedDeviationsHoldTheTruth) {
     constexpr int kTriplets = 150;
     for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
       const SyntheticTriplet triplet = MakeSyntheticTriplet(options, seed);
-      const ScaleRatio ratio = Estimate(triplet.view);
+      const ScaleRatio ratio = EstimateRatio(triplet.view);
       normalized.push_back(std::abs(ratio.log_ratio - triplet.true_log_ratio) /
                            ratio.log_ratio_stddev);
       inside += normalized.back() < 1.96;
@@ -200,13 +188,13 @@ TEST(ScaleEstimator, StatedDeviationsHoldTheTruth) {
 
 TEST(ScaleEstimator, TheOrderOfTheFeaturesChangesNothing) {
   SyntheticTriplet triplet = MakeSyntheticTriplet(Mixed(0.5, 0.3), 3);
-  const ScaleRatio before = Estimate(triplet.view);
+  const ScaleRatio before = EstimateRatio(triplet.view);
   TripletView& view = triplet.view;
   std::reverse(view.points.begin(), view.points.end());
   std::reverse(view.lines.begin(), view.lines.end());
   std::reverse(view.lines_ij.begin(), view.lines_ij.end());
   std::reverse(view.lines_jk.begin(), view.lines_jk.end());
-  const ScaleRatio after = Estimate(view);
+  const ScaleRatio after = EstimateRatio(view);
   EXPECT_NEAR(before.log_ratio, after.log_ratio, 1e-9);
   EXPECT_NEAR(before.log_ratio_stddev, after.log_ratio_stddev, 1e-9);
   EXPECT_NEAR(before.log10_nfa, after.log10_nfa, 1e-9);
@@ -226,7 +214,7 @@ TEST(ScaleEstimator, NothingToGoByIsAVerdict) {
        {ScaleCriterion::kAContrario, ScaleCriterion::kFixedThreshold}) {
     ScaleOptions options;
     options.criterion = criterion;
-    EXPECT_EQ(Estimate(triplet.view, options).verdict,
+    EXPECT_EQ(EstimateRatio(triplet.view, options).verdict,
               RatioVerdict::kNoCandidates);
   }
 }
@@ -235,7 +223,7 @@ TEST(ScaleEstimator, ReversedDirectionsAreRejectedAndCounted) {
   SyntheticTriplet triplet = MakeSyntheticTriplet(Mixed(0, 0), 2);
   TripletView& view = triplet.view;
   view.geometry.cami_from_camj.translation *= -1;
-  const ScaleRatio ratio = Estimate(view);
+  const ScaleRatio ratio = EstimateRatio(view);
   EXPECT_EQ(ratio.verdict, RatioVerdict::kNoCandidates);
   EXPECT_GE(ratio.num_rejected_negative, 100);
 }

@@ -17,4 +17,6 @@ std::string DataFolder() {
   return std::filesystem::is_directory(folder, ignored) ? folder.string() : "";
 }
 
+std::string RoomFolder() { return SourceFolder() + "/sfm_data/samples/room"; }
+
 }  // namespace lowlap

@@ -12,4 +12,7 @@ std::string DataFolder();
 /// The folder of the sources, for the samples that come with them.
 std::string SourceFolder();
 
+/// The bundled room: photographs, their calibration, and true cameras.
+std::string RoomFolder();
+
 }  // namespace lowlap

@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "lowlap/synthetic/synthetic_scene.h"
+#include "synthetic/must_simulate.h"
 
 namespace lowlap {
 namespace {
 
-SyntheticScene MustSimulate(const SyntheticOptions& options) {
-  auto synthetic = Simulate(options);
-  EXPECT_TRUE(synthetic) << synthetic.error().message;
-  return *synthetic;
-}
+using testing::MustSimulate;
 
 TEST(PoseEvidence, RightMatchesOutdoChanceAndMoreOfThemMore) {
   SyntheticOptions options;

@@ -15,19 +15,15 @@
 #include "lowlap/synthetic/internal/coplanar_truth.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "support/matchers.h"
+#include "synthetic/must_simulate.h"
 
 namespace lowlap {
 namespace {
 
 using testing::IsOk;
+using testing::MustSimulate;
 using testing::RotationNear;
 using testing::VectorNear;
-
-SyntheticScene MustSimulate(const SyntheticOptions& options) {
-  Result<SyntheticScene> scene = Simulate(options);
-  EXPECT_THAT(scene, IsOk());
-  return std::move(scene).value();
-}
 
 double DistanceToLinePx(const Vec2& pixel, const Vec3& line) {
   return std::abs(line.dot(pixel.homogeneous())) / line.head<2>().norm();

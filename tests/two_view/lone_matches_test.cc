@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numeric>
 
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
 namespace {
 
+using testing::AllIndices;
 using ::testing::Contains;
 using testing::DirectionErrorDeg;
 using ::testing::Each;
@@ -23,20 +23,14 @@ using testing::TwoViewSceneOptions;
 
 const PoseRefinementOptions kLoss = {0.5, 50, {}, 0};
 
-std::vector<int> All(const PointPairs& pairs) {
-  std::vector<int> all(pairs.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
-
 TEST(Leverages, SumUpToTheUnknowns) {
   TwoViewSceneOptions options;
   options.noise_px = 0.3;
   const TwoViewScene scene = MakeTwoViewScene(options, 1);
   const PointPairs pairs = scene.Pairs();
   const RigidTransform pose =
-      RefineRelativePose(scene.cam2_from_cam1, pairs, All(pairs), kLoss);
-  const auto leverages = Leverages(pose, pairs, All(pairs), kLoss);
+      RefineRelativePose(scene.cam2_from_cam1, pairs, AllIndices(pairs), kLoss);
+  const auto leverages = Leverages(pose, pairs, AllIndices(pairs), kLoss);
   ASSERT_EQ(leverages.size(), static_cast<std::size_t>(pairs.size()));
   EXPECT_NEAR(std::accumulate(leverages.begin(), leverages.end(), 0.0), 5,
               1e-6);
@@ -55,8 +49,9 @@ TEST(LoneMatches, AreNoneAmongManyPoints) {
   const TwoViewScene scene = MakeTwoViewScene(options, 3);
   const PointPairs pairs = scene.Pairs();
   const RigidTransform pose =
-      RefineRelativePose(scene.cam2_from_cam1, pairs, All(pairs), kLoss);
-  EXPECT_EQ(BorneOutMatches(pose, pairs, All(pairs), kLoss), All(pairs));
+      RefineRelativePose(scene.cam2_from_cam1, pairs, AllIndices(pairs), kLoss);
+  EXPECT_EQ(BorneOutMatches(pose, pairs, AllIndices(pairs), kLoss),
+            AllIndices(pairs));
 }
 
 // All points but one are far: they say little of the direction, and the pose
@@ -77,10 +72,11 @@ TEST(LoneMatches, AWrongOneThatHoldsThePoseIsLeftOut) {
                       options.baseline * truth;
     pairs.x1.push_back(ray1);
     pairs.x2.push_back(ray2 / ray2.z() + Vec3(0, 40 / kFocalPx, 0));
-    const RigidTransform pose =
-        RefineRelativePose(scene.cam2_from_cam1, pairs, All(pairs), kLoss);
+    const RigidTransform pose = RefineRelativePose(scene.cam2_from_cam1, pairs,
+                                                   AllIndices(pairs), kLoss);
     ASSERT_LT(std::abs(SampsonResidual(pose, pairs)(wrong)), 1) << seed;
-    const auto borne_out = BorneOutMatches(pose, pairs, All(pairs), kLoss);
+    const auto borne_out =
+        BorneOutMatches(pose, pairs, AllIndices(pairs), kLoss);
     EXPECT_THAT(borne_out, Not(Contains(wrong))) << seed;
     const RigidTransform rest =
         RefineRelativePose(pose, pairs, borne_out, kLoss);

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <numeric>
 
 #include "lowlap/two_view/internal/search/rival_spread.h"
 #include "tests/two_view/two_view_scene.h"
@@ -11,18 +10,13 @@
 namespace lowlap {
 namespace {
 
+using testing::AllIndices;
 using testing::DirectionErrorDeg;
 using testing::kPlaneNormal;
 using testing::MakeTwoViewScene;
 using testing::RotationErrorDeg;
 using testing::TwoViewScene;
 using testing::TwoViewSceneOptions;
-
-std::vector<int> All(const PointPairs& pairs) {
-  std::vector<int> all(pairs.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
 
 TwoViewScene PlanarScene(double noise_px, std::uint64_t seed) {
   TwoViewSceneOptions options;
@@ -38,9 +32,10 @@ TEST(RefineOnPlane, FindsTheMotionOfPointsOnAPlane) {
   for (int seed = 0; seed < 10; ++seed) {
     const TwoViewScene scene = PlanarScene(0, seed);
     const PointPairs pairs = scene.Pairs();
-    ScenePlane plane{kPlaneNormal + Vec3(0.01, -0.01, 0.01), All(pairs)};
-    const RigidTransform found = RefineOnPlane(
-        MovedPose(scene.cam2_from_cam1, step), pairs, All(pairs), {}, &plane);
+    ScenePlane plane{kPlaneNormal + Vec3(0.01, -0.01, 0.01), AllIndices(pairs)};
+    const RigidTransform found =
+        RefineOnPlane(MovedPose(scene.cam2_from_cam1, step), pairs,
+                      AllIndices(pairs), {}, &plane);
     EXPECT_LT(RotationErrorDeg(found.rotation, scene.cam2_from_cam1.rotation),
               1e-4);
     EXPECT_LT(
@@ -56,13 +51,14 @@ TEST(RefineOnPlane, IsBetterThanEpipolarLinesAlone) {
     const TwoViewScene scene = PlanarScene(0.5, seed);
     const PointPairs pairs = scene.Pairs();
     const RigidTransform& truth = scene.cam2_from_cam1;
-    ScenePlane plane{kPlaneNormal, All(pairs)};
+    ScenePlane plane{kPlaneNormal, AllIndices(pairs)};
     const auto error = [&](const RigidTransform& pose) {
       return DirectionErrorDeg(pose.translation, truth.translation);
     };
     with_plane +=
-        error(RefineOnPlane(truth, pairs, All(pairs), {}, &plane)) / 50;
-    without += error(RefineRelativePose(truth, pairs, All(pairs), {})) / 50;
+        error(RefineOnPlane(truth, pairs, AllIndices(pairs), {}, &plane)) / 50;
+    without +=
+        error(RefineRelativePose(truth, pairs, AllIndices(pairs), {})) / 50;
   }
   EXPECT_LT(with_plane, 0.8 * without);
 }
@@ -73,9 +69,9 @@ TEST(CovarianceOnPlane, StatesTheSpreadOfTheMotion) {
   for (int seed = 0; seed < kNumTrials; ++seed) {
     const TwoViewScene scene = PlanarScene(0.5, seed);
     const PointPairs pairs = scene.Pairs();
-    ScenePlane plane{kPlaneNormal, All(pairs)};
-    const RigidTransform found =
-        RefineOnPlane(scene.cam2_from_cam1, pairs, All(pairs), {}, &plane);
+    ScenePlane plane{kPlaneNormal, AllIndices(pairs)};
+    const RigidTransform found = RefineOnPlane(scene.cam2_from_cam1, pairs,
+                                               AllIndices(pairs), {}, &plane);
     const auto covariance = CovarianceOnPlane(found, pairs, plane, {});
     ASSERT_TRUE(covariance);
     const Vec5 error = PoseError(found, scene.cam2_from_cam1);
@@ -97,8 +93,9 @@ TEST(RefineOnPlane, PointsOffThePlaneCountWithTheirEpipolarLines) {
   for (int i = 20; i < 60; ++i) plane.inliers.push_back(i);
   Vec5 step;
   step << 0.01, -0.005, 0.01, 0.02, -0.02;
-  const RigidTransform found = RefineOnPlane(
-      MovedPose(scene.cam2_from_cam1, step), pairs, All(pairs), {}, &plane);
+  const RigidTransform found =
+      RefineOnPlane(MovedPose(scene.cam2_from_cam1, step), pairs,
+                    AllIndices(pairs), {}, &plane);
   EXPECT_LT(
       DirectionErrorDeg(found.translation, scene.cam2_from_cam1.translation),
       1e-4);

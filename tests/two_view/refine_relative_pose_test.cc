@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
-#include <numeric>
 
 #include "lowlap/geometry/internal/epipolar.h"
 #include "tests/two_view/two_view_scene.h"
@@ -12,16 +11,11 @@
 namespace lowlap {
 namespace {
 
+using testing::AllIndices;
 using testing::DirectionErrorDeg;
 using testing::MakeTwoViewScene;
 using testing::RotationErrorDeg;
 using testing::TwoViewSceneOptions;
-
-std::vector<int> All(const PointPairs& pairs) {
-  std::vector<int> all(pairs.size());
-  std::iota(all.begin(), all.end(), 0);
-  return all;
-}
 
 // One pair of arbitrary rays, with or without shapes of their errors.
 PointPairs OnePair(Random& random, bool round) {
@@ -102,7 +96,7 @@ TEST(RefineRelativePose, ConvergesToTheTruthWithoutNoise) {
   offset << 0.02, -0.03, 0.01, 0.05, -0.04;
   const RigidTransform refined =
       RefineRelativePose(MovedPose(scene.cam2_from_cam1, offset), pairs,
-                         All(pairs), {5.0, 50, {}, 0});
+                         AllIndices(pairs), {5.0, 50, {}, 0});
   EXPECT_LT(RotationErrorDeg(refined.rotation, scene.cam2_from_cam1.rotation),
             1e-7);
   EXPECT_LT(
@@ -117,7 +111,7 @@ TEST(RefineRelativePose, IsHardlyMovedByOutliers) {
   const auto scene = MakeTwoViewScene(options, 4);
   const PointPairs pairs = scene.Pairs();
   const RigidTransform refined = RefineRelativePose(
-      scene.cam2_from_cam1, pairs, All(pairs), {0.7, 50, {}, 0});
+      scene.cam2_from_cam1, pairs, AllIndices(pairs), {0.7, 50, {}, 0});
   EXPECT_LT(RotationErrorDeg(refined.rotation, scene.cam2_from_cam1.rotation),
             0.1);
 }
@@ -142,9 +136,9 @@ TEST(RelativePoseCovariance, IsTheScatterOfRepeatedEstimates) {
     const auto scene = MakeTwoViewScene(options, 1000 + trial);
     const PointPairs pairs = scene.Pairs();
     const RigidTransform refined = RefineRelativePose(
-        scene.cam2_from_cam1, pairs, All(pairs), {1.0, 50, {}, 0});
-    const auto covariance =
-        RelativePoseCovariance(refined, pairs, All(pairs), {1.0, 50, {}, 0});
+        scene.cam2_from_cam1, pairs, AllIndices(pairs), {1.0, 50, {}, 0});
+    const auto covariance = RelativePoseCovariance(
+        refined, pairs, AllIndices(pairs), {1.0, 50, {}, 0});
     ASSERT_TRUE(covariance);
     // The error that leads from the estimate to the truth, in its own chart.
     Vec5 error;

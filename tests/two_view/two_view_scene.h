@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numeric>
 #include <vector>
 
 #include "lowlap/core/internal/random.h"
@@ -103,6 +104,13 @@ inline double RotationErrorDeg(const Mat3& a, const Mat3& b) {
 }
 inline double DirectionErrorDeg(const Vec3& a, const Vec3& b) {
   return DegFromRad(AngleBetween(a, b));
+}
+
+/// The indices of all pairs.
+inline std::vector<int> AllIndices(const PointPairs& pairs) {
+  std::vector<int> all(pairs.size());
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
 }  // namespace lowlap::testing

@@ -9,6 +9,7 @@
 #include <set>
 #include <vector>
 
+#include "averaging/rigidity/scene_with_edges.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/types.h"
 
@@ -17,16 +18,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
-
-Scene SceneWithEdges(std::uint32_t num_views,
-                     const std::vector<ViewPair>& edges) {
-  Scene scene;
-  for (std::uint32_t view = 0; view < num_views; ++view) {
-    scene.views[view] = View();
-  }
-  for (const ViewPair& edge : edges) scene.relative_poses[edge].views = edge;
-  return scene;
-}
 
 ScaleRatio& AddRatio(ViewId first, ViewId middle, ViewId last, Scene* scene) {
   ScaleRatio ratio;
@@ -187,9 +178,6 @@ TEST(Diagnose, HingesAreWhatTheNullSpaceFallsApartWithout) {
   }
   EXPECT_GT(num_hinges, 50);
 }
-
-const std::vector<ViewPair> kTwoTriangles = {{0, 1}, {0, 2}, {1, 2},
-                                             {2, 3}, {2, 4}, {3, 4}};
 
 TEST(Diagnose, PartsThatShareTwoViewsNeedNoRatio) {
   // Triangle 0-1-2, and the strip of triangles 0-3-4-5-6-1, share views 0 and 1

@@ -4,20 +4,10 @@
 
 #include <algorithm>
 
+#include "averaging/rigidity/scene_with_edges.h"
+
 namespace lowlap {
 namespace {
-
-Scene SceneWithEdges(std::uint32_t num_views,
-                     const std::vector<ViewPair>& edges) {
-  Scene scene;
-  for (std::uint32_t view = 0; view < num_views; ++view) {
-    scene.views[view] = View();
-  }
-  for (const ViewPair& edge : edges) {
-    scene.relative_poses[edge].views = edge;
-  }
-  return scene;
-}
 
 ViewGraph Graph(std::uint32_t num_views, const std::vector<ViewPair>& edges) {
   return ViewGraph(SceneWithEdges(num_views, edges));

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "averaging/rigidity/scene_with_edges.h"
+
 namespace lowlap {
 namespace {
 
@@ -10,9 +12,6 @@ using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
 using Edges = std::vector<ViewPair>;
-
-// Views 0 to 4: triangles 0-1-2 and 2-3-4.
-const Edges kTwoTriangles = {{0, 1}, {0, 2}, {1, 2}, {2, 3}, {2, 4}, {3, 4}};
 
 ScaleRatio RatioOf(const ViewTriplet& views, double log10_nfa = -12) {
   ScaleRatio ratio;

@@ -11,22 +11,6 @@
 namespace lowlap {
 namespace {
 
-Scene ToScene(const RotationGraph& graph) {
-  Scene scene;
-  for (const RotationMeasurement& m : graph.measurements) {
-    RelativePose pose;
-    pose.views = {static_cast<ViewId>(std::min(m.first, m.second)),
-                  static_cast<ViewId>(std::max(m.first, m.second))};
-    pose.rotation = m.first < m.second ? m.second_from_first
-                                       : Mat3(m.second_from_first.transpose());
-    pose.log10_nfa = m.cost;
-    pose.covariance =
-        Eigen::Matrix<double, 5, 5>::Identity() * (m.stddev_rad * m.stddev_rad);
-    scene.relative_poses[pose.views] = pose;
-  }
-  return scene;
-}
-
 /// Makes the pair's own motion wrong by `turn`; the right one, with a direction
 /// and evidence of its own, becomes its alternative.
 void PutWrongMotionFirst(const ViewPair& views, const Vec3& turn,

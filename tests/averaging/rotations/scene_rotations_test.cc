@@ -12,28 +12,6 @@ namespace {
 
 constexpr double kReach = 5.0;
 
-// The graph as a scene; evidence from the costs, deviations as stated.
-Scene ToScene(const RotationGraph& graph) {
-  Scene scene;
-  for (std::size_t n = 0; n < graph.truth.size(); ++n) {
-    View view;
-    view.filename = std::to_string(n);
-    scene.views[static_cast<ViewId>(n)] = view;
-  }
-  for (const RotationMeasurement& m : graph.measurements) {
-    RelativePose pose;
-    pose.views = {static_cast<ViewId>(std::min(m.first, m.second)),
-                  static_cast<ViewId>(std::max(m.first, m.second))};
-    pose.rotation = m.first < m.second ? m.second_from_first
-                                       : Mat3(m.second_from_first.transpose());
-    pose.log10_nfa = m.cost;
-    pose.covariance =
-        Eigen::Matrix<double, 5, 5>::Identity() * (m.stddev_rad * m.stddev_rad);
-    scene.relative_poses[pose.views] = pose;
-  }
-  return scene;
-}
-
 SceneRotations Average(const RotationGraph& graph) {
   const auto result =
       AverageSceneRotations(ToScene(graph), RotationAveragingOptions(), kReach);

@@ -11,8 +11,8 @@
 namespace lowlap {
 namespace {
 
-std::vector<Vec3> Solve(const DirectionPart& part,
-                        const BataOptions& options = {}) {
+std::vector<Vec3> SolveBata(const DirectionPart& part,
+                            const BataOptions& options = {}) {
   int iterations = 0;
   const auto centers = SolveBata(part, options, RunContext(), &iterations);
   EXPECT_TRUE(centers);
@@ -59,7 +59,7 @@ TEST_P(Bata, DescendsWithEveryRound) {
   double last = AngleObjective(small_.part, *start);
   for (const int rounds : {1, 2, 5, 10}) {
     const double cost =
-        AngleObjective(small_.part, Solve(small_.part, {rounds}));
+        AngleObjective(small_.part, SolveBata(small_.part, {rounds}));
     EXPECT_LE(cost, last * (1 + 1e-12)) << rounds;
     last = cost;
   }
@@ -72,7 +72,7 @@ TEST_P(Bata, GoesTowardsTheMinimum) {
   ASSERT_TRUE(jointly);
   const double least = AngleObjective(small_.part, *jointly);
   // A hundred steps of block descent do not quite reach the minimum.
-  const double by_blocks = AngleObjective(small_.part, Solve(small_.part));
+  const double by_blocks = AngleObjective(small_.part, SolveBata(small_.part));
   EXPECT_GE(by_blocks, least * (1 - 1e-6));
   EXPECT_LE(by_blocks, least * 1.02);
 }
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, Bata, ::testing::Range(1, 5));
 
 TEST(SolveBata, LeavesExactDirectionsExact) {
   const SmallDirections small = PartOf(MakeTenViews(7));
-  EXPECT_LT(GaugeFreeError(small.made.centers, Solve(small.part),
+  EXPECT_LT(GaugeFreeError(small.made.centers, SolveBata(small.part),
                            std::vector<bool>(10, true)),
             1e-8);
 }

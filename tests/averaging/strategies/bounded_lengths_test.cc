@@ -43,8 +43,8 @@ double MinimiseBounded(const DirectionPart& part, ceres::LossFunction* loss,
   return SolveWithCeres(&problem);
 }
 
-std::vector<Vec3> Solve(const DirectionPart& part,
-                        const BoundedLengthsOptions& options) {
+std::vector<Vec3> SolveBounded(const DirectionPart& part,
+                               const BoundedLengthsOptions& options) {
   int iterations = 0;
   const auto centers =
       SolveBoundedLengths(part, options, RunContext(), &iterations);
@@ -73,7 +73,7 @@ class BoundedLengths : public ::testing::TestWithParam<int> {
 
 TEST_P(BoundedLengths, LeastSquaresMeetCeres) {
   const std::vector<Vec3> ours =
-      Solve(small_.part, BoundedLengthsOptions::L2Chordal());
+      SolveBounded(small_.part, BoundedLengthsOptions::L2Chordal());
   std::vector<Vec3> theirs = small_.made.centers;
   const double cost = MinimiseBounded(small_.part, nullptr, &theirs);
   EXPECT_NEAR(BoundedObjective(small_.part, HUGE_VAL, ours), cost, 1e-9 * cost);
@@ -83,7 +83,8 @@ TEST_P(BoundedLengths, LeastSquaresMeetCeres) {
 TEST_P(BoundedLengths, SoftL1MeetsCeres) {
   constexpr double kWidth = 0.01;
   const double ours = BoundedObjective(
-      small_.part, kWidth, Solve(small_.part, BoundedLengthsOptions::SoftL1()));
+      small_.part, kWidth,
+      SolveBounded(small_.part, BoundedLengthsOptions::SoftL1()));
   std::vector<Vec3> centers = small_.made.centers;
   double theirs = 0;
   for (const double width : {1.0, 0.1, kWidth}) {
@@ -95,7 +96,7 @@ TEST_P(BoundedLengths, SoftL1MeetsCeres) {
 
 TEST_P(BoundedLengths, LudMeetsCeres) {
   const double ours = UnsquaredSum(
-      small_.part, Solve(small_.part, BoundedLengthsOptions::Lud()));
+      small_.part, SolveBounded(small_.part, BoundedLengthsOptions::Lud()));
   std::vector<Vec3> centers = small_.made.centers;
   for (const double width : {1.0, 0.1, 0.01, 1e-3, 1e-4, 1e-5}) {
     MinimiseBounded(small_.part, new ceres::SoftLOneLoss(width), &centers);
@@ -146,7 +147,7 @@ class BoundedMethods : public ::testing::TestWithParam<double> {
 
 TEST_P(BoundedMethods, ExactDirectionsLeaveNoResidualAndNoShortLength) {
   const SmallDirections small = PartOf(MakeTenViews(7));
-  const std::vector<Vec3> centers = Solve(small.part, options_);
+  const std::vector<Vec3> centers = SolveBounded(small.part, options_);
   EXPECT_EQ(centers[0], Vec3(0, 0, 0));
   EXPECT_LT(
       GaugeFreeError(small.made.centers, centers, std::vector<bool>(10, true)),

@@ -20,20 +20,12 @@ TranslationSolution Solve(const TranslationProblem& problem,
   return *solution;
 }
 
-double Error(const RandomProblem& made, const TranslationSolution& solution) {
-  std::vector<bool> placed;
-  for (const int component : solution.component) {
-    placed.push_back(component == 0);
-  }
-  return GaugeFreeError(made.centers, solution.center_in_world, placed);
-}
-
 TEST(GlobalPositioning, ExactFromRandomStarts) {
   const RandomProblem made = MakeRayRing(20, 400, 5, true, 1);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     const TranslationSolution solution = Solve(made.problem, {}, seed);
     EXPECT_EQ(solution.component, std::vector<int>(20, 0));
-    EXPECT_LT(Error(made, solution), 1e-6) << seed;
+    EXPECT_LT(ErrorOfFirstPart(made, solution), 1e-6) << seed;
   }
 }
 
@@ -45,7 +37,7 @@ TEST(GlobalPositioning, ExactFromAStart) {
     options.start.push_back(center + RandomVector(&random, 0.5));
   }
   const TranslationSolution from_start = Solve(made.problem, options);
-  EXPECT_LT(Error(made, from_start), 1e-6);
+  EXPECT_LT(ErrorOfFirstPart(made, from_start), 1e-6);
   EXPECT_LT(from_start.num_iterations, Solve(made.problem).num_iterations);
 }
 
@@ -59,7 +51,7 @@ TEST(GlobalPositioning, NoiseAndWrongRays) {
           (seen.ray_in_world + RandomVector(&random, size)).normalized();
     }
   }
-  EXPECT_LT(Error(made, Solve(made.problem)), 0.01);
+  EXPECT_LT(ErrorOfFirstPart(made, Solve(made.problem)), 0.01);
 }
 
 // Every fifth track sees another point in one of its views. The optimum of the
@@ -80,8 +72,8 @@ TEST(GlobalPositioning, WrongTracksAreFoundAndDropped) {
   }
   GlobalPositioningOptions once;
   once.max_angle_deg = 180;
-  const double error = Error(made, Solve(made.problem));
-  const double published = Error(made, Solve(made.problem, once));
+  const double error = ErrorOfFirstPart(made, Solve(made.problem));
+  const double published = ErrorOfFirstPart(made, Solve(made.problem, once));
   EXPECT_LT(error, 0.002);
   EXPECT_GT(published, 3 * error);
   EXPECT_EQ(Solve(made.problem).num_components, 1);
@@ -125,7 +117,7 @@ TEST(GlobalPositioning, PartsWithoutCommonPointsAreComponents) {
   std::vector<int> expected(16, 1);
   std::fill(expected.begin(), expected.begin() + 10, 0);
   EXPECT_EQ(solution.component, expected);
-  EXPECT_LT(Error(made, solution), 1e-4);
+  EXPECT_LT(ErrorOfFirstPart(made, solution), 1e-4);
 }
 
 TEST(GlobalPositioning, SameSeedSameResult) {

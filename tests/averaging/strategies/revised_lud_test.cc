@@ -7,7 +7,8 @@
 namespace lowlap {
 namespace {
 
-std::vector<Vec3> Solve(const DirectionPart& part, int max_iterations = 200) {
+std::vector<Vec3> SolveRevisedLud(const DirectionPart& part,
+                                  int max_iterations = 200) {
   int iterations = 0;
   const auto centers =
       SolveRevisedLud(part, {max_iterations}, RunContext(), &iterations);
@@ -34,7 +35,7 @@ class RevisedLud : public ::testing::TestWithParam<int> {
 
 TEST_P(RevisedLud, IsALocalAndSoGlobalMinimum) {
   // The program is convex: no random step within the constraint goes down.
-  const std::vector<Vec3> centers = Solve(small_.part);
+  const std::vector<Vec3> centers = SolveRevisedLud(small_.part);
   const auto cost = [&](const std::vector<Vec3>& at) {
     double sum = 0;
     for (const DirectionEdge& edge : small_.part.edges) {
@@ -63,7 +64,7 @@ TEST_P(RevisedLud, IsALocalAndSoGlobalMinimum) {
 
 TEST_P(RevisedLud, KeepsItsConstraintFromTheFirstIterationOn) {
   for (const int iterations : {1, 2, 200}) {
-    const std::vector<Vec3> centers = Solve(small_.part, iterations);
+    const std::vector<Vec3> centers = SolveRevisedLud(small_.part, iterations);
     EXPECT_EQ(centers[0], Vec3(0, 0, 0));
     EXPECT_NEAR(Reach(small_.part, centers), 25, 1e-9);
   }
@@ -73,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Seeds, RevisedLud, ::testing::Range(1, 5));
 
 TEST(SolveRevisedLud, GivesATriangleTheMeanLengthOne) {
   const SmallDirections triangle = MakeTriangle();
-  const std::vector<Vec3> centers = Solve(triangle.part);
+  const std::vector<Vec3> centers = SolveRevisedLud(triangle.part);
   for (std::size_t n = 0; n < 3; ++n) {
     EXPECT_LT((centers[n] - triangle.made.centers[n]).norm(), 1e-9);
   }
@@ -81,7 +82,7 @@ TEST(SolveRevisedLud, GivesATriangleTheMeanLengthOne) {
 
 TEST(SolveRevisedLud, IsExactOnExactDirections) {
   const SmallDirections small = PartOf(MakeTenViews(7));
-  EXPECT_LT(GaugeFreeError(small.made.centers, Solve(small.part),
+  EXPECT_LT(GaugeFreeError(small.made.centers, SolveRevisedLud(small.part),
                            std::vector<bool>(10, true)),
             1e-8);
 }

@@ -106,9 +106,9 @@ TEST(RatioNfa, OneUnitThatAgreesIsTheSampleOfTheOthers) {
   EXPECT_EQ(nfa.kinds[1].log10_nfa, 0);
 }
 
-class Pairs : public Evidence {
+class CertainPairs : public Evidence {
  public:
-  Pairs() {
+  CertainPairs() {
     StartPairs(2);
     AddPair({CandidateStatus::kValid, 0.0, 0.1}, 0, {0, 0});
     AddPair({CandidateStatus::kValid, 1.0, 0.1}, 1, {1, 1});
@@ -123,7 +123,7 @@ class Pairs : public Evidence {
 
 TEST(RatioNfa, OnePairOfTheSurestTierIsNoWitnessOfItself) {
   TripletEvidence evidence;
-  evidence.kinds.push_back({"", std::make_shared<Pairs>()});
+  evidence.kinds.push_back({"", std::make_shared<CertainPairs>()});
   const RatioSupport support(evidence);
   const RatioNfaCriterion criterion(support, {}, NfaForm::kCalibrated);
   const LadderCounts one = From(0, 1);
@@ -165,7 +165,7 @@ TEST(RatioNfa, IsNeverBelowTheBoundFromCountsThatItDoesNotExceed) {
 // The promise: of unrelated ratios, the share whose best NFA is below epsilon
 // is below epsilon, also if one of them is far surer than the others.
 TEST(RatioNfa, IsBelowEpsilonInFewerThanThatShareOfUnrelatedTriplets) {
-  constexpr int kTriplets = 2000;
+  constexpr int kNumTriplets = 2000;
   constexpr double kEpsilon = 0.1;
   for (const double surest : {1e-6, 1e-3, 0.1}) {
     Random random(3);
@@ -177,14 +177,14 @@ TEST(RatioNfa, IsBelowEpsilonInFewerThanThatShareOfUnrelatedTriplets) {
       return Even(log_ratios, width);
     };
     int false_alarms = 0;
-    for (int n = 0; n < kTriplets; ++n) {
+    for (int n = 0; n < kNumTriplets; ++n) {
       const RatioSupport support = SupportOf(
           {unrelated(1, surest), unrelated(5, 0.01), unrelated(3, 0.05)});
       const RatioNfaCriterion criterion(support, {}, NfaForm::kCalibrated);
       false_alarms +=
           SweepRatios(support, criterion).nfa.log10_nfa < std::log10(kEpsilon);
     }
-    EXPECT_LE(false_alarms, kEpsilon * kTriplets) << surest;
+    EXPECT_LE(false_alarms, kEpsilon * kNumTriplets) << surest;
   }
 }
 

@@ -17,9 +17,9 @@ using testing::EvidenceOf;
 
 // Three pairs in two tiers; the first two share a unit. Each has an error of
 // its own, whatever the ratio is.
-class Pairs : public Evidence {
+class ThreePairs : public Evidence {
  public:
-  Pairs() {
+  ThreePairs() {
     StartPairs(2);
     const RatioCandidate ratio{CandidateStatus::kValid, 0.5, 0.1};
     AddPair(ratio, 0, {0, 0});
@@ -32,8 +32,9 @@ class Pairs : public Evidence {
 };
 
 TEST(RatioSupport, LeavesOutKindsWithoutCandidates) {
-  const RatioSupport support(EvidenceOf({nullptr, Even({}, 1), Even({1}, 1),
-                                         nullptr, std::make_shared<Pairs>()}));
+  const RatioSupport support(
+      EvidenceOf({nullptr, Even({}, 1), Even({1}, 1), nullptr,
+                  std::make_shared<ThreePairs>()}));
   ASSERT_EQ(support.num_kinds(), 2);
   EXPECT_EQ(support.PlaceOf(0), 2);
   EXPECT_EQ(support.PlaceOf(1), 4);
@@ -73,7 +74,7 @@ TEST(RatioSupport, CountsErrorsBelowEveryThreshold) {
 }
 
 TEST(RatioSupport, CountsAUnitOfPairsOnceByTheLeastError) {
-  const RatioSupport support(EvidenceOf({std::make_shared<Pairs>()}));
+  const RatioSupport support(EvidenceOf({std::make_shared<ThreePairs>()}));
   EXPECT_EQ(support.TierOf(0, 1), 0);
   EXPECT_EQ(support.TierOf(0, 2), 1);
   SupportWorkspace workspace;

@@ -179,9 +179,9 @@ TEST(Evidence, BoundsByDefaultHoldErrorsThatRiseFromTheirOwnRatio) {
   }
 }
 
-class Pairs : public Evidence {
+class PairsInTwoTiers : public Evidence {
  public:
-  Pairs() {
+  PairsInTwoTiers() {
     StartPairs(2);
     const RatioCandidate ratio{CandidateStatus::kValid, 0.1, 0.1};
     AddPair(ratio, 0, {7, 2});
@@ -192,7 +192,7 @@ class Pairs : public Evidence {
 };
 
 TEST(Evidence, NumbersTheUnitsOfPairsAsTheyFirstOccur) {
-  const Pairs evidence;
+  const PairsInTwoTiers evidence;
   const EvidenceUnits& units = evidence.units();
   EXPECT_THAT(units.of_pair[0], ::testing::ElementsAre(0, 0, 1));
   EXPECT_THAT(units.of_pair[1], ::testing::ElementsAre(0, 1, 0));
