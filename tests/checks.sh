@@ -2,7 +2,7 @@
 # file, and has set `jobs` and the functions step, configure and compile.
 
 # install label: what is tested there is the installation, not the code.
-left_out="slow|install"
+left_out="slow|long|install"
 
 # sanitizer_build FOLDER SANITIZERS OPTION...
 # With -O1 the reports name the right lines, and the tests are quick enough.

@@ -6,6 +6,8 @@
 #   tests/run.sh --tidy      cppcheck and clang-tidy on the sources as well (some
 #                            minutes more)
 #   tests/run.sh --no-slow   without the tests that work on photographs
+#   tests/run.sh --long      those that count over a thousand simulated scenes as
+#                            well (some minutes more)
 #
 # Instead, in builds of their own, without the tests that work on photographs:
 #
@@ -23,14 +25,16 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 tidy=false
 check=
-ctest_options=()
+slow=true
+long=false
 for option in "$@"; do
   case $option in
     --tidy) tidy=true ;;
     --sanitize | --coverage | --fuzz) check=${option#--} ;;
-    --no-slow) ctest_options+=(--label-exclude slow) ;;
+    --no-slow) slow=false ;;
+    --long) long=true ;;
     *)
-      sed -n '2,22s/^# \{0,1\}//p' tests/run.sh >&2
+      sed -n '2,24s/^# \{0,1\}//p' tests/run.sh >&2
       echo "unknown option $option" >&2
       exit 2
       ;;
@@ -94,5 +98,8 @@ if $tidy; then
 fi
 
 step "Testing"
+left_out=()
+$slow || left_out+=(slow)
+$long || left_out+=(long)
 ctest --test-dir "$build" --output-on-failure --parallel "$jobs" \
-  "${ctest_options[@]}"
+  ${left_out:+--label-exclude "$(IFS='|'; echo "${left_out[*]}")"}

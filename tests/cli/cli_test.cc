@@ -25,9 +25,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-std::string RoomImages() {
-  return SourceFolder() + "/sfm_data/samples/room/images";
-}
+std::string RoomImages() { return RoomFolder() + "/images"; }
 
 TEST_F(Cli, HelpNamesEveryCommand) {
   const Outcome help = Lowlap("--help");
@@ -256,7 +254,7 @@ std::vector<std::string> EntriesOf(const std::string& cache,
 
 TEST_F(Cli, AnInterruptedOrKilledRunGoesOnFromItsCache) {
   const std::string run = RoomImages() + " --intrinsics " + RoomImages() +
-                          "/K.txt --pairs chain --threads 1 -o ";
+                          "/K.txt --pairs chain --max-tilt 1 --threads 1 -o ";
   const Outcome whole =
       Lowlap("run " + run + Path("whole") + " --cache " + Path("cache"));
   ASSERT_EQ(whole.exit_code, 0) << whole.output;

@@ -32,7 +32,7 @@ class ReadOnly(FaultCase):
         """Commands that write to the folder `out`."""
         return [
             ["run", self.images, "--intrinsics", self.images / "K.txt",
-             "--max-tilt", "1.5", "-o", self.out],
+             "--max-tilt", "1", "-o", self.out],
             ["solve", self.room, "-o", self.out],
             ["merge", self.model / "scene.lowlap", "--scene", self.room,
              "-o", self.out],
@@ -92,7 +92,7 @@ class Vanishing(FaultCase):
         self.random = random.Random(SEED)
         self.images = copy_photographs(self.folder / "images")
         self.arguments = ["run", self.images, "--intrinsics",
-                          self.images / "K.txt", "--max-tilt", "1.5",
+                          self.images / "K.txt", "--max-tilt", "1",
                           "-o", self.folder / "out",
                           "--cache", self.folder / "cache"]
         begin = time.monotonic()

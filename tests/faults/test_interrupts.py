@@ -10,7 +10,7 @@ import unittest
 from support import FaultCase, is_temporary, start
 
 SEED = 11
-INTERRUPTS = 30
+INTERRUPTS = 20
 START_S = 0.6  # until the command has loaded and answers itself
 LONGEST_S = 6
 WITHIN_S = 1.0  # and what a kill takes, on a machine that is busy

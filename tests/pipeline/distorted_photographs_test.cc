@@ -22,8 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::IsOk;
 
-std::string Room() { return SourceFolder() + "/sfm_data/samples/room"; }
-
 // The lens that shows the corners of the pinhole's photograph in its own.
 Intrinsic Distorted(const Intrinsic& pinhole, double k1) {
   Intrinsic lens = pinhole;
@@ -61,6 +59,7 @@ struct Quality {
 Quality Measure(Scene scene) {
   MeasurementOptions options;
   options.pairs = "cycle";
+  options.features.tilts.max_tilt = 1;
   StageLog stages;
   Quality quality;
   EXPECT_THAT(MeasureImages(&scene, options, {}, &stages), IsOk());
@@ -69,7 +68,7 @@ Quality Measure(Scene scene) {
     quality.points += pose.point_inliers.size();
     quality.lines += pose.line_inliers.size();
   }
-  const auto truth = strecha::ReadGroundTruth(Room());
+  const auto truth = strecha::ReadGroundTruth(RoomFolder());
   EXPECT_THAT(truth, IsOk());
   const RelativePoseEvaluation errors =
       EvaluateRelativePoses(scene, *GroundTruthByName(scene, *truth));
@@ -106,8 +105,8 @@ TEST(DistortedPhotographs, AreMeasuredAsWellAsStraightOnes) {
           .string();
   IntrinsicSource source;
   source.calibration =
-      *strecha::ReadCalibrationMatrix(Room() + "/images/K.txt");
-  const auto straight = SceneFromImages(Room() + "/images", source, {});
+      *strecha::ReadCalibrationMatrix(RoomFolder() + "/images/K.txt");
+  const auto straight = SceneFromImages(RoomFolder() + "/images", source, {});
   ASSERT_THAT(straight, IsOk());
   // Resampled as well: that alone moves the medians of eleven pairs.
   const Scene hardly = SeenThrough(*straight, -0.001, folder + "/hardly");

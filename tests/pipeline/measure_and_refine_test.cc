@@ -17,13 +17,13 @@ using testing::IsOk;
 Scene RoomWithWrongFocalLength() {
   IntrinsicSource source;
   source.focal_px = 850;
-  return *SceneFromImages(SourceFolder() + "/sfm_data/samples/room/images",
-                          source, {});
+  return *SceneFromImages(RoomFolder() + "/images", source, {});
 }
 
 MeasurementOptions ChainOfPhotographs() {
   MeasurementOptions options;
   options.pairs = "chain";
+  options.features.tilts.max_tilt = 1;
   options.cache_folder = ::testing::TempDir() + "/measure_and_refine_cache";
   return options;
 }

@@ -20,8 +20,6 @@ namespace {
 
 using testing::IsOk;
 
-std::string Room() { return SourceFolder() + "/sfm_data/samples/room"; }
-
 // Sampson distances of all point inliers under the true poses.
 std::vector<double> TrueResidualsPx(const Scene& scene,
                                     const GroundTruth& truth) {
@@ -49,11 +47,12 @@ std::vector<double> TrueResidualsPx(const Scene& scene,
 TEST(RefinePoints, BringsMatchesNearerToTheTrueGeometry) {
   IntrinsicSource source;
   source.calibration =
-      *strecha::ReadCalibrationMatrix(Room() + "/images/K.txt");
-  const auto scene = SceneFromImages(Room() + "/images", source, {});
+      *strecha::ReadCalibrationMatrix(RoomFolder() + "/images/K.txt");
+  const auto scene = SceneFromImages(RoomFolder() + "/images", source, {});
   ASSERT_THAT(scene, IsOk());
   MeasurementOptions options;
   options.pairs = "chain";
+  options.features.tilts.max_tilt = 1;
   StageLog stages;
   const auto measured = MatchImages(*scene, options, RunContext(), &stages);
   ASSERT_THAT(measured, IsOk());
@@ -77,7 +76,7 @@ TEST(RefinePoints, BringsMatchesNearerToTheTrueGeometry) {
               IsOk());
   EXPECT_TRUE(other_threads == refined);
 
-  const auto poses = strecha::ReadGroundTruth(Room());
+  const auto poses = strecha::ReadGroundTruth(RoomFolder());
   ASSERT_THAT(poses, IsOk());
   const auto truth = GroundTruthByName(*scene, *poses);
   ASSERT_THAT(truth, IsOk());

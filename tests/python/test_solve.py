@@ -197,11 +197,12 @@ class RunTest(unittest.TestCase):
         with tempfile.TemporaryDirectory() as folder:
             ours, theirs = Path(folder) / "module", Path(folder) / "command"
             cache = Path(folder) / "cache"
-            solution = lowlap.run(images, images / "K.txt", pairs="cycle", gt=truth,
-                                  cache=cache, output=ours)
+            solution = lowlap.run(images, images / "K.txt", pairs="cycle",
+                                  max_tilt=1, gt=truth, cache=cache, output=ours)
             subprocess.run(
                 [command, "run", images, "--intrinsics", images / "K.txt", "--pairs",
-                 "cycle", "--gt", truth, "--cache", cache, "--output", theirs],
+                 "cycle", "--max-tilt", "1", "--gt", truth, "--cache", cache,
+                 "--output", theirs],
                 check=True, capture_output=True)
             for name in ("sfm_data.json", "scene.lowlap", "cloud.ply", "report.html"):
                 self.assertEqual((ours / name).read_bytes(),
