@@ -6,8 +6,8 @@
 #   tests/run.sh --tidy      cppcheck and clang-tidy on the sources as well (some
 #                            minutes more)
 #   tests/run.sh --no-slow   without the tests that work on photographs
-#   tests/run.sh --long      those that count over a thousand simulated scenes as
-#                            well (some minutes more)
+#   tests/run.sh --long      those that count over many simulated scenes, or kill
+#                            and interrupt very often, as well (ten minutes more)
 #
 # Instead, in builds of their own, without the tests that work on photographs:
 #

@@ -14,6 +14,8 @@ CASTLE = ROOT / "sfm_data/samples/castle-p19"
 DATA = Path(os.environ.get("LOWLAP_DATA", ROOT.parent / "shared/data"))
 COMMAND = os.environ["LOWLAP_COMMAND"]
 FAULTY_CALLS = os.environ["LOWLAP_FAULTY_CALLS"]
+# Three times as many random moments, for ctest --label-regex long.
+IS_LONG = "LOWLAP_LONG" in os.environ
 ALL_CALLS = "open,write,mkdir,sync,rename,link"
 
 

@@ -8,7 +8,7 @@ import subprocess
 import time
 import unittest
 
-from support import (COMMAND, FaultCase, copy_photographs, environment,
+from support import (COMMAND, IS_LONG, FaultCase, copy_photographs, environment,
                      files_in, run, start)
 
 SEED = 5
@@ -115,7 +115,7 @@ class Vanishing(FaultCase):
         return process.returncode, messages
 
     def test_output_and_cache(self):
-        for names in (["out"], ["cache"], ["out", "cache"]) * 4:
+        for names in (["out"], ["cache"], ["out", "cache"]) * (6 if IS_LONG else 2):
             shutil.rmtree(self.folder / "cache", ignore_errors=True)
             code, messages = self.remove_while_running(names)
             self.assertIn(code, (0, 1), messages)

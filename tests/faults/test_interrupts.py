@@ -7,10 +7,10 @@ import subprocess
 import time
 import unittest
 
-from support import FaultCase, is_temporary, start
+from support import IS_LONG, FaultCase, is_temporary, start
 
 SEED = 11
-INTERRUPTS = 20
+INTERRUPTS = 30 if IS_LONG else 10
 START_S = 0.6  # until the command has loaded and answers itself
 LONGEST_S = 6
 WITHIN_S = 1.0  # and what a kill takes, on a machine that is busy

@@ -8,10 +8,11 @@ import subprocess
 import time
 import unittest
 
-from support import (FaultCase, copy_photographs, environment, is_temporary,
-                     run, start)
+from support import (IS_LONG, FaultCase, copy_photographs, environment,
+                     is_temporary, run, start)
 
 SEED = 20240607
+KILLS_OF_RUN, KILLS_OF_MERGE = (60, 40) if IS_LONG else (20, 10)
 KILLS_BEFORE_A_RESULT = 5
 PATIENCE_S = 20  # of a test on a machine that has much else to do
 
@@ -76,13 +77,15 @@ class Kills(FaultCase):
             self.check_same(broken, expected)
             shutil.rmtree(broken / self.random.choice(["cache", "out", "."]))
 
-    def test_run_goes_on_after_sixty_kills(self):
-        self.kill_often(self.arguments_of_run, self.folder / "whole", 60)
+    def test_run_goes_on_after_kills(self):
+        self.kill_often(self.arguments_of_run, self.folder / "whole",
+                        KILLS_OF_RUN)
 
-    def test_merge_goes_on_after_forty_kills(self):
+    def test_merge_goes_on_after_kills(self):
         shutil.copytree(self.folder / "whole/out", self.folder / "model")
         self.succeed(self.arguments_of_merge("merged"))
-        self.kill_often(self.arguments_of_merge, self.folder / "merged", 40)
+        self.kill_often(self.arguments_of_merge, self.folder / "merged",
+                        KILLS_OF_MERGE)
 
     def test_interrupted_runs_leave_nothing_behind(self):
         for with_signal in (signal.SIGINT, signal.SIGTERM) * 4:
