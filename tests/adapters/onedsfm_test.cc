@@ -28,8 +28,8 @@ class OneDSfmFolder : public ::testing::Test {
   void SetUp() override {
     Random random(1);
     const auto uniform = [&] {
-      return Vec3(random.Uniform(-1, 1), random.Uniform(-1, 1),
-                  random.Uniform(-1, 1));
+      return Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1),
+                  random.Uniform(-1, 1)};
     };
     for (int n = 0; n < kImages; ++n) {
       poses_.push_back({RotationFromAngleAxis(0.3 * uniform()), 2 * uniform()});

@@ -11,6 +11,7 @@
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "support/random_vectors.h"
 #include "test_scene.h"
 
 namespace lowlap {
@@ -122,7 +123,7 @@ void AddCommonErrors(double stddev_px, std::uint64_t seed, Scene* scene) {
     for (Vec2& point : features.points_px) {
       const std::pair<double, double> part(std::floor(point.x() / kPartPx),
                                            std::floor(point.y() / kPartPx));
-      const Vec2 drawn(random.Gaussian(stddev_px), random.Gaussian(stddev_px));
+      const Vec2 drawn = testing::GaussianVec2(random, stddev_px);
       point += errors.emplace(part, drawn).first->second;
     }
   }

@@ -6,6 +6,7 @@
 
 #include "tests/adjustment/planes_fixture.h"
 #include "tests/support/matchers.h"
+#include "tests/support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -93,7 +94,7 @@ TEST(PlaneFit, IsExactOnAPlane) {
   std::vector<FreeLandmark> landmarks;
   Random random(4);
   for (int n = 0; n < 10; ++n) {
-    Vec3 point(random.Gaussian(), random.Gaussian(), random.Gaussian());
+    Vec3 point = testing::GaussianVec3(random);
     point += (3 - normal.dot(point)) * normal;
     landmarks.push_back({false, n, {{point, 1e-6 * Mat3::Identity()}}, {}});
   }

@@ -6,6 +6,7 @@
 
 #include "lowlap/adjustment/internal/planes/free_landmark.h"
 #include "lowlap/core/internal/random.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 
@@ -35,8 +36,7 @@ class PlaneLandmarks {
 
  private:
   FreePlace Place(const Vec3& point) {
-    const Vec3 error(random_.Gaussian(), random_.Gaussian(),
-                     random_.Gaussian());
+    const Vec3 error = testing::GaussianVec3(random_);
     return {point + kStddev * error, kStddev * kStddev * Mat3::Identity()};
   }
 

@@ -7,6 +7,7 @@
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/synthetic/synthetic_scene.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -78,7 +79,7 @@ TEST(RelativePosePrior, HoldsTheRotationsOfAThinScene) {
   lowlap::Random random(3);
   for (auto& [id, landmark] : scene.structure) {
     for (auto& observation : landmark.observations) {
-      observation.pixel_px += Vec2(random.Gaussian(2), random.Gaussian(2));
+      observation.pixel_px += testing::GaussianVec2(random, 2);
       scene.features[observation.view].points_px[observation.feature] =
           observation.pixel_px;
     }

@@ -14,6 +14,7 @@
 #include "lowlap/adjustment/internal/costs/relative_pose_prior.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -294,9 +295,7 @@ TEST(ResidualsTest, WhatIsOnThePlaneHasNoDistance) {
 TEST(ResidualsTest, RelativePoseGradients) {
   const ceres::EigenQuaternionManifold quaternion;
   Random random(5);
-  const auto random_vector = [&] {
-    return Vec3(random.Gaussian(), random.Gaussian(), random.Gaussian());
-  };
+  const auto random_vector = [&] { return testing::GaussianVec3(random); };
   for (int trial = 0; trial < 20; ++trial) {
     Eigen::Quaterniond q1(RotationFromAngleAxis(random_vector()));
     Eigen::Quaterniond q2(RotationFromAngleAxis(random_vector()));

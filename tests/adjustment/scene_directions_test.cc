@@ -13,6 +13,7 @@
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/synthetic/synthetic_scene.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -47,8 +48,7 @@ std::vector<DirectionSight> Sights(const CameraSet& cameras, double stated_deg,
       DirectionSight sight;
       sight.pose = pose;
       const Vec3 turn =
-          RadFromDeg(noise_deg) *
-          Vec3(random.Gaussian(1), random.Gaussian(1), random.Gaussian(1));
+          RadFromDeg(noise_deg) * testing::GaussianVec3(random, 1);
       sight.direction = RotationFromAngleAxis(turn) *
                         (cameras.poses[pose].cam_from_world * direction);
       if (pose % 2 == 1) sight.direction = -sight.direction;
@@ -73,8 +73,8 @@ void AddParallelLines(const SyntheticScene& truth, Scene* scene) {
     for (const Vec3& direction : kDirections) {
       int count = 0;
       for (int n = 0; n < 2000 && count < 25; ++n) {
-        const Vec3 in_camera(random.Uniform(-3, 3), random.Uniform(-2, 2),
-                             random.Uniform(3, 6));
+        const Vec3 in_camera =
+            testing::UniformVec3(random, {-3, -2, 3}, {3, 2, 6});
         std::array<Vec2, 2> ends;
         bool is_inside = true;
         for (int end = 0; end < 2; ++end) {
@@ -86,7 +86,7 @@ void AddParallelLines(const SyntheticScene& truth, Scene* scene) {
           is_inside = is_inside && x.z() > 1 && ends[end].minCoeff() > 0 &&
                       ends[end].x() < intrinsic.width_px &&
                       ends[end].y() < intrinsic.height_px;
-          ends[end] += Vec2(random.Gaussian(0.3), random.Gaussian(0.3));
+          ends[end] += testing::GaussianVec2(random, 0.3);
         }
         if (!is_inside) continue;
         features.segments.push_back({ends[0], ends[1], 0.3});

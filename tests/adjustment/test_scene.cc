@@ -9,6 +9,7 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/validation.h"
 #include "tests/support/matchers.h"
+#include "tests/support/random_vectors.h"
 
 namespace lowlap::test {
 namespace {
@@ -97,9 +98,7 @@ class Builder {
   Vec2 RandomPixel() {
     return {random_.Uniform(0, 1199), random_.Uniform(0, 799)};
   }
-  Vec2 Noise() {
-    return options_.noise_px * Vec2(random_.Gaussian(), random_.Gaussian());
-  }
+  Vec2 Noise() { return options_.noise_px * testing::GaussianVec2(random_); }
 
   bool Project(int view, const Vec3& point, Vec2* pixel_px) const {
     const Vec3 x = out_.true_poses.at(PoseOf(view)).CamFromWorld() * point;
@@ -134,7 +133,9 @@ class Builder {
     std::vector<int> views;
     Vec3 point;
     while (views.size() < 2) {
-      point = walls_[RandomWall()].At(random_.Uniform(), random_.Uniform());
+      const auto& wall = walls_[RandomWall()];
+      const double v = random_.Uniform();
+      point = wall.At(random_.Uniform(), v);
       views = Visible({point}, options_.max_point_views);
     }
     out_.true_points[id] = point;
@@ -255,9 +256,7 @@ TestScene MakeTestScene(const TestSceneOptions& options) {
 void PerturbPoses(double angle_rad, double distance, std::uint64_t seed,
                   Scene* scene) {
   Random random(seed);
-  const auto vector = [&] {
-    return Vec3(random.Gaussian(), random.Gaussian(), random.Gaussian());
-  };
+  const auto vector = [&] { return testing::GaussianVec3(random); };
   for (auto& [id, pose] : scene->poses) {
     pose.rotation = RotationFromAngleAxis(angle_rad * vector()) * pose.rotation;
     pose.center += distance * vector();

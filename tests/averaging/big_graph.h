@@ -116,9 +116,9 @@ inline BigGraph MakeBigGraph(const BigGraphOptions& options) {
     edge.first = a;
     edge.second = b;
     const Vec3 direction = (made.centers[b] - made.centers[a]).normalized();
-    const Vec3 error(random.Gaussian(options.direction_stddev_rad),
+    const Vec3 error{random.Gaussian(options.direction_stddev_rad),
                      random.Gaussian(options.direction_stddev_rad),
-                     random.Gaussian(options.direction_stddev_rad));
+                     random.Gaussian(options.direction_stddev_rad)};
     edge.direction_in_world =
         (direction + error - direction * direction.dot(error)).normalized();
     edge.stddev_rad = options.direction_stddev_rad;

@@ -71,7 +71,7 @@ struct ViewCouple {
     for (std::size_t i = 0; i < kNumLines; ++i) {
       const Vec3 a = point();
       const Vec3 b =
-          a + Vec3(random.Uniform(-0.3, 0.3), random.Uniform(-0.3, 0.3), 0);
+          a + Vec3{random.Uniform(-0.3, 0.3), random.Uniform(-0.3, 0.3), 0};
       const auto descriptor = RandomBytes<LineDescriptor>(&random);
       for (View* view : {&first, &second}) {
         LineSegment segment;

@@ -16,7 +16,7 @@ void RigidPiecesOfStreet(benchmark::State& state) {
   std::map<ViewId, Pose> poses;
   std::vector<PairAgreement> pairs;
   for (std::uint32_t n = 0; n < num_views; ++n) {
-    poses[n].center = Vec3(n, random.Uniform(-1, 1), random.Uniform(-1, 1));
+    poses[n].center = Vec3{n, random.Uniform(-1, 1), random.Uniform(-1, 1)};
     for (std::uint32_t next = n + 1; next <= n + 2 && next < num_views;
          ++next) {
       pairs.push_back({{n, next}, 0, 0, 0, 0.01, 0.03});

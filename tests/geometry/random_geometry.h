@@ -11,8 +11,8 @@ inline Vec3 RandomVector(Random& random) {
 }
 
 inline Mat3 RandomRotation(Random& random) {
-  return Eigen::Quaterniond(random.Gaussian(), random.Gaussian(),
-                            random.Gaussian(), random.Gaussian())
+  return Eigen::Quaterniond{random.Gaussian(), random.Gaussian(),
+                            random.Gaussian(), random.Gaussian()}
       .normalized()
       .toRotationMatrix();
 }

@@ -51,7 +51,7 @@ TEST(RayTriangulator, MinimiseTheDistanceOfSkewRays) {
     };
     const double least = distance(*depths);
     for (int k = 0; k < 50; ++k) {
-      const Vec2 step(random.Gaussian(0.01), random.Gaussian(0.01));
+      const Vec2 step{random.Gaussian(0.01), random.Gaussian(0.01)};
       EXPECT_GE(distance(*depths + step), least - 1e-12);
     }
   }

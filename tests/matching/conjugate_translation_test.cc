@@ -16,7 +16,7 @@ std::vector<AlikePlaces> MovedPlaces(const Vec3& step, double noise,
                                      Random* random) {
   std::vector<AlikePlaces> places;
   for (int n = 0; n < 40; ++n) {
-    const Vec3 point(random->Uniform(-2, 2), random->Uniform(-1, 1), 5);
+    const Vec3 point{random->Uniform(-2, 2), random->Uniform(-1, 1), 5};
     AlikePlaces place;
     place.first = 2 * n;
     place.second = 2 * n + 1;

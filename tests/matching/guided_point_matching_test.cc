@@ -69,8 +69,8 @@ struct TestPair {
     PointDescriptor look{};
     for (int i = 0; i < count; ++i) {
       if (i % copies == 0) look = RandomDescriptor(&random);
-      const Vec3 point(random.Uniform(-2, 2), random.Uniform(-2, 2),
-                       random.Uniform(5, 9));
+      const Vec3 point{random.Uniform(-2, 2), random.Uniform(-2, 2),
+                       random.Uniform(5, 9)};
       const double angle = random.Uniform(-3, 3);
       const Vec3 direction(std::cos(angle), std::sin(angle), 0);
       first.Add(point, direction, Noisy(look, &random));

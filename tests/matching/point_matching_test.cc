@@ -258,7 +258,7 @@ Views MakeViews() {
       near[k] = static_cast<std::uint8_t>(descriptor[k] + 17);
       rival[k] = static_cast<std::uint8_t>(descriptor[k] + 20);
     }
-    const Vec2 place(random.Uniform(0, 100), random.Uniform(0, 100));
+    const Vec2 place{random.Uniform(0, 100), random.Uniform(0, 100)};
     Vec2 seen = map * place + Vec2(50, 10);
     if (i + 1 == Views::kCount) seen += Vec2(300, -200);
     Add(place, 2, 0.1, descriptor, &views.first);
@@ -266,7 +266,7 @@ Views MakeViews() {
     if (i >= 2) rivals.push_back(rival);
   }
   for (const PointDescriptor& rival : rivals) {
-    Add(Vec2(random.Uniform(400, 900), random.Uniform(400, 900)), 2, 0, rival,
+    Add(Vec2{random.Uniform(400, 900), random.Uniform(400, 900)}, 2, 0, rival,
         &views.second);
   }
   return views;
@@ -289,7 +289,7 @@ TEST(MatchPointsRelaxedTest, TakesWhatItsSurroundingsConfirm) {
   Random random(9);
   for (Keypoint& keypoint : scattered.second.keypoints) {
     keypoint.position_px =
-        Vec2(random.Uniform(0, 3000), random.Uniform(0, 3000));
+        Vec2{random.Uniform(0, 3000), random.Uniform(0, 3000)};
   }
   EXPECT_LT(
       MatchPointsRelaxed(scattered.first, scattered.second, strict, {}).size(),

@@ -39,7 +39,7 @@ Scene SceneOf(const std::vector<Vec3>& points,
     for (const Vec3& point : points) {
       scene.features[v].points_px.push_back(
           intrinsic.Project(cam_from_world * (point - centers[v])) +
-          Vec2(random.Gaussian(noise_px), random.Gaussian(noise_px)));
+          Vec2{random.Gaussian(noise_px), random.Gaussian(noise_px)});
     }
   }
   return scene;
@@ -47,7 +47,7 @@ Scene SceneOf(const std::vector<Vec3>& points,
 
 Vec3 Anywhere(Random* random) {
   return random->Uniform(4, 9) *
-         Vec3(random->Uniform(-0.4, 0.4), random->Uniform(-0.3, 0.3), 1);
+         Vec3{random->Uniform(-0.4, 0.4), random->Uniform(-0.3, 0.3), 1};
 }
 
 constexpr int kFarPoints = 30;
@@ -110,8 +110,8 @@ TEST(WeakPose, CountsOnlyWhereNothingElseJoinsItsViews) {
   for (FeatureIndex place = 0; place < kPlaces; ++place) {
     const Vec3 center = Anywhere(&random);
     for (FeatureIndex n = 0; n < kBeside; ++n) {
-      points.push_back(center + 0.01 * Vec3(random.Uniform(-1, 1),
-                                            random.Uniform(-1, 1), 0));
+      points.push_back(center + 0.01 * Vec3{random.Uniform(-1, 1),
+                                            random.Uniform(-1, 1), 0});
     }
   }
   Scene scene = SceneOf(

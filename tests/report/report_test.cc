@@ -133,7 +133,7 @@ TEST(PageData, HasAllSections) {
   EXPECT_EQ(Decode<float>(page["lines"]["positions"]).size(),
             6 * scene.line_structure.size());
   EXPECT_TRUE(std::isnan(Decode<float>(page["lines"]["before"]).front()));
-  EXPECT_EQ(page["warnings"][0]["views"], json({0}));
+  EXPECT_EQ(page["warnings"][0]["views"], json::array({0}));
   const json& triplet = page["triplets"][0];
   EXPECT_THAT(Decode<std::int16_t>(triplet["profile"]["total"]),
               ElementsAre(0, -400, 0));
@@ -209,7 +209,7 @@ TEST(PageData, IsSafeInAScriptElement) {
   EXPECT_THAT(page["views"][0]["name"].get<std::string>(),
               HasSubstr("</script><script>bad()</script><!-- "));
   EXPECT_EQ(page["title"], "a <b> & c");
-  EXPECT_EQ(page["notes"], json({"1 < 2"}));
+  EXPECT_EQ(page["notes"], json::array({"1 < 2"}));
 
   const std::string html = FormatReport(scene, content);
   EXPECT_THAT(html, HasSubstr("<title>a &lt;b&gt; &amp; c</title>"));

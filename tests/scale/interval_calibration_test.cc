@@ -63,7 +63,7 @@ TEST(RatioInterval, HoldsTheTruthAsOftenAsItSays) {
 }
 
 // By kind, noise, share of wrong features and poses, one at a time; the table
-// of all combinations is in interval_classes_slow_test.cc.
+// of all combinations is in interval_classes_long_test.cc.
 TEST(RatioInterval, HoldsTheTruthWhateverTheClass) {
   std::map<std::string, IntervalCoverage> groups;
   std::uint64_t class_seed = 1;

@@ -9,6 +9,7 @@
 #include "lowlap/scale/triplet_view.h"
 #include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
+#include "support/random_vectors.h"
 
 namespace lowlap::testing {
 
@@ -100,8 +101,8 @@ class SyntheticPlanesMaker {
 
  private:
   RigidTransform Neighbor(int side) {
-    const Vec3 center(side * random_.Uniform(0.4, 1.2),
-                      random_.Uniform(-0.2, 0.2), random_.Uniform(-0.2, 0.2));
+    Vec3 center = UniformVec3(random_, {0.4, -0.2, -0.2}, {1.2, 0.2, 0.2});
+    center.x() *= side;
     const Vec3 turn(0, -side * random_.Uniform(0, 0.1), 0.02);
     return RigidTransform::FromRotationAndCenter(RotationFromAngleAxis(turn),
                                                  center);

@@ -6,6 +6,7 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/geometry/rigid_transform.h"
 #include "lowlap/scene/features.h"
+#include "support/random_vectors.h"
 
 namespace lowlap::testing {
 
@@ -72,8 +73,7 @@ class SyntheticRoom {
   Segment3 RandomSegment(const RigidTransform& camn_from_camj, bool on_wall) {
     while (true) {
       Segment3 segment;
-      Vec3 direction(random_.Uniform(-1, 1), random_.Uniform(-1, 1),
-                     random_.Uniform(-1, 1));
+      Vec3 direction = UniformVec3(random_, {-1, -1, -1}, {1, 1, 1});
       segment.start = on_wall ? OnWall(&segment.wall) : InSpace();
       if (on_wall) {
         const int normal_axis =
@@ -91,11 +91,10 @@ class SyntheticRoom {
 
  private:
   RigidTransform RandomNeighbor(int side) {
-    const Vec3 center(side * random_.Uniform(0.4, 1.2),
-                      random_.Uniform(-0.2, 0.2), random_.Uniform(-0.4, 0.4));
-    const Vec3 turn(random_.Uniform(-0.05, 0.05),
-                    -side * random_.Uniform(-0.1, 0.2),
-                    random_.Uniform(-0.05, 0.05));
+    Vec3 center = UniformVec3(random_, {0.4, -0.2, -0.4}, {1.2, 0.2, 0.4});
+    center.x() *= side;
+    Vec3 turn = UniformVec3(random_, {-0.05, -0.1, -0.05}, {0.05, 0.2, 0.05});
+    turn.y() *= -side;
     return RigidTransform::FromRotationAndCenter(RotationFromAngleAxis(turn),
                                                  center);
   }

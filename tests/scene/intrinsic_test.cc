@@ -112,8 +112,8 @@ TEST(Intrinsic, BearingInvertsProjection) {
       // Up to 45 degrees from the axis (60 for the fisheye), all round for
       // panoramas.
       const double reach = intrinsic.model == CameraModel::kFisheye ? 1.2 : 0.7;
-      Vec3 point(random.Uniform(-reach, reach), random.Uniform(-reach, reach),
-                 1);
+      Vec3 point{random.Uniform(-reach, reach), random.Uniform(-reach, reach),
+                 1};
       if (intrinsic.model == CameraModel::kSpherical) {
         point = {random.Gaussian(), random.Gaussian(), random.Gaussian()};
       }

@@ -19,8 +19,8 @@ std::vector<Vec3> Centers(std::size_t count) {
   Random random(5);
   std::vector<Vec3> centers;
   for (std::size_t n = 0; n < count; ++n) {
-    centers.emplace_back(random.Uniform(-3, 3), random.Uniform(-3, 3),
-                         random.Uniform(-3, 3));
+    centers.push_back(Vec3{random.Uniform(-3, 3), random.Uniform(-3, 3),
+                           random.Uniform(-3, 3)});
   }
   return centers;
 }

@@ -51,7 +51,7 @@ class BlobTexture {
     Random random(seed);
     for (int i = 0; i < count; ++i) {
       blobs_.push_back(
-          {Vec2(random.Uniform(0, extent_px), random.Uniform(0, extent_px)),
+          {Vec2{random.Uniform(0, extent_px), random.Uniform(0, extent_px)},
            random.Uniform(1.5, 6), random.Uniform(-90, 90)});
     }
   }

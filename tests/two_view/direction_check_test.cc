@@ -5,6 +5,7 @@
 #include <map>
 
 #include "lowlap/geometry/internal/rotation.h"
+#include "tests/support/random_vectors.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
@@ -50,8 +51,7 @@ TEST(DirectionCheck, ReplacesAWrongDirectionUnderTheRightRotation) {
     Random random(seed);
     Vec3 wrong;
     do {
-      wrong = Vec3(random.Gaussian(), random.Gaussian(), random.Gaussian())
-                  .normalized();
+      wrong = testing::GaussianVec3(random).normalized();
     } while (AngleBetween(wrong, scene.cam2_from_cam1.translation) < 0.3);
     const DirectionCheck check = Check(scene, wrong, seed);
     ASSERT_EQ(check.verdict, DirectionVerdict::kReplaced) << seed;

@@ -9,6 +9,7 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/epipolar.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -24,8 +25,8 @@ struct Problem {
 Problem MakeProblem(Setup setup, Random& random) {
   Problem p;
   const auto uniform = [&](double size) {
-    return Vec3(random.Uniform(-size, size), random.Uniform(-size, size),
-                random.Uniform(-size, size));
+    return testing::UniformVec3(random, {-size, -size, -size},
+                                {size, size, size});
   };
   p.truth.rotation = RotationFromAngleAxis(uniform(0.5));
   p.truth.translation = uniform(1).normalized();
@@ -37,9 +38,11 @@ Problem MakeProblem(Setup setup, Random& random) {
     p.truth.rotation = Mat3::Identity();
     p.truth.translation = Vec3::UnitX();
   }
-  const Vec3 normal(random.Uniform(-0.5, 0.5), random.Uniform(-0.5, 0.5), 1);
+  const Vec3 normal =
+      testing::UniformVec2(random, {-0.5, -0.5}, {0.5, 0.5}).homogeneous();
   for (int n = 0; n < 5; ++n) {
-    const Vec3 x1(random.Uniform(-0.5, 0.5), random.Uniform(-0.5, 0.5), 1);
+    const Vec3 x1 =
+        testing::UniformVec2(random, {-0.5, -0.5}, {0.5, 0.5}).homogeneous();
     const double depth =
         setup == Setup::kPlanar ? 6 / normal.dot(x1) : random.Uniform(3, 9);
     p.x1[n] = x1;

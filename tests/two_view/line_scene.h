@@ -7,6 +7,7 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/features.h"
+#include "support/random_vectors.h"
 #include "two_view/two_view_scene.h"
 
 namespace lowlap::testing {
@@ -51,9 +52,8 @@ inline LineScene MakeLineScene(const LineSceneOptions& options,
   NormalizedFeatures &f1 = scene.views.features1, &f2 = scene.views.features2;
   f1.focal_px = f2.focal_px = kFocalPx;
   const auto image = [&](const Vec3& p) -> Vec3 {
-    return p / p.z() + Vec3(random.Gaussian(options.noise_px),
-                            random.Gaussian(options.noise_px), 0) /
-                           kFocalPx;
+    const Vec2 noise = GaussianVec2(random, options.noise_px) / kFocalPx;
+    return p / p.z() + Vec3(noise.x(), noise.y(), 0);
   };
   const auto inside = [](const Vec3& p) {
     return p.z() > 0.5 && std::abs(p.x() / p.z()) * kFocalPx < 800 &&
@@ -68,15 +68,18 @@ inline LineScene MakeLineScene(const LineSceneOptions& options,
       const Vec3& across =
           options.directions[count % 2 == 0 ? (family + 1) % 3 : plane];
       const Vec3 origin(0.3 * plane - 0.3, 0.2 * plane, 5 + 0.8 * plane);
-      const Vec3 middle = origin + random.Uniform(-2, 2) * across +
-                          random.Uniform(-1.5, 1.5) * along;
+      const double forward = random.Uniform(-1.5, 1.5);
+      const Vec3 middle =
+          origin + random.Uniform(-2, 2) * across + forward * along;
       const double half = random.Uniform(0.3, 1.2);
       const Vec3 a = middle - half * along, b = middle + half * along;
       const Vec3 a2 = scene.cam2_from_cam1 * a, b2 = scene.cam2_from_cam1 * b;
       if (!inside(a) || !inside(b) || !inside(a2) || !inside(b2)) continue;
       const auto index = static_cast<FeatureIndex>(f1.segments.size());
-      f1.segments.push_back(MakeSegment(image(a), image(b)));
-      f2.segments.push_back(MakeSegment(image(a2), image(b2)));
+      const Vec3 end1 = image(b), start1 = image(a);
+      const Vec3 end2 = image(b2), start2 = image(a2);
+      f1.segments.push_back(MakeSegment(start1, end1));
+      f2.segments.push_back(MakeSegment(start2, end2));
       scene.line_matches.push_back({index, index});
       ++count;
     }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/random_vectors.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
@@ -50,7 +51,7 @@ TEST(ParallaxEvidence, MismatchesAboutThePlaneGiveNone) {
     // lie along their epipolar lines by chance.
     for (int i = 0; i < scene.num_right / 4; ++i) {
       scene.features2.points[i].head<2>() +=
-          Vec2(random.Gaussian(10), random.Gaussian(10)) / kFocalPx;
+          testing::GaussianVec2(random, 10) / kFocalPx;
     }
     EXPECT_GE(EvidenceOf(scene), 0) << seed;
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "tests/support/random_vectors.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
@@ -46,8 +47,9 @@ TwoViewScene Clusters(int count, int num_wrong) {
   Random random(5);
   for (int n = 0; n < count; ++n) {
     for (int more = 0; more < 8; ++more) {
-      const Vec3 by(random.Uniform(-5, 5) / kFocalPx,
-                    random.Uniform(-5, 5) / kFocalPx, 0);
+      const Vec2 step =
+          testing::UniformVec2(random, {-5, -5}, {5, 5}) / kFocalPx;
+      const Vec3 by(step.x(), step.y(), 0);
       const Vec3 x1 = scene.features1.points[n] + by;
       Vec3 x2 = scene.features2.points[n] + by;
       // Onto the epipolar line.

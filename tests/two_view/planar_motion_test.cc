@@ -4,6 +4,7 @@
 
 #include <numeric>
 
+#include "tests/support/random_vectors.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
@@ -19,8 +20,8 @@ TEST(OtherPlanarMotion, MovesThePlaneLikeTheGivenOne) {
   Random random(1);
   for (int trial = 0; trial < 300; ++trial) {
     const auto uniform = [&](double size) {
-      return Vec3(random.Uniform(-size, size), random.Uniform(-size, size),
-                  random.Uniform(-size, size));
+      return testing::UniformVec3(random, {-size, -size, -size},
+                                  {size, size, size});
     };
     const RigidTransform motion{RotationFromAngleAxis(uniform(0.5)),
                                 uniform(1).normalized()};
@@ -35,7 +36,8 @@ TEST(OtherPlanarMotion, MovesThePlaneLikeTheGivenOne) {
     const Mat3 homography =
         motion.rotation + motion.translation * normal.transpose();
     for (int n = 0; n < 5; ++n) {
-      const Vec3 x1(random.Uniform(-0.5, 0.5), random.Uniform(-0.5, 0.5), 1);
+      const Vec3 x1 =
+          testing::UniformVec2(random, {-0.5, -0.5}, {0.5, 0.5}).homogeneous();
       const Vec3 x2 = homography * x1;
       EXPECT_NEAR(
           x2.dot(other->translation.cross(other->rotation * x1)) / x2.norm(), 0,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lowlap/geometry/internal/epipolar.h"
+#include "tests/support/random_vectors.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
@@ -22,8 +23,8 @@ PointPairs OnePair(Random& random, bool round) {
   PointPairs pairs;
   pairs.focal1_px = 900;
   pairs.focal2_px = 1700;
-  pairs.x1 = {Vec3(random.Uniform(-1, 1), random.Uniform(-1, 1), 1)};
-  pairs.x2 = {Vec3(random.Uniform(-1, 1), random.Uniform(-1, 1), 1)};
+  pairs.x1 = {testing::UniformVec2(random, {-1, -1}, {1, 1}).homogeneous()};
+  pairs.x2 = {testing::UniformVec2(random, {-1, -1}, {1, 1}).homogeneous()};
   if (!round) {
     Mat2 covariance;
     covariance << 3, 1.5, 1.5, 1;

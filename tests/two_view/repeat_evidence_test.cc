@@ -4,6 +4,7 @@
 
 #include "support/matchers.h"
 #include "tests/matching/pattern_view.h"
+#include "tests/support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -41,8 +42,8 @@ struct TiledPair {
                           view == &view1 ? cam1 : cam2, &motif, view);
     }
     for (int n = 0; n < num_others; ++n) {
-      const Vec3 point(random.Uniform(-2, 2), random.Uniform(-1.5, 1.5),
-                       random.Uniform(least_depth, 5));
+      const Vec3 point =
+          testing::UniformVec3(random, {-2, -1.5, least_depth}, {2, 1.5, 5});
       const PointDescriptor descriptor = testing::RandomDescriptor(&random);
       view1.Add(cam1 * point, descriptor, 2);
       view2.Add(cam2 * point, descriptor, 2);

@@ -8,6 +8,7 @@
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/two_view/internal/search/refine_relative_pose.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -33,8 +34,8 @@ std::vector<Observation> Observe(int per_cell, double own, double common,
       const double of_cell = common * random.Gaussian();
       for (int n = 0; n < per_cell; ++n) {
         Observation one;
-        one.place = kCell * Eigen::Vector2d(x + random.Uniform(0, 1),
-                                            y + random.Uniform(0, 1));
+        one.place =
+            kCell * (Vec2(x, y) + testing::UniformVec2(random, {0, 0}, {1, 1}));
         const double u = one.place.x(), v = one.place.y();
         one.row << 1, u, v, u * u, u * v;
         one.error = of_cell + own * random.Gaussian();

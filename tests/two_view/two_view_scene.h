@@ -8,6 +8,7 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/two_view/internal/kernels/point_pairs.h"
 #include "lowlap/two_view/internal/relative_pose_estimator.h"
+#include "support/random_vectors.h"
 
 namespace lowlap::testing {
 
@@ -68,9 +69,8 @@ inline TwoViewScene MakeTwoViewScene(const TwoViewSceneOptions& options,
   scene.num_right = options.num_right;
   scene.features1.focal_px = scene.features2.focal_px = kFocalPx;
   const auto noise = [&]() -> Vec3 {
-    return Vec3(random.Gaussian(options.noise_px),
-                random.Gaussian(options.noise_px), 0) /
-           kFocalPx;
+    const Vec2 error = GaussianVec2(random, options.noise_px) / kFocalPx;
+    return {error.x(), error.y(), 0};
   };
   const auto inside = [](const Vec3& x) {
     return std::abs(x.x()) * kFocalPx < 800 && std::abs(x.y()) * kFocalPx < 600;

@@ -37,7 +37,7 @@ Result<ResultLog> ResultLog::Open(
     const std::string& path, const std::string& settings,
     const std::function<bool(const std::string&)>& take) {
   const std::string head =
-      nlohmann::json({{"settings", settings}})
+      nlohmann::json::object({{"settings", settings}})
           .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace) +
       "\n";
   Result<std::string> text = ReadWholeFile(path);
