@@ -39,6 +39,7 @@ std::vector<Number> Decode(const std::string& base64) {
     bytes += static_cast<char>(group >> num_bits & 0xFF);
   }
   std::vector<Number> numbers(bytes.size() / sizeof(Number));
+  if (numbers.empty()) return numbers;  // memcpy takes no null
   std::memcpy(numbers.data(), bytes.data(), numbers.size() * sizeof(Number));
   return numbers;
 }
