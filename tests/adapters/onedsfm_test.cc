@@ -9,6 +9,7 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/validation.h"
+#include "support/random_vectors.h"
 #include "third_party_adapters/onedsfm/internal/problem.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -28,8 +29,7 @@ class OneDSfmFolder : public ::testing::Test {
   void SetUp() override {
     Random random(1);
     const auto uniform = [&] {
-      return Vec3{random.Uniform(-1, 1), random.Uniform(-1, 1),
-                  random.Uniform(-1, 1)};
+      return testing::UniformVec3(random, {-1, -1, -1}, {1, 1, 1});
     };
     for (int n = 0; n < kImages; ++n) {
       poses_.push_back({RotationFromAngleAxis(0.3 * uniform()), 2 * uniform()});

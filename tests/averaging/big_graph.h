@@ -10,6 +10,7 @@
 
 #include "averaging/random_problem.h"
 #include "lowlap/core/internal/median.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 
@@ -116,9 +117,8 @@ inline BigGraph MakeBigGraph(const BigGraphOptions& options) {
     edge.first = a;
     edge.second = b;
     const Vec3 direction = (made.centers[b] - made.centers[a]).normalized();
-    const Vec3 error{random.Gaussian(options.direction_stddev_rad),
-                     random.Gaussian(options.direction_stddev_rad),
-                     random.Gaussian(options.direction_stddev_rad)};
+    const Vec3 error =
+        testing::GaussianVec3(random, options.direction_stddev_rad);
     edge.direction_in_world =
         (direction + error - direction * direction.dot(error)).normalized();
     edge.stddev_rad = options.direction_stddev_rad;
@@ -148,8 +148,8 @@ inline BigGraph MakeBigGraph(const BigGraphOptions& options) {
     // What is wrong is as sure of itself as what is right.
     ratio.log10_nfa = random.Uniform(-30, -5);
     if (random.Uniform() < options.wrong_ratio_share) {
-      ratio.log_ratio +=
-          random.Uniform(0.2, 2.0) * (random.Uniform() < 0.5 ? -1 : 1);
+      const double error = random.Uniform(0.2, 2.0);
+      ratio.log_ratio += random.Uniform() < 0.5 ? -error : error;
     } else {
       graph.oracle.ratios.push_back(ratio);
     }

@@ -11,6 +11,7 @@
 #include "lowlap/matching/internal/points/guided_point_matching.h"
 #include "lowlap/matching/internal/points/nearest_two.h"
 #include "lowlap/matching/internal/points/point_matching.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -70,8 +71,8 @@ struct ViewCouple {
     }
     for (std::size_t i = 0; i < kNumLines; ++i) {
       const Vec3 a = point();
-      const Vec3 b =
-          a + Vec3{random.Uniform(-0.3, 0.3), random.Uniform(-0.3, 0.3), 0};
+      const Vec2 step = testing::UniformVec2(random, {-0.3, -0.3}, {0.3, 0.3});
+      const Vec3 b = a + Vec3(step.x(), step.y(), 0);
       const auto descriptor = RandomBytes<LineDescriptor>(&random);
       for (View* view : {&first, &second}) {
         LineSegment segment;

@@ -5,6 +5,7 @@
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/merge/internal/rigid_pieces.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -16,7 +17,8 @@ void RigidPiecesOfStreet(benchmark::State& state) {
   std::map<ViewId, Pose> poses;
   std::vector<PairAgreement> pairs;
   for (std::uint32_t n = 0; n < num_views; ++n) {
-    poses[n].center = Vec3{n, random.Uniform(-1, 1), random.Uniform(-1, 1)};
+    const Vec2 aside = testing::UniformVec2(random, {-1, -1}, {1, 1});
+    poses[n].center = Vec3(n, aside.x(), aside.y());
     for (std::uint32_t next = n + 1; next <= n + 2 && next < num_views;
          ++next) {
       pairs.push_back({{n, next}, 0, 0, 0, 0.01, 0.03});

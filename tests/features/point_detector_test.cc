@@ -9,6 +9,7 @@
 
 #include "lowlap/geometry/types.h"
 #include "support/matchers.h"
+#include "support/random_vectors.h"
 #include "support/synthetic_image.h"
 
 namespace lowlap {
@@ -40,8 +41,8 @@ Blobs MakeBlobs() {
   Blobs blobs;
   Random random(7);
   for (int i = 0; i < 16; ++i) {
-    blobs.centers.emplace_back(40 + 60 * (i % 4) + random.Uniform(),
-                               40 + 60 * (i / 4) + random.Uniform());
+    blobs.centers.push_back(Vec2(40 + 60 * (i % 4), 40 + 60 * (i / 4)) +
+                            testing::UniformVec2(random, {0, 0}, {1, 1}));
     blobs.sigmas.push_back(2.0 + 0.2 * i);
   }
   return blobs;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "support/matchers.h"
+#include "support/random_vectors.h"
 #include "support/synthetic_image.h"
 
 namespace lowlap {
@@ -45,8 +46,8 @@ TEST_P(TiltImageTest, PointsOfItLieInTheImageWhereTheyAre) {
   blobs.tilted_from_image = flat->linear;
   Random random(3);
   for (int n = 0; n < 6; ++n) {
-    blobs.centers.emplace_back(50 + 100 * (n % 3) + random.Uniform(),
-                               50 + 100 * (n / 3) + random.Uniform());
+    blobs.centers.push_back(Vec2(50 + 100 * (n % 3), 50 + 100 * (n / 3)) +
+                            testing::UniformVec2(random, {0, 0}, {1, 1}));
     blobs.sigmas.push_back(2 + 0.2 * n);
   }
   const auto tilted =

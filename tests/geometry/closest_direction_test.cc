@@ -38,13 +38,18 @@ double LeastSine(const Vec3& u, const Vec3& v, const Vec3& w) {
   return sine(best_phi);
 }
 
+Vec3 OfAnySize(Random& random) {
+  const Vec3 direction = RandomVector(random);
+  return std::exp(random.Gaussian(3)) * direction;
+}
+
 TEST(ClosestDirection, AgreesWithSearchOnRandomVectors) {
   Random random(1);
   for (int n = 0; n < 2000; ++n) {
     // Of very different lengths, as depths and baselines are.
-    const Vec3 u = std::exp(random.Gaussian(3)) * RandomVector(random);
-    const Vec3 v = std::exp(random.Gaussian(3)) * RandomVector(random);
-    const Vec3 w = std::exp(random.Gaussian(3)) * RandomVector(random);
+    const Vec3 u = OfAnySize(random);
+    const Vec3 v = OfAnySize(random);
+    const Vec3 w = OfAnySize(random);
     const auto lambda = ClosestDirection(u, v, w);
     ASSERT_TRUE(lambda);
     EXPECT_NEAR(Sine(u, v, w, *lambda), LeastSine(u, v, w), 1e-7);

@@ -6,6 +6,7 @@
 
 #include "geometry/random_geometry.h"
 #include "support/matchers.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -55,8 +56,8 @@ TEST(Sampson, ApproximatesTheReprojectionError) {
     // Far from the epipoles, where the constraint is almost linear.
     if ((essential * x1).head<2>().norm() < 0.1) continue;
     const double noise = 1e-4;
-    x1.head<2>() += Vec2{random.Gaussian(noise), random.Gaussian(noise)};
-    x2.head<2>() += Vec2{random.Gaussian(noise), random.Gaussian(noise)};
+    x1.head<2>() += testing::GaussianVec2(random, noise);
+    x2.head<2>() += testing::GaussianVec2(random, noise);
     Vec3 y1 = x1, y2 = x2;
     for (int iteration = 0; iteration < 20; ++iteration) {
       const Vec2 g1 = (essential.transpose() * y2).head<2>();

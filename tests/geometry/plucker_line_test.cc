@@ -15,7 +15,8 @@ using testing::RandomVector;
 using testing::VectorNear;
 
 PluckerLine RandomLine(Random& random) {
-  return PluckerLine::FromPoints(RandomVector(random), RandomVector(random));
+  const Vec3 second = RandomVector(random);
+  return PluckerLine::FromPoints(RandomVector(random), second);
 }
 
 Vec3 PointAt(const PluckerLine& line, double s) {
@@ -168,7 +169,8 @@ TEST(ClosestPointToRay, AgreesWithSearch) {
   Random random(8);
   for (int n = 0; n < 50; ++n) {
     const PluckerLine line = RandomLine(random);
-    const Vec3 bearing = random.Uniform(0.1, 5) * RandomVector(random);
+    Vec3 bearing = RandomVector(random);
+    bearing *= random.Uniform(0.1, 5);
     if (line.direction.cross(bearing.normalized()).norm() < 0.3) continue;
     double at = 0;
     MinimumOverLine(

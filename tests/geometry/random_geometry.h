@@ -3,6 +3,7 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/geometry/rigid_transform.h"
+#include "support/random_vectors.h"
 
 namespace lowlap::testing {
 
@@ -11,8 +12,9 @@ inline Vec3 RandomVector(Random& random) {
 }
 
 inline Mat3 RandomRotation(Random& random) {
-  return Eigen::Quaterniond{random.Gaussian(), random.Gaussian(),
-                            random.Gaussian(), random.Gaussian()}
+  const Vec3 imaginary = GaussianVec3(random);
+  return Eigen::Quaterniond(random.Gaussian(), imaginary.x(), imaginary.y(),
+                            imaginary.z())
       .normalized()
       .toRotationMatrix();
 }

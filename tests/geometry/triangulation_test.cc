@@ -6,6 +6,7 @@
 
 #include "geometry/random_geometry.h"
 #include "support/matchers.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -51,7 +52,7 @@ TEST(RayTriangulator, MinimiseTheDistanceOfSkewRays) {
     };
     const double least = distance(*depths);
     for (int k = 0; k < 50; ++k) {
-      const Vec2 step{random.Gaussian(0.01), random.Gaussian(0.01)};
+      const Vec2 step = testing::GaussianVec2(random, 0.01);
       EXPECT_GE(distance(*depths + step), least - 1e-12);
     }
   }

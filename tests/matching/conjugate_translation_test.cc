@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/matching/pattern_view.h"
+#include "tests/support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -16,7 +17,8 @@ std::vector<AlikePlaces> MovedPlaces(const Vec3& step, double noise,
                                      Random* random) {
   std::vector<AlikePlaces> places;
   for (int n = 0; n < 40; ++n) {
-    const Vec3 point{random->Uniform(-2, 2), random->Uniform(-1, 1), 5};
+    const Vec2 aside = testing::UniformVec2(*random, {-2, -1}, {2, 1});
+    const Vec3 point(aside.x(), aside.y(), 5);
     AlikePlaces place;
     place.first = 2 * n;
     place.second = 2 * n + 1;

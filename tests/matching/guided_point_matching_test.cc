@@ -8,6 +8,7 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/matching/internal/points/point_matching.h"
 #include "support/matchers.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -69,8 +70,7 @@ struct TestPair {
     PointDescriptor look{};
     for (int i = 0; i < count; ++i) {
       if (i % copies == 0) look = RandomDescriptor(&random);
-      const Vec3 point{random.Uniform(-2, 2), random.Uniform(-2, 2),
-                       random.Uniform(5, 9)};
+      const Vec3 point = testing::UniformVec3(random, {-2, -2, 5}, {2, 2, 9});
       const double angle = random.Uniform(-3, 3);
       const Vec3 direction(std::cos(angle), std::sin(angle), 0);
       first.Add(point, direction, Noisy(look, &random));

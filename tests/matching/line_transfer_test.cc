@@ -13,7 +13,7 @@ using ::testing::ElementsAre;
 using testing::ExpectRefused;
 using ::testing::IsEmpty;
 
-const RigidTransform kView2FromView1 = {
+const RigidTransform kSlightCam2FromCam1 = {
     RotationFromAngleAxis(Vec3(0.05, -0.4, 0.02)), Vec3(0.9, 0.1, 0.42)};
 
 NormalizedSegment SegmentIn(const RigidTransform& cam_from_world, const Vec3& a,
@@ -29,11 +29,11 @@ NormalizedSegment SegmentIn(const RigidTransform& cam_from_world, const Vec3& a,
 // Whether the match of segment a1-b1 (camera 1's frame) seen in view 1 and
 // a2-b2 seen in view 2 is kept.
 bool IsKept(const Vec3& a1, const Vec3& b1, const Vec3& a2, const Vec3& b2,
-            const RigidTransform& cam2_from_cam1 = kView2FromView1,
+            const RigidTransform& cam2_from_cam1 = kSlightCam2FromCam1,
             const LineFilterOptions& options = {}) {
   NormalizedFeatures first, second;
   first.segments = {SegmentIn({}, a1, b1)};
-  second.segments = {SegmentIn(kView2FromView1, a2, b2)};
+  second.segments = {SegmentIn(kSlightCam2FromCam1, a2, b2)};
   return !FilterLineMatches({{0, 0}}, first, second, cam2_from_cam1, options)
               .empty();
 }
@@ -50,7 +50,7 @@ TEST(FilterLineMatchesTest, KeepsTheSameSegmentInEitherDirection) {
 
 TEST(FilterLineMatchesTest, TheScaleOfTheBaselineIsFree) {
   for (const double scale : {0.01, 100.0}) {
-    RigidTransform scaled = kView2FromView1;
+    RigidTransform scaled = kSlightCam2FromCam1;
     scaled.translation *= scale;
     EXPECT_TRUE(IsKept(Along(0), Along(1), Along(0), Along(1), scaled));
   }
@@ -64,11 +64,11 @@ TEST(FilterLineMatchesTest, OverlapIsMeasuredOnTheShorterSegment) {
   LineFilterOptions loose;
   loose.min_overlap = 0.1;
   EXPECT_TRUE(IsKept(Along(0), Along(0.5), Along(0.4), Along(1),
-                     kView2FromView1, loose));
+                     kSlightCam2FromCam1, loose));
 }
 
 TEST(FilterLineMatchesTest, DropsLinesBehindTheCameras) {
-  RigidTransform reversed = kView2FromView1;
+  RigidTransform reversed = kSlightCam2FromCam1;
   reversed.translation = -reversed.translation;
   EXPECT_FALSE(IsKept(Along(0), Along(1), Along(0), Along(1), reversed));
 }
@@ -86,7 +86,7 @@ TEST(FilterLineMatchesTest, KeepsASegmentOfWhichACameraSeesOnlyThePartInFront) {
 }
 
 TEST(FilterLineMatchesTest, DropsLinesInAnEpipolarPlane) {
-  const Vec3 center2 = kView2FromView1.Center();
+  const Vec3 center2 = kSlightCam2FromCam1.Center();
   const Vec3 a(0.2, 0.7, 4);
   const Vec3 b = a + 0.8 * center2;  // parallel to the baseline
   EXPECT_FALSE(IsKept(a, b, a, b));
@@ -95,11 +95,12 @@ TEST(FilterLineMatchesTest, DropsLinesInAnEpipolarPlane) {
 TEST(FilterLineMatchesTest, DropsInvalidSegmentsAndIndices) {
   NormalizedFeatures first, second;
   first.segments = {NormalizedSegment{}, SegmentIn({}, kStart, kEnd)};
-  second.segments = {SegmentIn(kView2FromView1, kStart, kEnd)};
+  second.segments = {SegmentIn(kSlightCam2FromCam1, kStart, kEnd)};
   EXPECT_THAT(FilterLineMatches({{0, 0}, {1, 0}, {5, 0}, {1, 7}}, first, second,
-                                kView2FromView1, {}),
+                                kSlightCam2FromCam1, {}),
               ElementsAre(FeatureMatch{1, 0}));
-  EXPECT_THAT(FilterLineMatches({}, {}, {}, kView2FromView1, {}), IsEmpty());
+  EXPECT_THAT(FilterLineMatches({}, {}, {}, kSlightCam2FromCam1, {}),
+              IsEmpty());
 }
 
 TEST(LineFilterOptionsTest, RejectsBadValues) {

@@ -9,6 +9,7 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/geometry/rigid_transform.h"
 #include "lowlap/matching/internal/points/guided_point_matching.h"
+#include "support/random_vectors.h"
 
 namespace lowlap::testing {
 
@@ -62,7 +63,7 @@ inline void AddPattern(int columns, int rows, int motif, double noise_px,
                        PatternView* view) {
   for (int m = 0; m < motif; ++m) {
     const PointDescriptor descriptor = RandomDescriptor(random);
-    const Vec2 inner{random->Uniform(0, 0.5), random->Uniform(0, 0.5)};
+    const Vec2 inner = UniformVec2(*random, {0, 0}, {0.5, 0.5});
     for (int cell = 0; cell < columns * rows; ++cell) {
       const Vec3 point(inner.x() + 0.5 * (cell % columns - columns / 2),
                        inner.y() + 0.5 * (cell / columns - rows / 2), 5);
@@ -78,8 +79,9 @@ inline void AddPattern(int columns, int rows, int motif, double noise_px,
 /// Points anywhere in the image, each like no other.
 inline void AddOthers(int count, Random* random, PatternView* view) {
   for (int n = 0; n < count; ++n) {
-    view->Add(Vec3{random->Uniform(-0.6, 0.6), random->Uniform(-0.45, 0.45), 1},
-              RandomDescriptor(random), 2);
+    const PointDescriptor descriptor = RandomDescriptor(random);
+    view->Add(UniformVec2(*random, {-0.6, -0.45}, {0.6, 0.45}).homogeneous(),
+              descriptor, 2);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "lowlap/matching/internal/matching.h"
 #include "lowlap/matching/internal/points/nearest_two.h"
 #include "support/matchers.h"
+#include "support/random_vectors.h"
 #include "support/synthetic_image.h"
 
 namespace lowlap {
@@ -258,7 +259,7 @@ Views MakeViews() {
       near[k] = static_cast<std::uint8_t>(descriptor[k] + 17);
       rival[k] = static_cast<std::uint8_t>(descriptor[k] + 20);
     }
-    const Vec2 place{random.Uniform(0, 100), random.Uniform(0, 100)};
+    const Vec2 place = testing::UniformVec2(random, {0, 0}, {100, 100});
     Vec2 seen = map * place + Vec2(50, 10);
     if (i + 1 == Views::kCount) seen += Vec2(300, -200);
     Add(place, 2, 0.1, descriptor, &views.first);
@@ -266,7 +267,7 @@ Views MakeViews() {
     if (i >= 2) rivals.push_back(rival);
   }
   for (const PointDescriptor& rival : rivals) {
-    Add(Vec2{random.Uniform(400, 900), random.Uniform(400, 900)}, 2, 0, rival,
+    Add(testing::UniformVec2(random, {400, 400}, {900, 900}), 2, 0, rival,
         &views.second);
   }
   return views;
@@ -288,8 +289,7 @@ TEST(MatchPointsRelaxedTest, TakesWhatItsSurroundingsConfirm) {
   Views scattered = views;
   Random random(9);
   for (Keypoint& keypoint : scattered.second.keypoints) {
-    keypoint.position_px =
-        Vec2{random.Uniform(0, 3000), random.Uniform(0, 3000)};
+    keypoint.position_px = testing::UniformVec2(random, {0, 0}, {3000, 3000});
   }
   EXPECT_LT(
       MatchPointsRelaxed(scattered.first, scattered.second, strict, {}).size(),

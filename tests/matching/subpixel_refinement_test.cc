@@ -69,7 +69,7 @@ TEST(AlignPatchTest, FindsAShiftUnderAnotherContrast) {
   const auto place =
       Align(first, second, 2, At(second.place + Vec2(0.7, -0.6), 2));
   ASSERT_TRUE(place);
-  EXPECT_LT((*place - second.place).norm(), 0.03);
+  EXPECT_LT((*place - second.place).norm(), 0.02);
 }
 
 TEST(AlignPatchTest, FindsASlantedPatchFromItsSimilarity) {

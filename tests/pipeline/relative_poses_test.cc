@@ -8,6 +8,7 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "support/matchers.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -39,15 +40,16 @@ Scene SceneOf(const std::vector<Vec3>& points,
     for (const Vec3& point : points) {
       scene.features[v].points_px.push_back(
           intrinsic.Project(cam_from_world * (point - centers[v])) +
-          Vec2{random.Gaussian(noise_px), random.Gaussian(noise_px)});
+          testing::GaussianVec2(random, noise_px));
     }
   }
   return scene;
 }
 
 Vec3 Anywhere(Random* random) {
-  return random->Uniform(4, 9) *
-         Vec3{random->Uniform(-0.4, 0.4), random->Uniform(-0.3, 0.3), 1};
+  const Vec3 bearing =
+      testing::UniformVec2(*random, {-0.4, -0.3}, {0.4, 0.3}).homogeneous();
+  return random->Uniform(4, 9) * bearing;
 }
 
 constexpr int kFarPoints = 30;
@@ -110,8 +112,9 @@ TEST(WeakPose, CountsOnlyWhereNothingElseJoinsItsViews) {
   for (FeatureIndex place = 0; place < kPlaces; ++place) {
     const Vec3 center = Anywhere(&random);
     for (FeatureIndex n = 0; n < kBeside; ++n) {
-      points.push_back(center + 0.01 * Vec3{random.Uniform(-1, 1),
-                                            random.Uniform(-1, 1), 0});
+      const Vec2 step =
+          testing::UniformVec2(random, {-0.01, -0.01}, {0.01, 0.01});
+      points.push_back(center + Vec3(step.x(), step.y(), 0));
     }
   }
   Scene scene = SceneOf(

@@ -7,6 +7,7 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/scene/features.h"
 #include "support/matchers.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -112,8 +113,9 @@ TEST(Intrinsic, BearingInvertsProjection) {
       // Up to 45 degrees from the axis (60 for the fisheye), all round for
       // panoramas.
       const double reach = intrinsic.model == CameraModel::kFisheye ? 1.2 : 0.7;
-      Vec3 point{random.Uniform(-reach, reach), random.Uniform(-reach, reach),
-                 1};
+      Vec3 point =
+          testing::UniformVec2(random, {-reach, -reach}, {reach, reach})
+              .homogeneous();
       if (intrinsic.model == CameraModel::kSpherical) {
         point = {random.Gaussian(), random.Gaussian(), random.Gaussian()};
       }

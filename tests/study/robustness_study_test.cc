@@ -11,6 +11,7 @@
 #include "lowlap/study/internal/robustness/summary.h"
 #include "lowlap/study/internal/robustness/table.h"
 #include "read_csv.h"
+#include "support/random_vectors.h"
 
 namespace lowlap {
 namespace {
@@ -19,8 +20,7 @@ std::vector<Vec3> Centers(std::size_t count) {
   Random random(5);
   std::vector<Vec3> centers;
   for (std::size_t n = 0; n < count; ++n) {
-    centers.push_back(Vec3{random.Uniform(-3, 3), random.Uniform(-3, 3),
-                           random.Uniform(-3, 3)});
+    centers.push_back(testing::UniformVec3(random, {-3, -3, -3}, {3, 3, 3}));
   }
   return centers;
 }

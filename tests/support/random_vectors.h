@@ -5,8 +5,9 @@
 
 namespace lowlap::testing {
 
-// Vectors of random coordinates, the last one drawn first. `Vec2(draw(),
-// draw())` would leave the order to the compiler, and the test with it.
+// Vectors of random coordinates, the last one drawn first. With a draw in each
+// argument of a constructor, their order would be the compiler's, and the test's
+// scene with it.
 
 inline Vec2 GaussianVec2(Random& random, double stddev = 1) {
   const double y = random.Gaussian(stddev);

@@ -8,6 +8,7 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/features/internal/image.h"
 #include "lowlap/geometry/types.h"
+#include "support/random_vectors.h"
 
 namespace lowlap::testing {
 
@@ -50,9 +51,8 @@ class BlobTexture {
   BlobTexture(std::uint64_t seed, int count, double extent_px) {
     Random random(seed);
     for (int i = 0; i < count; ++i) {
-      blobs_.push_back(
-          {Vec2{random.Uniform(0, extent_px), random.Uniform(0, extent_px)},
-           random.Uniform(1.5, 6), random.Uniform(-90, 90)});
+      blobs_.push_back({UniformVec2(random, {0, 0}, {extent_px, extent_px}),
+                        random.Uniform(1.5, 6), random.Uniform(-90, 90)});
     }
   }
 

@@ -94,7 +94,8 @@ inline TwoViewScene MakeTwoViewScene(const TwoViewSceneOptions& options,
     add(x1 + noise(), y / y.z() + noise());
   }
   for (int n = 0; n < options.num_wrong; ++n) {
-    add(RandomImagePoint(random), RandomImagePoint(random));
+    const Vec3 second = RandomImagePoint(random);
+    add(RandomImagePoint(random), second);
   }
   return scene;
 }
