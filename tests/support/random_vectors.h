@@ -6,8 +6,8 @@
 namespace lowlap::testing {
 
 // Vectors of random coordinates, the last one drawn first. With a draw in each
-// argument of a constructor, their order would be the compiler's, and the test's
-// scene with it.
+// argument of a constructor, their order would be the compiler's, and the
+// test's scene with it.
 
 inline Vec2 GaussianVec2(Random& random, double stddev = 1) {
   const double y = random.Gaussian(stddev);
