@@ -133,9 +133,10 @@ Status RunLookAlikeStudy(
                      "the number of pairs must be positive");
   }
   std::vector<LookAlikeKey> missing;
-  for (const RepeatedKind kind : kRepeatedKinds) {
-    for (const bool is_same_place : {false, true}) {
-      for (int n = 0; n < study->num_pairs; ++n) {
+  // A study that is stopped has seen as many of each kind.
+  for (const bool is_same_place : {false, true}) {
+    for (int n = 0; n < study->num_pairs; ++n) {
+      for (const RepeatedKind kind : kRepeatedKinds) {
         const LookAlikeKey key = {kind, is_same_place,
                                   context.seed + static_cast<std::uint64_t>(n)};
         if (study->trials.count(key) == 0) missing.push_back(key);
