@@ -387,10 +387,13 @@ TEST_F(ColmapDatabaseFile, OtherKeypointsAndNamesAreRefusedAndNothingChanges) {
   moved.features.at(1).points_px[0].x() += 0.25;
   Scene renamed = MeasuredScene(Read().scene);
   renamed.views.at(2).filename = "other.jpg";
+  // SQLite's texts could end at the NUL.
+  Scene longer = MeasuredScene(Read().scene);
+  longer.views.at(2).filename += std::string("\0.jpg", 5);
   for (const auto& [scene, says] :
        {std::pair<const Scene&, const char*>(moved, "other keypoints"),
-        std::pair<const Scene&, const char*>(renamed,
-                                             "no image 'other.jpg'")}) {
+        std::pair<const Scene&, const char*>(renamed, "no image 'other.jpg'"),
+        std::pair<const Scene&, const char*>(longer, "no image")}) {
     const auto written = WriteRelativePoses(scene, Path());
     ASSERT_FALSE(written.has_value());
     EXPECT_EQ(written.error().code, ErrorCode::kInvalidArgument);

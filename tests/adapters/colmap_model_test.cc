@@ -243,7 +243,7 @@ TEST_F(ColmapModel, PosesOfARigAreThoseOfFrameAndSensor) {
   EXPECT_THAT(notes, Contains(HasSubstr("rigid")));
 
   // Both forms hold rigs and frames.
-  const auto model = ReadModel(folder_.Path("model"));
+  const auto model = ReadModel(folder_.Path("model"), ModelForm::kText);
   ASSERT_TRUE(model.has_value());
   Model text, binary;
   for (const char* name : kModelParts) {
@@ -264,14 +264,6 @@ TEST_F(ColmapModel, RigsThatAreThereFollowThePoses) {
   const Scene back = Scene_();
   EXPECT_EQ(back.poses.size(), 3u);
   EXPECT_LT((back.poses.at(1).center - scene.poses.at(1).center).norm(), 1e-12);
-}
-
-TEST_F(ColmapModel, TextBesideABinaryModelIsRefused) {
-  ASSERT_TRUE(WriteScene(Scene_(), folder_.Path("binary"), "colmap-bin"));
-  const auto written = WriteScene(Scene_(), folder_.Path("binary"), "colmap");
-  ASSERT_FALSE(written.has_value());
-  EXPECT_THAT(written.error().message, HasSubstr("binary model"));
-  EXPECT_FALSE(std::filesystem::exists(folder_.Path("binary/images.txt")));
 }
 
 /// Ids from 0, random poses, and what a model cannot hold.

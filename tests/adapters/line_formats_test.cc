@@ -217,6 +217,52 @@ TEST(LimapWrite, DoesNotMixWithAnotherResult) {
               IsError(ErrorCode::kInvalidArgument, "segments_3.txt"));
 }
 
+// Images that stay, but without segments or without matches.
+TEST(LimapWrite, DoesNotLeaveFilesThatItDoesNotWrite) {
+  const TemporaryFolder folder;
+  const std::string path = folder.Path("out");
+  const Scene scene = testing::RandomScene(2, 3, 10, 12);
+  ASSERT_FALSE(scene.relative_poses.empty());
+  ASSERT_THAT(WriteScene(scene, path, "limap"), IsOk());
+
+  Scene unmatched = scene;
+  for (auto& [views, pose] : unmatched.relative_poses) {
+    if (views.first == 0) pose.line_inliers.clear();
+  }
+  const std::string matches = "line_matchings/lowlap/feats_lowlap/lowlap/";
+  EXPECT_THAT(WriteScene(unmatched, path, "limap"),
+              IsError(ErrorCode::kInvalidArgument, "matches_1.txt"));
+  // So are those that limap_text.py made for LIMAP.
+  std::filesystem::rename(path + "/" + matches + "matches_1.txt",
+                          path + "/" + matches + "matches_1.npy");
+  EXPECT_THAT(WriteScene(unmatched, path, "limap"),
+              IsError(ErrorCode::kInvalidArgument, "matches_1.npy"));
+  std::filesystem::remove(path + "/" + matches + "matches_1.npy");
+  EXPECT_THAT(WriteScene(unmatched, path, "limap"), IsOk());
+
+  Scene unseen;
+  unseen.intrinsics = scene.intrinsics;
+  unseen.views = scene.views;
+  unseen.poses = scene.poses;
+  std::filesystem::remove_all(path + "/finaltracks");
+  EXPECT_THAT(WriteScene(unseen, path, "limap"),
+              IsError(ErrorCode::kInvalidArgument, "segments_1.txt"));
+}
+
+TEST(LimapWrite, NamesThatTheImageListCannotHoldAreRefused) {
+  const TemporaryFolder folder;
+  Scene scene = testing::RandomScene(2, 3, 10, 12);
+  for (const char end : {'\n', '\r', '\0'}) {
+    scene.views.at(1).filename = std::string("a") + end + "b.jpg";
+    EXPECT_THAT(WriteScene(scene, folder.Path("out"), "limap"),
+                IsError(ErrorCode::kUnsupported, "image_list.txt: image 2"));
+    EXPECT_FALSE(std::filesystem::exists(folder.Path("out")));
+  }
+  scene.views.at(1).filename = "a b, c.jpg";
+  ASSERT_THAT(WriteScene(scene, folder.Path("out"), "limap"), IsOk());
+  EXPECT_EQ(ReadScene(folder.Path("out"))->views.at(2).filename, "a b, c.jpg");
+}
+
 constexpr char kLine3dppText[] =
     "1 0 0 1 2 0 1 2 4 1 10.5 20 30 40 9 0 1 2 3 4\n"
     "2 5 0 0 6 0 0 8 0 0 7 0 0 2 4 0 0 0 1 1 9 0 1 2 3 4\n";

@@ -32,10 +32,7 @@ bool HasModel(const std::string& folder, ModelForm form) {
   return true;
 }
 
-Result<Model> ReadModel(const std::string& folder) {
-  const ModelForm form = HasModel(folder, ModelForm::kBinary)
-                             ? ModelForm::kBinary
-                             : ModelForm::kText;
+Result<Model> ReadModel(const std::string& folder, ModelForm form) {
   Model model;
   for (const std::string name : kModelParts) {
     const std::string path = PartPath(folder, name, form);

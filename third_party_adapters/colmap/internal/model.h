@@ -118,9 +118,8 @@ std::string PartPath(const std::string& folder, const std::string& name,
 /// Whether a folder holds cameras, images and points3D in this form.
 bool HasModel(const std::string& folder, ModelForm form);
 
-/// The binary files of a folder, if they are complete, else the text files, as
-/// COLMAP chooses. Errors with the file: kNotFound, kParse with line or byte,
-/// kUnsupported for an unknown camera model.
-Result<Model> ReadModel(const std::string& folder);
+/// The files of this form. Errors with the file: kNotFound, kParse with line or
+/// byte, kUnsupported for an unknown camera model.
+Result<Model> ReadModel(const std::string& folder, ModelForm form);
 
 }  // namespace lowlap::colmap

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include "lowlap/core/result.h"
 #include "lowlap/io/scene_format.h"
@@ -42,6 +43,10 @@ Mat3 RotationFromQuaternion(const Vec4& quaternion);
 /// The view of an image.
 View ViewOfImage(std::uint32_t image_id, std::string name,
                  std::uint32_t camera_id, const Intrinsic& intrinsic);
+/// kUnsupported, with the file, for a name with one of the characters
+/// `refused`, which would end it there.
+Status CheckImageName(std::uint32_t image_id, const std::string& name,
+                      std::string_view refused, const std::string& file);
 /// What is added to the ids of views and intrinsics in COLMAP: 1 if one is 0.
 std::uint32_t IdShift(const Scene& scene);
 

@@ -1,10 +1,12 @@
 #include "third_party_adapters/colmap/internal/scene_format.h"
 
 #include <filesystem>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/propagate.h"
 #include "third_party_adapters/colmap/internal/database.h"
 #include "third_party_adapters/colmap/internal/model.h"
 #include "third_party_adapters/colmap/internal/model_scene.h"
@@ -20,8 +22,9 @@ Result<Value> WithFile(Result<Value> result, const std::string& file) {
   return result;
 }
 
-Result<Scene> ReadModelScene(const std::string& folder, SceneNotes* notes) {
-  const auto model = ReadModel(folder);
+Result<Scene> ReadModelScene(const std::string& folder, ModelForm form,
+                             SceneNotes* notes) {
+  const auto model = ReadModel(folder, form);
   if (!model) return tl::unexpected<Error>(model.error());
   return WithFile(SceneFromModel(*model, notes), folder);
 }
@@ -29,6 +32,18 @@ Result<Scene> ReadModelScene(const std::string& folder, SceneNotes* notes) {
 bool Exists(const std::string& path) {
   std::error_code ignored;
   return fs::exists(path, ignored);
+}
+
+Status CheckImageNames(const Model& model, const std::string& folder,
+                       ModelForm form) {
+  constexpr std::string_view kEndsText(" \t\r\n\0", 5), kEndsBinary("\0", 1);
+  const std::string_view ends =
+      form == ModelForm::kText ? kEndsText : kEndsBinary;
+  const std::string file = PartPath(folder, "images", form);
+  for (const Image& image : model.images) {
+    LOWLAP_RETURN_IF_ERROR(CheckImageName(image.id, image.name, ends, file));
+  }
+  return {};
 }
 
 Result<SceneNotes> WriteModelScene(const Scene& scene,
@@ -43,6 +58,7 @@ Result<SceneNotes> WriteModelScene(const Scene& scene,
                      "instead of a text one",
                      folder);
   }
+  LOWLAP_RETURN_IF_ERROR(CheckImageNames(*model, folder, form));
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) {
@@ -75,7 +91,9 @@ SceneFormat ModelFormat(const char* name, const char* description,
                   SceneContent::kPoses,  SceneContent::kKeypoints,
                   SceneContent::kPoints, SceneContent::kObservations};
   format.needs = {SceneContent::kPoses, SceneContent::kIntrinsics};
-  format.read = ReadModelScene;
+  format.read = [form](const std::string& folder, SceneNotes* notes) {
+    return ReadModelScene(folder, form, notes);
+  };
   format.write = [form](const Scene& scene, const std::string& folder,
                         FileSet* files) {
     return WriteModelScene(scene, folder, form, files);

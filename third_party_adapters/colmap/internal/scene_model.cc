@@ -4,6 +4,7 @@
 #include <map>
 #include <utility>
 
+#include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/failure.h"
 #include "third_party_adapters/colmap/internal/model_scene.h"
@@ -171,6 +172,20 @@ class Exporter {
 };
 
 }  // namespace
+
+Status CheckImageName(std::uint32_t image_id, const std::string& name,
+                      std::string_view refused, const std::string& file) {
+  const std::size_t place = name.find_first_of(refused);
+  if (place == std::string::npos) return {};
+  const char c = name[place];
+  const char* what = c == '\0'                ? "NUL"
+                     : c == '\n' || c == '\r' ? "line end"
+                                              : "blank";
+  return MakeError(ErrorCode::kUnsupported,
+                   "the name '" + Escaped(name) + "' has a " + what +
+                       ", which this format does not allow",
+                   file, "image " + std::to_string(image_id));
+}
 
 std::uint32_t IdShift(const Scene& scene) {
   return scene.views.count(0) > 0 || scene.intrinsics.count(0) > 0 ? 1 : 0;

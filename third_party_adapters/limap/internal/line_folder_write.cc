@@ -31,19 +31,23 @@ class LineFolderWriter {
         id_shift_(colmap::IdShift(scene)) {}
 
   Status Write(SceneNotes* notes) {
-    LOWLAP_RETURN_IF_ERROR(CheckFolder());
-    LOWLAP_RETURN_IF_ERROR(WriteModel(notes));
+    const IdTexts matches = MatchTexts();
+    LOWLAP_RETURN_IF_ERROR(CheckFolder(matches));
     LOWLAP_RETURN_IF_ERROR(WriteImageList());
+    LOWLAP_RETURN_IF_ERROR(WriteModel(notes));
     LOWLAP_RETURN_IF_ERROR(WriteSegments());
-    LOWLAP_RETURN_IF_ERROR(WriteMatches());
+    LOWLAP_RETURN_IF_ERROR(WriteMatches(matches));
     return WriteLines(notes);
   }
 
  private:
+  /// By the id of the image in the folder.
+  using IdTexts = std::map<std::uint32_t, std::string>;
+
   std::uint32_t FileId(ViewId view) const { return view.value() + id_shift_; }
 
   /// LIMAP takes every file of these names for a part of the result.
-  Status CheckFolder() const {
+  Status CheckFolder(const IdTexts& matches) const {
     const auto tracks =
         NumberedFiles((folder_ / kTrackFolder).string(), "track_", ".txt");
     if (!tracks.empty() && tracks.rbegin()->first >= NumLines()) {
@@ -51,14 +55,29 @@ class LineFolderWriter {
                        "holds more lines than the scene; remove them first",
                        (folder_ / kTrackFolder).string());
     }
-    for (const auto& [id, path] : NumberedFiles(
-             (folder_ / kSegmentFolder).string(), "segments_", ".txt")) {
-      if (id < id_shift_ || scene_.views.count(id - id_shift_) == 0) {
-        return MakeError(ErrorCode::kInvalidArgument,
-                         "is of an image that the scene does not have; remove "
-                         "it first",
-                         path);
-      }
+    LOWLAP_RETURN_IF_ERROR(
+        CheckFiles(kSegmentFolder, "segments_", ".txt", [&](std::uint32_t id) {
+          return id >= id_shift_ && scene_.features.count(id - id_shift_) > 0;
+        }));
+    // limap_text.py makes the one of the other.
+    for (const char* extension : {".txt", ".npy"}) {
+      LOWLAP_RETURN_IF_ERROR(
+          CheckFiles(kMatchFolder, "matches_", extension,
+                     [&](std::uint32_t id) { return matches.count(id) > 0; }));
+    }
+    return {};
+  }
+
+  template <class IsWritten>
+  Status CheckFiles(const char* name, const char* prefix, const char* extension,
+                    const IsWritten& is_written) const {
+    for (const auto& [id, path] :
+         NumberedFiles((folder_ / name).string(), prefix, extension)) {
+      if (is_written(id)) continue;
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "is of another result: the scene has none for this "
+                       "image; remove it first",
+                       path);
     }
     return {};
   }
@@ -91,7 +110,10 @@ class LineFolderWriter {
     std::string text =
         "number of images, " + std::to_string(scene_.views.size()) + "\n";
     for (const auto& [id, view] : scene_.views) {
-      text += std::to_string(FileId(id)) + ", " + ImageName(view) + "\n";
+      const std::string name = ImageName(view);
+      LOWLAP_RETURN_IF_ERROR(colmap::CheckImageName(
+          FileId(id), name, {"\r\n\0", 3}, (folder_ / kImageList).string()));
+      text += std::to_string(FileId(id)) + ", " + name + "\n";
     }
     return AddFile(kImageList, text);
   }
@@ -111,8 +133,8 @@ class LineFolderWriter {
   }
 
   /// From both sides, as LIMAP matches.
-  Status WriteMatches() {
-    std::map<std::uint32_t, std::string> texts;
+  IdTexts MatchTexts() const {
+    IdTexts texts;
     for (const auto& [views, pose] : scene_.relative_poses) {
       const std::uint32_t first = FileId(views.first);
       const std::uint32_t second = FileId(views.second);
@@ -125,6 +147,10 @@ class LineFolderWriter {
             std::to_string(first) + " " + of_second + " " + of_first + "\n";
       }
     }
+    return texts;
+  }
+
+  Status WriteMatches(const IdTexts& texts) {
     for (const auto& [id, text] : texts) {
       LOWLAP_RETURN_IF_ERROR(AddFile(
           fs::path(kMatchFolder) / ("matches_" + std::to_string(id) + ".txt"),
