@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "adapters/temporary_folder.h"
+#include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/format.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "scene/example_scenes.h"
@@ -23,6 +24,7 @@ using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::IsError;
 using testing::IsOk;
+using ::testing::Not;
 using testing::VectorNear;
 
 const Vec3 kAngleAxis(0.1, -0.2, 0.3);
@@ -132,6 +134,100 @@ TEST(Nvm, AFileIsUndistortedAsItsFormulaSays) {
   EXPECT_THAT(notes, Contains("1 colours of points were left out"));
 }
 
+constexpr double kNvmFocalPx = 1000;
+
+/// Two views with distortion d of points up to 0.8 focal lengths off the axis.
+std::string DistortedNvm(double d) {
+  const auto camera = [&](const char* name, int x) {
+    return Format("%s %g 1 0 0 0 %d 0 0 %.17g 0\n", name, kNvmFocalPx, x, d);
+  };
+  std::string points;
+  int num_points = 0;
+  for (const double radius_px : {200, 400, 500, 600, 700, 750, 800}) {
+    for (int turn = 0; turn < 8; ++turn, ++num_points) {
+      const Vec2 xy = radius_px * Vec2(std::cos(turn), std::sin(turn));
+      points +=
+          Format("1 2 3 255 255 255 2 0 %d %.17g %.17g 1 %d %.17g %.17g\n",
+                 num_points, xy.x(), xy.y(), num_points, -xy.y(), xy.x());
+    }
+  }
+  return "NVM_V3\n2\n" + camera("a.jpg", 0) + camera("b.jpg", 1) +
+         std::to_string(num_points) + "\n" + points + "0\n";
+}
+
+/// The largest distance between a measurement and where its camera images what
+/// NVM's formula says it shows, and the largest between that and what the
+/// camera says.
+Vec2 ErrorsOfUndistortion(const Scene& scene, double d) {
+  Vec2 errors_px = Vec2::Zero();
+  for (const auto& [id, landmark] : scene.structure) {
+    for (const PointObservation& seen : landmark.observations) {
+      const Intrinsic& intrinsic = *scene.FindIntrinsic(seen.view);
+      const Vec2 measured =
+          (seen.pixel_px - intrinsic.principal_point_px) / kNvmFocalPx;
+      const Vec2 shown = measured * (1 + d * measured.squaredNorm());
+      const auto normalized = intrinsic.Normalize(seen.pixel_px);
+      if (!normalized) return Vec2::Constant(1e9);
+      errors_px = errors_px.cwiseMax(
+          Vec2((intrinsic.Project(shown.homogeneous()) - seen.pixel_px).norm(),
+               kNvmFocalPx * (*normalized - shown).norm()));
+    }
+  }
+  return errors_px;
+}
+
+TEST(Nvm, DistortionHoldsAsFarOutAsPointsAreMeasured) {
+  const TemporaryFolder folder;
+  struct Case {
+    double d, max_error_px;
+    bool is_noted;
+  };
+  for (const auto& [d, max_error_px, is_noted] :
+       {Case{0, 1e-9, false}, Case{0.05, 0.001, false}, Case{0.1, 0.02, true},
+        Case{0.2, 0.3, true}, Case{-0.1, 0.03, true}}) {
+    SceneNotes notes;
+    const auto scene =
+        ReadScene(folder.Write("a.nvm", DistortedNvm(d)), &notes);
+    ASSERT_THAT(scene, IsOk());
+    const Vec2 errors_px = ErrorsOfUndistortion(*scene, d);
+    EXPECT_LT(errors_px.maxCoeff(), max_error_px) << d;
+    const auto has_note =
+        Contains(HasSubstr("2 distortions were approximated by k1, k2, k3"));
+    if (is_noted) {
+      EXPECT_THAT(notes, has_note) << d;
+    } else {
+      EXPECT_THAT(notes, Not(has_note)) << d;
+    }
+  }
+}
+
+TEST(Nvm, DistortionThatCannotBeInvertedWellIsRefused) {
+  const TemporaryFolder folder;
+  // Off by pixels, and folded before the outermost points.
+  for (const double d : {0.6, -0.6}) {
+    EXPECT_THAT(
+        ReadScene(folder.Write("a.nvm", DistortedNvm(d))),
+        IsError(ErrorCode::kUnsupported, "a.nvm: camera 0, image 'a.jpg': "));
+  }
+}
+
+TEST(Nvm, DistortionIsWrittenAsItWasRead) {
+  const TemporaryFolder folder;
+  for (const double d : {0.1, -0.1}) {
+    Scene scene = *ReadScene(folder.Write("a.nvm", DistortedNvm(d)));
+    // Whatever becomes of the points.
+    for (PointTrackId id = 20; id < 56; ++id) scene.structure.erase(id);
+    const std::string path = folder.Path("b.nvm");
+    const auto notes = WriteScene(scene, path);
+    ASSERT_THAT(notes, IsOk());
+    EXPECT_THAT(*notes, Not(Contains(HasSubstr("approximated"))));
+    SceneNotes ignored;
+    const auto model = ParseNvm(*ReadWholeFile(path), path, &ignored);
+    ASSERT_THAT(model, IsOk());
+    EXPECT_EQ(model->cameras[1].camera.k[0], d);
+  }
+}
+
 TEST(Nvm, AMatrixAndATranslationAreTheSameAsAQuaternionAndACentre) {
   SceneNotes notes;
   const auto model = ParseNvm(
@@ -178,11 +274,12 @@ TEST(RadialCamera, IsExactWhereItCanBe) {
                   Distorted(CameraModel::kRadialK3, {-0.2, 0.1, 0})},
         std::pair{
             RadialForm::kUndistorts,
-            IntrinsicFromRadial({900, {0.07, 0}}, RadialForm::kUndistorts)}}) {
+            IntrinsicFromRadial({900, {0.07, 0}}, RadialForm::kUndistorts, 0.7)
+                .intrinsic}}) {
     const auto fit = RadialFromIntrinsic(intrinsic, form);
     ASSERT_THAT(fit, IsOk());
     EXPECT_EQ(fit->error_px, 0);
-    EXPECT_EQ(IntrinsicFromRadial(fit->camera, form).distortion,
+    EXPECT_EQ(IntrinsicFromRadial(fit->camera, form, 0.7).intrinsic.distortion,
               intrinsic.distortion);
   }
   const auto k1 = RadialFromIntrinsic(Distorted(CameraModel::kRadialK1, {-0.2}),

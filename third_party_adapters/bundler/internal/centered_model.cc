@@ -30,12 +30,18 @@ void SetFrame(const std::optional<Intrinsic>& fixed, const Vec2& reach_px,
   intrinsic->principal_point_px = fixed ? fixed->principal_point_px : half;
 }
 
-Result<std::vector<Vec2>> ReachOfCameras(const CenteredModel& model) {
-  std::vector<Vec2> reaches(model.cameras.size(), Vec2::Zero());
+/// How far off the principal point a camera observes.
+struct Reach {
+  Vec2 per_axis_px = Vec2::Zero();
+  double radius_px = 0;
+};
+
+Result<std::vector<Reach>> ReachOfCameras(const CenteredModel& model) {
+  std::vector<Reach> reaches(model.cameras.size());
   for (const CenteredPoint& point : model.points) {
     for (const CenteredObservation& observation : point.observations) {
-      const Vec2 reach = observation.offset_px.cwiseAbs();
-      if (!(reach.maxCoeff() <= kMaxHalfSizePx)) {
+      const Vec2 offset_px = observation.offset_px.cwiseAbs();
+      if (!(offset_px.maxCoeff() <= kMaxHalfSizePx)) {
         return MakeError(
             ErrorCode::kInvalidScene,
             "camera " + std::to_string(observation.camera) +
@@ -43,10 +49,61 @@ Result<std::vector<Vec2>> ReachOfCameras(const CenteredModel& model) {
                        "image is",
                        observation.offset_px.x(), observation.offset_px.y()));
       }
-      reaches[observation.camera] = reaches[observation.camera].cwiseMax(reach);
+      Reach& reach = reaches[observation.camera];
+      reach.per_axis_px = reach.per_axis_px.cwiseMax(offset_px);
+      reach.radius_px = std::max(reach.radius_px, offset_px.norm());
     }
   }
   return reaches;
+}
+
+/// Counts the fits of cameras that are further off than is worth a word.
+class FitCounter {
+ public:
+  explicit FitCounter(double min_error_px) : min_error_px_(min_error_px) {}
+
+  void Add(double error_px) {
+    if (error_px > min_error_px_) ++count_;
+    worst_px_ = std::max(worst_px_, error_px);
+  }
+  void Note(const std::string& what, SceneNotes* notes) const {
+    AddNote(count_, what + Format(", to %.2g px", worst_px_), notes);
+  }
+
+ private:
+  double min_error_px_;
+  std::size_t count_ = 0;
+  double worst_px_ = 0;
+};
+
+/// The intrinsic of a camera with a pose.
+Result<Intrinsic> IntrinsicOfCamera(const CenteredModel& model, std::size_t n,
+                                    const Reach& reach, FitCounter* fits) {
+  RadialCamera camera = model.cameras[n].camera;
+  if (model.fixed) {
+    camera.focal_px = std::min(model.fixed->fx_px, model.fixed->fy_px);
+  }
+  IntrinsicFit fit = IntrinsicFromRadial(camera, model.form,
+                                         reach.radius_px / camera.focal_px);
+  Intrinsic& intrinsic = fit.intrinsic;
+  if (model.fixed) {
+    intrinsic.fx_px = model.fixed->fx_px;
+    intrinsic.fy_px = model.fixed->fy_px;
+  }
+  SetFrame(model.fixed, reach.per_axis_px, &intrinsic);
+  if (!IsCloseFit(fit.error_px, intrinsic)) {
+    return MakeError(
+        ErrorCode::kUnsupported,
+        Format("the inverse of its distortion (%g) cannot be approximated well "
+               "by k1, k2, k3 as far out as it observes points, %.2g focal "
+               "lengths",
+               camera.k[0], reach.radius_px / camera.focal_px),
+        {},
+        "camera " + std::to_string(n) + ", image '" +
+            Escaped(model.cameras[n].name) + "'");
+  }
+  fits->Add(fit.error_px);
+  return intrinsic;
 }
 
 void AddModelPoints(const CenteredModel& model, Scene* scene,
@@ -84,8 +141,7 @@ Result<std::map<IntrinsicId, RadialCamera>> RadialCameras(const Scene& scene,
                                                           RadialForm form,
                                                           SceneNotes* notes) {
   std::map<IntrinsicId, RadialCamera> cameras;
-  std::size_t num_fitted = 0;
-  double worst_px = 0;
+  FitCounter fits(0);
   for (const auto& [id, view] : scene.views) {
     const Intrinsic* intrinsic = scene.FindIntrinsic(id);
     if (intrinsic == nullptr || cameras.count(view.intrinsic_id) > 0) continue;
@@ -96,14 +152,11 @@ Result<std::map<IntrinsicId, RadialCamera>> RadialCameras(const Scene& scene,
       return tl::unexpected<Error>(std::move(fit.error()));
     }
     cameras[view.intrinsic_id] = fit->camera;
-    if (fit->error_px > 0) ++num_fitted;
-    worst_px = std::max(worst_px, fit->error_px);
+    fits.Add(fit->error_px);
   }
-  AddNote(num_fitted,
-          "intrinsics were approximated by one focal length and radial "
-          "distortion, to " +
-              Format("%.2g px", worst_px),
-          notes);
+  fits.Note(
+      "intrinsics were approximated by one focal length and radial distortion",
+      notes);
   return cameras;
 }
 
@@ -111,6 +164,9 @@ Result<std::map<IntrinsicId, RadialCamera>> RadialCameras(const Scene& scene,
 
 Result<Scene> SceneFromModel(const CenteredModel& model, SceneNotes* notes) {
   LOWLAP_ASSIGN_OR_RETURN(const auto reaches, ReachOfCameras(model));
+  // Less is nothing beside the error of a measurement.
+  constexpr double kMinErrorPx = 0.01;
+  FitCounter fits(kMinErrorPx);
   Scene scene;
   for (std::size_t n = 0; n < model.cameras.size(); ++n) {
     const CenteredCamera& camera = model.cameras[n];
@@ -119,18 +175,15 @@ Result<Scene> SceneFromModel(const CenteredModel& model, SceneNotes* notes) {
     view.filename = camera.name;
     view.pose_id = id;
     if (!camera.pose) continue;
-    Intrinsic& intrinsic = scene.intrinsics[id];
-    intrinsic = IntrinsicFromRadial(camera.camera, model.form);
-    if (model.fixed) {
-      intrinsic.fx_px = model.fixed->fx_px;
-      intrinsic.fy_px = model.fixed->fy_px;
-    }
-    SetFrame(model.fixed, reaches[n], &intrinsic);
+    LOWLAP_ASSIGN_OR_RETURN(const Intrinsic intrinsic,
+                            IntrinsicOfCamera(model, n, reaches[n], &fits));
+    scene.intrinsics[id] = intrinsic;
     view.width_px = intrinsic.width_px;
     view.height_px = intrinsic.height_px;
     view.intrinsic_id = id;
     scene.poses[id] = *camera.pose;
   }
+  fits.Note("distortions were approximated by k1, k2, k3", notes);
   AddModelPoints(model, &scene, notes);
   AddNote(scene.intrinsics.size(),
           "image sizes are not in the file; they are taken as small as the "

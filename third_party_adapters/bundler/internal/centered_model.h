@@ -46,9 +46,10 @@ struct CenteredModel {
 /// Ids are places in the lists; each camera is a view with an intrinsic of its
 /// own. The principal point is the middle of the image (but where `fixed` says
 /// it), and as no file tells its size, it is the smallest that has room for the
-/// observations; `notes` says so. Cameras without a pose are views alone.
-/// Errors: those of ValidateScene, and kInvalidScene for an observation that no
-/// image has room for.
+/// observations; `notes` says so, and how far off distortions are that our
+/// model does not hold. Cameras without a pose are views alone. Errors: those
+/// of ValidateScene, kInvalidScene for an observation that no image has room
+/// for, and kUnsupported with the camera whose fit is not close (IsCloseFit).
 Result<Scene> SceneFromModel(const CenteredModel& model, SceneNotes* notes);
 
 /// Whether a list of cameras has places for those that are not solved.

@@ -21,10 +21,18 @@ struct RadialCamera {
   std::array<double, 2> k = {0, 0};
 };
 
-/// Distortion model and coefficients of a camera, in ours. They are exact for
-/// kDistorts; for kUndistorts they are the inverse series
-///   x_d = x (1 - k r^2 + 3 k^2 r^4 - 12 k^3 r^6).
-Intrinsic IntrinsicFromRadial(const RadialCamera& camera, RadialForm form);
+struct IntrinsicFit {
+  Intrinsic intrinsic;  // without a frame
+  /// The largest up to the reach; 0 where exact, infinite where the formula
+  /// folds.
+  double error_px = 0;
+};
+
+/// A camera in our model. It is exact for kDistorts. kUndistorts has no inverse
+/// of our form: k1 is -k[0], and k2, k3 are fitted as far out as `reach`, the
+/// length of the outermost measurement in focal lengths.
+IntrinsicFit IntrinsicFromRadial(const RadialCamera& camera, RadialForm form,
+                                 double reach);
 
 struct RadialFit {
   RadialCamera camera;
@@ -35,8 +43,11 @@ struct RadialFit {
 /// (kDistorts), or no distortion and what IntrinsicFromRadial made
 /// (kUndistorts); else the mean focal length and, unless it is a pinhole, the
 /// least squares fit of k over the image. kUnsupported for panoramas, and where
-/// the fit is off by more than a thousandth of the image diagonal.
+/// the fit is not close (IsCloseFit).
 Result<RadialFit> RadialFromIntrinsic(const Intrinsic& intrinsic,
                                       RadialForm form);
+
+/// Whether a fit is off by no more than a thousandth of the image diagonal.
+bool IsCloseFit(double error_px, const Intrinsic& intrinsic);
 
 }  // namespace lowlap::bundler
