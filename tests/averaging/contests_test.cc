@@ -69,6 +69,20 @@ TEST(Contests, OneCauseIsOneContest) {
   EXPECT_THAT(contests[0].links, ElementsAre(ViewPair{0, 1}, ViewPair{2, 3}));
 }
 
+// The ways that the first pair fills are open again for the second.
+TEST(Contests, EveryRejectedPairIsHeldAgainstTheWholeGraph) {
+  const auto contests = FindContests({{{0, 1}, 20}, {{1, 2}, 30}, {{2, 3}, 10}},
+                                     {}, {{{0, 2}, 15}, {{0, 3}, 15}});
+  ASSERT_EQ(contests.size(), 2u);
+  EXPECT_THAT(contests[0].contradictions,
+              ElementsAre(ViewPair{0, 2}, ViewPair{0, 3}));
+  EXPECT_THAT(contests[0].links, ElementsAre(ViewPair{0, 1}));
+  EXPECT_THAT(contests[0].views, ElementsAre(0));
+  EXPECT_THAT(contests[1].contradictions, ElementsAre(ViewPair{0, 3}));
+  EXPECT_THAT(contests[1].links, ElementsAre(ViewPair{2, 3}));
+  EXPECT_THAT(contests[1].views, ElementsAre(3));
+}
+
 // Two triangles that share view 2.
 EvidenceOfPairs TwoTriangles() {
   return {{{0, 1}, 100}, {{0, 2}, 100}, {{1, 2}, 100}, {{2, 3}, 100},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -14,48 +15,96 @@ namespace {
 constexpr int kMaxWays = 8;
 
 /// Maximum flow by shortest augmenting paths (Edmonds and Karp 1972); what the
-/// source still reaches is its side of the least cut.
+/// source still reaches is its side of the least cut. Every search leaves the
+/// one residual graph as it was.
 class LeastCut {
  public:
-  explicit LeastCut(const EvidenceOfPairs& in_use) {
+  LeastCut(const ViewGraph& graph, const EvidenceOfPairs& in_use)
+      : views_(graph.views()), arcs_(views_.size()), into_(views_.size()) {
+    // Pairs are sorted, and so are the arcs of a view by where they go.
     for (const auto& [pair, evidence] : in_use) {
-      residual_[pair.first][pair.second] = evidence;
-      residual_[pair.second][pair.first] = evidence;
+      const std::size_t first = *IndexOf(pair.first);
+      const std::size_t second = *IndexOf(pair.second);
+      arcs_[first].push_back(
+          {second, arcs_[second].size(), evidence, evidence});
+      arcs_[second].push_back(
+          {first, arcs_[first].size() - 1, evidence, evidence});
     }
   }
 
   /// Empty if nothing joins the two, or more than kMaxWays ways do.
-  std::set<ViewId> SideOf(ViewId from, ViewId to) const {
-    Residual residual = residual_;
+  std::set<ViewId> SideOf(ViewId from_view, ViewId to_view) {
+    const std::optional<std::size_t> from = IndexOf(from_view);
+    const std::optional<std::size_t> to = IndexOf(to_view);
+    if (!from || !to) return {};
+    std::set<ViewId> side;
     for (int way = 0; way <= kMaxWays; ++way) {
-      std::map<ViewId, ViewId> previous = {{from, from}};
-      std::vector<ViewId> open = {from};
-      for (std::size_t n = 0; n < open.size() && previous.count(to) == 0; ++n) {
-        for (const auto& [next, capacity] : residual[open[n]]) {
-          if (capacity > 0 && previous.emplace(next, open[n]).second) {
-            open.push_back(next);
-          }
-        }
+      const std::vector<std::size_t> reached = Reach(*from, *to);
+      if (into_[*to] == nullptr) {
+        if (way == 0) break;
+        for (const std::size_t n : reached) side.insert(views_[n]);
+        break;
       }
-      if (previous.count(to) == 0) {
-        return way == 0 ? std::set<ViewId>()
-                        : std::set<ViewId>(open.begin(), open.end());
-      }
-      double flow = std::numeric_limits<double>::infinity();
-      for (ViewId v = to; v != from; v = previous.at(v)) {
-        flow = std::min(flow, residual[previous.at(v)][v]);
-      }
-      for (ViewId v = to; v != from; v = previous.at(v)) {
-        residual[previous.at(v)][v] -= flow;
-        residual[v][previous.at(v)] += flow;
-      }
+      FillWay(*to);
     }
-    return {};
+    for (Arc* arc : used_) arc->residual = arc->evidence;
+    used_.clear();
+    return side;
   }
 
  private:
-  using Residual = std::map<ViewId, std::map<ViewId, double>>;
-  Residual residual_;
+  struct Arc {
+    std::size_t to;
+    std::size_t back;  // index of the reverse among the arcs of `to`
+    double evidence;
+    double residual;
+  };
+
+  std::optional<std::size_t> IndexOf(ViewId view) const {
+    const auto found = std::lower_bound(views_.begin(), views_.end(), view);
+    if (found == views_.end() || *found != view) return std::nullopt;
+    return static_cast<std::size_t>(found - views_.begin());
+  }
+
+  Arc* Reverse(const Arc& arc) { return &arcs_[arc.to][arc.back]; }
+
+  // The views that `from` reaches until `to` is among them, and the arc into
+  // each but the first.
+  std::vector<std::size_t> Reach(std::size_t from, std::size_t to) {
+    std::fill(into_.begin(), into_.end(), nullptr);
+    std::vector<std::size_t> reached = {from};
+    for (std::size_t n = 0; n < reached.size() && into_[to] == nullptr; ++n) {
+      for (Arc& arc : arcs_[reached[n]]) {
+        if (!(arc.residual > 0) || arc.to == from || into_[arc.to] != nullptr) {
+          continue;
+        }
+        into_[arc.to] = &arc;
+        reached.push_back(arc.to);
+      }
+    }
+    return reached;
+  }
+
+  // As much as the way that Reach found to `to` still takes.
+  void FillWay(std::size_t to) {
+    std::vector<Arc*> way;
+    double flow = std::numeric_limits<double>::infinity();
+    for (Arc* arc = into_[to]; arc != nullptr; arc = into_[Reverse(*arc)->to]) {
+      way.push_back(arc);
+      flow = std::min(flow, arc->residual);
+    }
+    for (Arc* arc : way) {
+      Arc* const reverse = Reverse(*arc);
+      arc->residual -= flow;
+      reverse->residual += flow;
+      used_.insert(used_.end(), {arc, reverse});
+    }
+  }
+
+  const std::vector<ViewId>& views_;
+  std::vector<std::vector<Arc>> arcs_;
+  std::vector<Arc*> into_;
+  std::vector<Arc*> used_;
 };
 
 double Across(const EvidenceOfPairs& evidence, const std::set<ViewId>& side,
@@ -90,11 +139,14 @@ std::vector<ViewId> SmallerSide(const ViewGraph& graph,
 void AddPoseContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
                      const EvidenceOfPairs& rejected,
                      std::vector<Contest>* contests) {
-  const LeastCut cuts(in_use);
+  LeastCut cuts(graph, in_use);
+  std::set<std::set<ViewId>> sides;
   for (const auto& entry : rejected) {
-    const std::set<ViewId> side =
-        cuts.SideOf(entry.first.first, entry.first.second);
-    if (side.empty()) continue;
+    const auto [side_entry, is_new] =
+        sides.insert(cuts.SideOf(entry.first.first, entry.first.second));
+    const std::set<ViewId>& side = *side_entry;
+    // Many pairs have the same cut.
+    if (side.empty() || !is_new) continue;
     Contest contest;
     const double for_it = Across(in_use, side, &contest.links);
     const double against = Across(rejected, side, &contest.contradictions);

@@ -99,6 +99,31 @@ TEST(GraphScales, GroupsThatShareTwoViewsShareAScale) {
             1e-9);
 }
 
+// A chain of five views with ratios, and in its last view, without a ratio
+// across it, a mesh of 20 that directions alone fix.
+TEST(GraphScales, APartThatGrowsLargerThanTheFirstIsTheFirstComponent) {
+  constexpr std::size_t kChain = 5, kMesh = 20, kJoint = kChain - 1;
+  Edges edges;
+  for (std::size_t n = 0; n < kJoint; ++n) edges.push_back({n, n + 1});
+  for (std::size_t n = 0; n < kMesh; ++n) {
+    for (std::size_t step = 1; step <= 3; ++step) {
+      edges.push_back({kJoint + n, kJoint + (n + step) % kMesh});
+    }
+  }
+  RandomProblem made = MakeRandomProblem(kJoint + kMesh, edges, 9,
+                                         /*with_ratios=*/false);
+  for (std::size_t e = 0; e + 1 < kJoint; ++e) made.AddRatio(e, e + 1);
+  const auto solution = GraphScalesAverager().Solve(made.problem, RunContext());
+  ASSERT_TRUE(solution);
+  EXPECT_EQ(solution->num_components, 2);
+  std::vector<int> expected(kJoint, 1);
+  expected.resize(kJoint + kMesh, 0);
+  EXPECT_EQ(solution->component, expected);
+  EXPECT_LT(GaugeFreeError(made.centers, solution->center_in_world,
+                           PlacedInFirst(*solution)),
+            1e-9);
+}
+
 TEST(GraphScales, ToleratesWrongEdgesAndRatios) {
   Edges edges;
   constexpr std::size_t kViews = 20;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lowlap/averaging/strategies/internal/direction_merging.h"
+#include "lowlap/averaging/strategies/internal/placed_parts.h"
 #include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
@@ -61,43 +62,28 @@ Result<TranslationSolution> SolveDirectionParts(
     const TranslationProblem& problem, const RunContext& context,
     const PartSolver& solve) {
   LOWLAP_RETURN_IF_ERROR(ValidateProblem(problem));
-  TranslationSolution solution;
-  solution.component.assign(problem.views.size(), -1);
-  solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
-  struct Placed {
-    std::vector<std::size_t> views;
-    std::vector<Vec3> centers;
-  };
-  std::vector<Placed> placed;
-  std::vector<char> is_taken(problem.views.size(), 0);
+  PlacedParts placed(problem.views.size());
+  int num_iterations = 0;
   LOWLAP_ASSIGN_OR_RETURN(const auto parts,
                           FindDirectionParts(problem, context));
   for (const DirectionPart& part : parts) {
     std::vector<std::size_t> own;
     for (std::size_t n = 0; n < part.views.size(); ++n) {
-      if (!is_taken[part.views[n]]) own.push_back(n);
+      if (!placed.Has(part.views[n])) own.push_back(n);
     }
     if (own.size() < 2) continue;
     LOWLAP_ASSIGN_OR_RETURN(const auto centers,
-                            solve(part, context, &solution.num_iterations));
-    Placed& component = placed.emplace_back();
+                            solve(part, context, &num_iterations));
+    std::vector<std::size_t> own_views;
+    std::vector<Vec3> own_centers;
     for (const std::size_t n : own) {
-      is_taken[part.views[n]] = 1;
-      component.views.push_back(part.views[n]);
-      component.centers.push_back(centers[n]);
+      own_views.push_back(part.views[n]);
+      own_centers.push_back(centers[n]);
     }
+    placed.Add(std::move(own_views), std::move(own_centers));
   }
-  std::stable_sort(placed.begin(), placed.end(),
-                   [](const Placed& a, const Placed& b) {
-                     return a.views.size() > b.views.size();
-                   });
-  for (const Placed& component : placed) {
-    for (std::size_t n = 0; n < component.views.size(); ++n) {
-      solution.component[component.views[n]] = solution.num_components;
-      solution.center_in_world[component.views[n]] = component.centers[n];
-    }
-    ++solution.num_components;
-  }
+  TranslationSolution solution = std::move(placed).MakeSolution();
+  solution.num_iterations = num_iterations;
   return solution;
 }
 

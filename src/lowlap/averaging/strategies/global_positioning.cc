@@ -1,11 +1,12 @@
 #include "lowlap/averaging/strategies/internal/global_positioning.h"
 
 #include <Eigen/LU>
-#include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "lowlap/averaging/internal/cancellation.h"
+#include "lowlap/averaging/strategies/internal/placed_parts.h"
 #include "lowlap/averaging/strategies/internal/positioning_solver.h"
 #include "lowlap/averaging/strategies/internal/track_groups.h"
 #include "lowlap/core/internal/propagate.h"
@@ -214,43 +215,23 @@ Result<TranslationSolution> GlobalPositioningAverager::Solve(
                      "global positioning: the start needs one centre per view");
   }
   LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, 0, 1));
-  TranslationSolution solution;
-  solution.component.assign(problem.views.size(), -1);
-  solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
-  std::vector<Part> parts;
-  std::vector<bool> is_covered(problem.views.size(), false);
+  PlacedParts placed(problem.views.size());
+  int num_iterations = 0;
   for (std::vector<std::size_t>& views : GroupViewsByTracks(
            problem.views.size(), problem.tracks, options_.min_views_per_track,
            options_.min_shared_points)) {
-    if (std::all_of(views.begin(), views.end(),
-                    [&](std::size_t view) { return is_covered[view]; })) {
-      continue;
-    }
+    if (placed.HasAll(views)) continue;
     LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, 0, options_.max_iterations));
     LOWLAP_ASSIGN_OR_RETURN(
         auto solved,
         SolveGroup(StartPart(problem, options_, std::move(views), context.seed),
-                   options_, context, &solution.num_iterations));
+                   options_, context, &num_iterations));
     for (Part& part : solved) {
-      for (const std::size_t view : part.views) is_covered[view] = true;
-      parts.push_back(std::move(part));
+      placed.Add(std::move(part.views), std::move(part.state.centers));
     }
   }
-  std::stable_sort(parts.begin(), parts.end(),
-                   [](const Part& a, const Part& b) {
-                     return a.views.size() > b.views.size();
-                   });
-  for (const Part& part : parts) {
-    bool adds_views = false;
-    for (std::size_t n = 0; n < part.views.size(); ++n) {
-      const std::size_t view = part.views[n];
-      if (solution.component[view] >= 0) continue;
-      solution.component[view] = solution.num_components;
-      solution.center_in_world[view] = part.state.centers[n];
-      adds_views = true;
-    }
-    if (adds_views) ++solution.num_components;
-  }
+  TranslationSolution solution = std::move(placed).MakeSolution();
+  solution.num_iterations = num_iterations;
   return solution;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/scales/internal/center_solver.h"
@@ -12,6 +13,7 @@
 #include "lowlap/averaging/scales/internal/edge_scales.h"
 #include "lowlap/averaging/scales/internal/refine_centers.h"
 #include "lowlap/averaging/strategies/internal/component_closure.h"
+#include "lowlap/averaging/strategies/internal/placed_parts.h"
 #include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
@@ -48,10 +50,6 @@ class Growth {
         centers_(problem.views.size(), Vec3::Zero()),
         used_(groups.size(), false) {}
 
-  const std::vector<bool>& placed() const { return placed_; }
-  const std::vector<Vec3>& centers() const { return centers_; }
-  std::vector<Vec3>* mutable_centers() { return &centers_; }
-
   Status Start(std::size_t g) {
     const auto local = SolveScaleGroup(problem_, scales_, groups_[g], context_);
     if (!local) return tl::unexpected<Error>(local.error());
@@ -79,6 +77,22 @@ class Growth {
       }
     }
     return {};
+  }
+
+  Status Refine(int max_iterations) {
+    return RefineCenters(problem_, placed_, &centers_, context_,
+                         max_iterations);
+  }
+
+  void AddTo(PlacedParts* parts) const {
+    std::vector<std::size_t> views;
+    std::vector<Vec3> centers;
+    for (std::size_t view = 0; view < placed_.size(); ++view) {
+      if (!placed_[view]) continue;
+      views.push_back(view);
+      centers.push_back(centers_[view]);
+    }
+    parts->Add(std::move(views), std::move(centers));
   }
 
  private:
@@ -253,34 +267,23 @@ Result<TranslationSolution> GraphScalesAverager::Solve(
     const TranslationProblem& problem, const RunContext& context) const {
   LOWLAP_RETURN_IF_ERROR(ValidateProblem(problem));
   LOWLAP_RETURN_IF_ERROR(options_.Validate());
-  const std::size_t num_views = problem.views.size();
   LOWLAP_ASSIGN_OR_RETURN(
       const auto scales,
       AverageEdgeScales(problem, context, options_.max_scale_iterations));
   const std::vector<EdgeGroup> groups = RankedEdgeGroups(problem, scales);
 
-  TranslationSolution solution;
-  solution.num_iterations = scales.num_iterations;
-  solution.component.assign(num_views, -1);
-  solution.center_in_world.assign(num_views, Vec3::Zero());
+  // A small group may grow larger than one before it.
+  PlacedParts parts(problem.views.size());
   for (std::size_t g = 0; g < groups.size(); ++g) {
-    const bool starts_here = std::any_of(
-        groups[g].views.begin(), groups[g].views.end(),
-        [&](std::size_t view) { return solution.component[view] < 0; });
-    if (!starts_here) continue;
+    if (parts.HasAll(groups[g].views)) continue;
     Growth growth(problem, scales, groups, context);
     LOWLAP_RETURN_IF_ERROR(growth.Start(g));
     LOWLAP_RETURN_IF_ERROR(growth.Grow());
-    LOWLAP_RETURN_IF_ERROR(RefineCenters(problem, growth.placed(),
-                                         growth.mutable_centers(), context,
-                                         options_.max_refinement_iterations));
-    for (std::size_t view = 0; view < num_views; ++view) {
-      if (!growth.placed()[view] || solution.component[view] >= 0) continue;
-      solution.component[view] = solution.num_components;
-      solution.center_in_world[view] = growth.centers()[view];
-    }
-    ++solution.num_components;
+    LOWLAP_RETURN_IF_ERROR(growth.Refine(options_.max_refinement_iterations));
+    growth.AddTo(&parts);
   }
+  TranslationSolution solution = std::move(parts).MakeSolution();
+  solution.num_iterations = scales.num_iterations;
   return solution;
 }
 

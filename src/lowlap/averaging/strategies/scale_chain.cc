@@ -1,11 +1,13 @@
 #include "lowlap/averaging/strategies/internal/scale_chain.h"
 
 #include <cmath>
+#include <utility>
 
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/scales/internal/edge_groups.h"
 #include "lowlap/averaging/scales/internal/edge_scales.h"
+#include "lowlap/averaging/strategies/internal/placed_parts.h"
 #include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
@@ -14,9 +16,7 @@ Result<TranslationSolution> ScaleChainAverager::Solve(
     const TranslationProblem& problem, const RunContext& context) const {
   LOWLAP_RETURN_IF_ERROR(ValidateProblem(problem));
   const std::size_t num_views = problem.views.size();
-  TranslationSolution solution;
-  solution.component.assign(num_views, -1);
-  solution.center_in_world.assign(num_views, Vec3::Zero());
+  PlacedParts parts(num_views);
   const EdgeScales scales = ChainEdgeScales(problem);
   const std::vector<EdgeGroup> groups = RankedEdgeGroups(problem, scales);
   for (std::size_t g = 0; g < groups.size(); ++g) {
@@ -46,16 +46,13 @@ Result<TranslationSolution> ScaleChainAverager::Solve(
         known[edge.first] = true;
       }
     }
-    bool adds_views = false;
+    std::vector<Vec3> of_group;
     for (const std::size_t view : group.views) {
-      if (solution.component[view] >= 0) continue;
-      solution.component[view] = solution.num_components;
-      solution.center_in_world[view] = centers[view];
-      adds_views = true;
+      of_group.push_back(centers[view]);
     }
-    if (adds_views) ++solution.num_components;
+    parts.Add(group.views, std::move(of_group));
   }
-  return solution;
+  return std::move(parts).MakeSolution();
 }
 
 }  // namespace lowlap

@@ -1,9 +1,11 @@
 #include "lowlap/averaging/strategies/internal/triplet_programs.h"
 
 #include <map>
+#include <utility>
 
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/strategies/internal/linear_program.h"
+#include "lowlap/averaging/strategies/internal/placed_parts.h"
 #include "lowlap/averaging/strategies/internal/triplet_baselines.h"
 #include "lowlap/core/internal/propagate.h"
 
@@ -111,29 +113,28 @@ Result<TranslationSolution> TripletProgramAverager::Solve(
   LOWLAP_RETURN_IF_ERROR(ValidateProblem(problem));
   LOWLAP_RETURN_IF_ERROR(options_.Validate());
   LOWLAP_RETURN_IF_ERROR(AskToGoOn(context, 0, 1));
-  TranslationSolution solution;
-  solution.component.assign(problem.views.size(), -1);
-  solution.center_in_world.assign(problem.views.size(), Vec3::Zero());
+  PlacedParts parts(problem.views.size());
+  int num_iterations = 0;
   for (const std::vector<TripletMotion>& triplets :
        FindTripletBaselines(problem, options_)) {
     LOWLAP_RETURN_IF_ERROR(CheckSize(Name(), norm_, triplets.size()));
     CenterProgram program(problem, norm_);
     for (const TripletMotion& motion : triplets) program.Add(motion);
-    bool adds_views = false;
-    for (const auto& entry : program.centers()) {
-      adds_views = adds_views || solution.component[entry.first] < 0;
-    }
-    if (!adds_views) continue;
+    std::vector<std::size_t> views;
+    for (const auto& entry : program.centers()) views.push_back(entry.first);
+    if (parts.HasAll(views)) continue;
     LOWLAP_ASSIGN_OR_RETURN(const auto optimum, program.Minimize(context));
-    solution.num_iterations += optimum.num_iterations;
-    for (const auto& [view, x] : program.centers()) {
-      if (solution.component[view] >= 0) continue;
-      solution.component[view] = solution.num_components;
-      solution.center_in_world[view] = {
-          optimum.values[x], optimum.values[x + 1], optimum.values[x + 2]};
+    num_iterations += optimum.num_iterations;
+    std::vector<Vec3> centers;
+    for (const auto& entry : program.centers()) {
+      const std::size_t x = entry.second;
+      centers.emplace_back(optimum.values[x], optimum.values[x + 1],
+                           optimum.values[x + 2]);
     }
-    ++solution.num_components;
+    parts.Add(std::move(views), std::move(centers));
   }
+  TranslationSolution solution = std::move(parts).MakeSolution();
+  solution.num_iterations = num_iterations;
   return solution;
 }
 
