@@ -13,8 +13,12 @@ namespace lowlap {
 namespace {
 
 Result<GroundTruth> ReadTruth(const std::string& path, const Scene& scene) {
-  // Its scene is what was measured.
-  if (onedsfm::IsProblemFolder(path)) return onedsfm::ReadTruePoses(path);
+  if (onedsfm::IsProblemFolder(path)) {
+    // As a scene it is what was measured.
+    LOWLAP_ASSIGN_OR_RETURN(const Scene solved,
+                            onedsfm::ReadTrueCameras(path));
+    return GroundTruthFromScene(solved, scene);
+  }
   std::error_code ignored;
   if (!IsScene(path) && std::filesystem::is_directory(path, ignored)) {
     LOWLAP_ASSIGN_OR_RETURN(const auto poses, strecha::ReadGroundTruth(path));

@@ -10,6 +10,7 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/validation.h"
 #include "support/random_vectors.h"
+#include "third_party_adapters/internal/camera_files.h"
 #include "third_party_adapters/onedsfm/internal/problem.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -185,14 +186,28 @@ TEST_F(OneDSfmFolder, KeypointsAreSeenWhereTheIntrinsicsPutThem) {
 }
 
 TEST_F(OneDSfmFolder, TruePosesAreOursAndEmptyCamerasAreLeftOut) {
-  const auto truth = onedsfm::ReadTruePoses(folder_.Path());
+  const auto truth = onedsfm::ReadTrueCameras(folder_.Path());
   ASSERT_TRUE(truth) << truth.error().ToString();
-  EXPECT_EQ(truth->size(), 4u);
-  EXPECT_EQ(truth->count(1), 0u);
-  for (const auto& [n, pose] : *truth) {
+  EXPECT_EQ(truth->poses.size(), 4u);
+  EXPECT_EQ(truth->views.count(1), 0u);
+  EXPECT_EQ(truth->views.at(4).filename, "e.jpg");
+  for (const auto& [n, pose] : truth->poses) {
     EXPECT_LT((pose.rotation - poses_[n.value()].rotation).norm(), 1e-12);
     EXPECT_LT((pose.center - poses_[n.value()].center).norm(), 1e-12);
   }
+}
+
+// Though its ids are others.
+TEST_F(OneDSfmFolder, IsATruthForScenesOfTheSameNames) {
+  Scene scene;
+  scene.views[7].local_path = "images";
+  scene.views[7].filename = "e.jpg";
+  scene.views[0].filename = "c.png";
+  const auto truth = ReadGroundTruth(folder_.Path(), scene);
+  ASSERT_TRUE(truth) << truth.error().ToString();
+  ASSERT_EQ(truth->size(), 2u);
+  EXPECT_LT((truth->at(7).center - poses_[4].center).norm(), 1e-12);
+  EXPECT_LT((truth->at(0).center - poses_[2].center).norm(), 1e-12);
 }
 
 TEST_F(OneDSfmFolder, GeometriesAloneAreEnough) {
@@ -203,7 +218,7 @@ TEST_F(OneDSfmFolder, GeometriesAloneAreEnough) {
   EXPECT_EQ(problem->scene.views.size(), 3u);
   EXPECT_EQ(problem->scene.relative_poses.size(), 2u);
   EXPECT_TRUE(ValidateScene(problem->scene));
-  const auto truth = onedsfm::ReadTruePoses(bare.Path("sub"));
+  const auto truth = onedsfm::ReadTrueCameras(bare.Path("sub"));
   ASSERT_FALSE(truth);
   EXPECT_EQ(truth.error().code, ErrorCode::kNotFound);
 }
@@ -296,7 +311,7 @@ TEST_F(OneDSfmFolder, OtherMalformedFilesAreErrorsWithAPlace) {
 TEST_F(OneDSfmFolder, ATruncatedBundleIsAnError) {
   const std::string path =
       folder_.Write("gt_bundle.out", "# Bundle file v0.3\n2 0\n700 0 0\n1 0 0");
-  const auto truth = onedsfm::ReadTruePoses(folder_.Path());
+  const auto truth = onedsfm::ReadTrueCameras(folder_.Path());
   ASSERT_FALSE(truth);
   EXPECT_EQ(truth.error().code, ErrorCode::kParse);
   EXPECT_EQ(truth.error().file, path);

@@ -49,6 +49,18 @@ TEST(GroundTruthByName, AnExactNameIsNotTakenByALooseOne) {
   EXPECT_EQ(truth->count(1), 1u);
 }
 
+TEST(GroundTruthByName, TimestampsHaveNoExtension) {
+  const Scene scene = SceneOf({{"", "17.25.png"}, {"", "17.50.png"}});
+  const auto truth = GroundTruthByName(
+      scene, {{"17.25", PoseAt(1)}, {"17.50", PoseAt(2)}});
+  ASSERT_TRUE(truth.has_value()) << truth.error().ToString();
+  ASSERT_EQ(truth->size(), 2u);
+  EXPECT_EQ(truth->at(0).center.x(), 1);
+  EXPECT_EQ(truth->at(1).center.x(), 2);
+  // Nor is another moment of the same second the same.
+  EXPECT_FALSE(GroundTruthByName(scene, {{"17.75", PoseAt(3)}}).has_value());
+}
+
 TEST(GroundTruthByName, TwoTruthsOfOneStemAreNotGuessedAt) {
   const Scene scene = SceneOf({{"", "1.tif"}, {"", "2.jpg"}});
   const auto truth = GroundTruthByName(

@@ -1,4 +1,5 @@
 #include <array>
+#include <cctype>
 #include <cstddef>
 
 #include "lowlap/evaluation/pose_errors.h"
@@ -6,11 +7,15 @@
 namespace lowlap {
 namespace {
 
+// An extension starts with a letter: timestamps have none.
 std::string WithoutExtension(const std::string& name) {
   const std::size_t slash = name.find_last_of('/');
   const std::size_t dot = name.find_last_of('.');
-  const bool has_extension = dot != std::string::npos && dot != 0 &&
-                             (slash == std::string::npos || dot > slash + 1);
+  const bool has_extension =
+      dot != std::string::npos && dot != 0 &&
+      (slash == std::string::npos || dot > slash + 1) &&
+      dot + 1 < name.size() &&
+      std::isalpha(static_cast<unsigned char>(name[dot + 1])) != 0;
   return has_extension ? name.substr(0, dot) : name;
 }
 

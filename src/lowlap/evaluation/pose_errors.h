@@ -16,7 +16,8 @@ using GroundTruth = std::map<ViewId, Pose>;
 
 /// Assigns true poses to the views of a scene by image name: the path below
 /// the image folder if it matches, else the file name, else the file name
-/// without extension. Views without truth are left out.
+/// without extension (which starts with a letter). Views without truth are left
+/// out.
 ///
 /// Errors: kInvalidScene if a name fits two views equally well;
 /// kInsufficientData if no view has a truth.

@@ -71,18 +71,26 @@ std::set<ImageIndex> UsedImages(const Files& files) {
   return used;
 }
 
+Status CheckListed(const std::vector<bundler::ListedImage>& list,
+                   ImageIndex index, const std::string& folder) {
+  if (index < list.size()) return {};
+  return MakeError(ErrorCode::kInvalidScene,
+                   "has " + std::to_string(list.size()) + " images; image " +
+                       std::to_string(index) + " is used",
+                   PathOf(folder, "list.txt"));
+}
+
+void SetPath(const fs::path& path, View* view) {
+  view->local_path = path.parent_path().generic_string();
+  view->filename = path.filename().string();
+}
+
 Status AddView(const Files& files, const std::string& folder, ImageIndex index,
                Scene* scene) {
   std::string path = std::to_string(index);
   double focal_px = 0;
   if (files.list) {
-    if (index >= files.list->size()) {
-      return MakeError(ErrorCode::kInvalidScene,
-                       "has " + std::to_string(files.list->size()) +
-                           " images; image " + std::to_string(index) +
-                           " is used",
-                       PathOf(folder, "list.txt"));
-    }
+    LOWLAP_RETURN_IF_ERROR(CheckListed(*files.list, index, folder));
     path = (*files.list)[index].name;
     focal_px = (*files.list)[index].focal_px;
   }
@@ -105,8 +113,7 @@ Status AddView(const Files& files, const std::string& folder, ImageIndex index,
       features.points_px.push_back(key - Vec2::Ones());
     }
   }
-  view.local_path = fs::path(path).parent_path().generic_string();
-  view.filename = fs::path(path).filename().string();
+  SetPath(path, &view);
   view.pose_id = index;
   if (focal_px > 0 && view.width_px > 0 && view.height_px > 0) {
     Intrinsic intrinsic;
@@ -248,8 +255,9 @@ Result<Problem> ReadProblem(const std::string& folder) {
   return problem;
 }
 
-Result<std::map<ViewId, Pose>> ReadTruePoses(const std::string& folder) {
+Result<Scene> ReadTrueCameras(const std::string& folder) {
   std::optional<std::map<ViewId, Pose>> poses;
+  std::optional<std::vector<bundler::ListedImage>> list;
   LOWLAP_RETURN_IF_ERROR(ReadIfThere(PathOf(folder, "gt_bundle.out"),
                                      bundler::ParseBundlePoses, &poses));
   if (!poses) {
@@ -257,7 +265,18 @@ Result<std::map<ViewId, Pose>> ReadTruePoses(const std::string& folder) {
                      "there is no gt_bundle.out, the reference cameras",
                      folder);
   }
-  return std::move(*poses);
+  LOWLAP_RETURN_IF_ERROR(
+      ReadIfThere(PathOf(folder, "list.txt"), bundler::ParseList, &list));
+  Scene scene;
+  for (const auto& [index, pose] : *poses) {
+    View& view = scene.views[index];
+    view.pose_id = index.value();
+    scene.poses[view.pose_id] = pose;
+    if (!list) continue;
+    LOWLAP_RETURN_IF_ERROR(CheckListed(*list, index.value(), folder));
+    SetPath((*list)[index.value()].name, &view);
+  }
+  return scene;
 }
 
 }  // namespace lowlap::onedsfm

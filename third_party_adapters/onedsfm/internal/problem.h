@@ -49,9 +49,11 @@ struct Problem {
 /// twice (in that image), tracks without coords.txt.
 Result<Problem> ReadProblem(const std::string& folder);
 
-/// The reference cameras of gt_bundle.out by image index, in the frame and unit
-/// of the file: camera-from-world rotation D R, centre -R^T t. Cameras that the
-/// file leaves empty are left out. kNotFound without the file.
-Result<std::map<ViewId, Pose>> ReadTruePoses(const std::string& folder);
+/// Views with the reference cameras of gt_bundle.out, by image index, in the
+/// frame and unit of the file: camera-from-world rotation D R, centre -R^T t;
+/// with the names of list.txt, if it is there. Cameras that the file leaves
+/// empty are left out. kNotFound without gt_bundle.out; kInvalidScene if it has
+/// more cameras than list.txt names.
+Result<Scene> ReadTrueCameras(const std::string& folder);
 
 }  // namespace lowlap::onedsfm
