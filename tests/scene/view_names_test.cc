@@ -41,6 +41,17 @@ TEST(ViewNames, NumbersThatNameAllViewsAreNeverIds) {
               IsError(ErrorCode::kInvalidArgument, "no view"));
 }
 
+TEST(ViewNames, PathsTellViewsOfOneFileNameApart) {
+  Scene scene = SceneWith({{0, "0001.jpg"}, {1, "0001.jpg"}});
+  scene.views.at(0).local_path = "left";
+  scene.views.at(1).local_path = "right/";
+  const ViewNames names(scene);
+  EXPECT_EQ(*names.Find("left/0001.jpg"), 0u);
+  EXPECT_EQ(*names.Find("right/0001.jpg"), 1u);
+  EXPECT_THAT(names.Find("0001.jpg"),
+              IsError(ErrorCode::kInvalidArgument, "several views"));
+}
+
 TEST(ViewNames, AWordThatSeveralViewsFitIsRefused) {
   const ViewNames names(SceneWith(
       {{0, "a.jpg"}, {1, "a.png"}, {2, "left/b.jpg"}, {3, "right/b.jpg"}}));

@@ -20,10 +20,11 @@ std::string WithoutLeadingZeros(const std::string& number) {
 }  // namespace
 
 ViewNames::ViewNames(const Scene& scene) {
-  Index whole, last_part, stem, number, id_text;
+  Index below_root, whole, last_part, stem, number, id_text;
   bool all_numbers = !scene.views.empty();
   for (const auto& [id, view] : scene.views) {
     const std::filesystem::path path(view.filename);
+    below_root[(std::filesystem::path(view.local_path) / path).generic_string()].push_back(id);
     whole[view.filename].push_back(id);
     last_part[path.filename().string()].push_back(id);
     stem[path.stem().string()].push_back(id);
@@ -31,8 +32,8 @@ ViewNames::ViewNames(const Scene& scene) {
     id_text[std::to_string(id.value())].push_back(id);
     all_numbers = all_numbers && IsNumber(path.stem().string());
   }
-  indices_ = {std::move(whole), std::move(last_part), std::move(stem),
-              std::move(all_numbers ? number : id_text)};
+  indices_ = {std::move(below_root), std::move(whole), std::move(last_part),
+              std::move(stem), std::move(all_numbers ? number : id_text)};
 }
 
 Result<ViewId> ViewNames::Find(const std::string& word) const {

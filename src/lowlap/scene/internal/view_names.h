@@ -10,6 +10,7 @@
 namespace lowlap {
 
 /// Views by what people call them. A word is looked up, in this order, as
+///   the path below the image folder ("cameras/left/0001.jpg"),
 ///   the file name, as the scene has it ("left/0001.jpg"),
 ///   its last part ("0001.jpg"), or that without extension ("0001"),
 ///   the id of a view.
