@@ -301,17 +301,7 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
   summary.solve = std::move(*result);
   summary.stages = stages->stages();
   if (IsInterrupted()) return MakeError(ErrorCode::kCancelled, {});
-  SceneNotes notes;
-  const auto add_scene_file = [&](const Scene& solved,
-                                  FileSet* files) -> Status {
-    if (output.scene_file.empty()) return {};
-    LOWLAP_ASSIGN_OR_RETURN(notes,
-                            WriteScene(solved, output.scene_file, {}, files));
-    return {};
-  };
-  LOWLAP_RETURN_IF_ERROR(
-      WriteOutputs(scene, summary, context, output.folder, add_scene_file));
-  for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
+  LOWLAP_RETURN_IF_ERROR(WriteOutputs(scene, summary, context, output.folder));
 
   PrintPoses(summary.solve->poses, scene);
   if (summary.solve->adjustment) {
@@ -331,6 +321,11 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
       "summary.json\n",
       output.folder.c_str());
   if (!output.scene_file.empty()) {
+    // A format that cannot hold the scene costs none of the other results.
+    LOWLAP_ASSIGN_OR_RETURN(
+        const SceneNotes notes,
+        WriteScene(WithAbsoluteRoot(std::move(scene)), output.scene_file));
+    for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
     std::printf("and the scene to %s\n", output.scene_file.c_str());
   }
   const PoseSummary& poses = summary.solve->poses;
