@@ -2,7 +2,6 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/merge/merge_models.h"
 #include "python/solution.h"
@@ -84,7 +83,6 @@ Solution Merge(const py::object& given, const py::kwargs& kwargs) {
         MeasuredSceneOf(scene, input, call.get(), &stages, match);
     solution.scene = std::make_shared<Scene>(*measured.scene);
     solution.summary.pairs = std::move(measured.pairs);
-    RestoreGivenIntrinsics(solution.scene.get());
   } else {
     photographs.intrinsics = IntrinsicsOf(intrinsics, focal_px);
     solution =

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 
 namespace lowlap {
@@ -137,6 +138,7 @@ Scene SceneOfPairs(const Scene& scene,
 }
 
 void DropSolution(Scene* scene) {
+  RestoreGivenIntrinsics(scene);
   scene->scale_ratios.clear();
   scene->poses.clear();
   scene->structure.clear();
