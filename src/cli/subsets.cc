@@ -63,8 +63,9 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
   for (const std::string& kind : flags.solve.adjust_features) {
     text += " " + kind;
   }
-  return text + "\nrefine " + flags.solve.refine_intrinsics +
-         "\nprincipal point " +
+  return text + "\nties " + flags.solve.coplanar_ties +
+         (flags.solve.directions ? "\ndirections" : "\nno directions") +
+         "\nrefine " + flags.solve.refine_intrinsics + "\nprincipal point " +
          NumberText(flags.solve.principal_point_stddev, 9) + "\n";
 }
 
