@@ -94,6 +94,37 @@ TEST(ReliabilityWarnings, AViewThatItsRelativePosesContradict) {
   EXPECT_THAT(warnings[0].against, Contains(ViewPair{4, 5}));
 }
 
+// The points of one plane leave two motions, of which nothing tells the right.
+TEST(ReliabilityWarnings, ViewsThatHangOnOneOfTwoMotions) {
+  SyntheticScene synthetic = WellMeasuredScene("chain");
+  RelativePose& last = synthetic.scene.relative_poses.at({6, 7});
+  last.alternatives.push_back({last.rotation, -last.direction, {}, {}});
+  auto warnings = WarningsOf(synthetic.scene);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].reason, WarningReason::kUntoldPoses);
+  EXPECT_THAT(warnings[0].views, ElementsAre(7));
+  EXPECT_THAT(warnings[0].untold, ElementsAre(ViewPair{6, 7}));
+
+  // Others hold the view.
+  synthetic = WellMeasuredScene("window:3");
+  RelativePose& one = synthetic.scene.relative_poses.at({6, 7});
+  one.alternatives.push_back({one.rotation, -one.direction, {}, {}});
+  EXPECT_THAT(WarningsOf(synthetic.scene), IsEmpty());
+}
+
+TEST(ReliabilityWarnings, TwoViewsThatTwoMotionsExplain) {
+  SyntheticOptions options;
+  options.num_views = 2;
+  SyntheticScene synthetic = SceneWithTrueRatios(options);
+  RelativePose& only = synthetic.scene.relative_poses.at({0, 1});
+  only.log10_nfa = -100;
+  EXPECT_THAT(WarningsOf(synthetic.scene), IsEmpty());
+  only.alternatives.push_back({only.rotation, -only.direction, {}, {}});
+  const auto warnings = WarningsOf(synthetic.scene);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0].views, ElementsAre(0, 1));
+}
+
 TEST(ReliabilityWarnings, ViewsThatHangOnAWeakRatio) {
   SyntheticScene synthetic = WellMeasuredScene("chain");
   FindRatio({3, 4, 5}, &synthetic.scene)->log10_nfa = -1;

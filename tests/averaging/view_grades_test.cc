@@ -63,9 +63,11 @@ TEST(ViewGrades, AreThoseOfTheWarningsInWords) {
   summary.reliability_warnings = {
       Warning(WarningReason::kLostFeatures, {3}),
       Warning(WarningReason::kDoubtfulNeighbors, {4})};
-  LoopClosing loop;
-  loop.edges = {{0, 1}, {1, 2}, {0, 2}};
-  summary.loops = {loop};
+  LoopClosing shared_out, cut;
+  shared_out.edges = {{0, 1}, {1, 2}, {0, 2}};
+  cut.edges = {{2, 3}, {3, 5}, {2, 5}};
+  cut.left_out = ViewPair{3, 5};
+  summary.loops = {shared_out, cut};
   summary.weak_ratios = {{0, 1, 2}};
   summary.kept_outliers = {{{0, 5}, OutlierReason::kDirection, 9}};
   std::set<ViewId> named, not_firm;
@@ -75,7 +77,7 @@ TEST(ViewGrades, AreThoseOfTheWarningsInWords) {
   for (const auto& [view, graded] : GradeViews(summary)) {
     if (graded.grade != ViewGrade::kFirm) not_firm.insert(view);
   }
-  EXPECT_THAT(not_firm, ElementsAre(1, 2, 3, 4, 6));
+  EXPECT_THAT(not_firm, ElementsAre(1, 2, 3, 4, 5, 6));
   EXPECT_EQ(named, not_firm);
 }
 

@@ -83,9 +83,9 @@ std::string CauseOf(WarningReason reason) {
     case WarningReason::kContradictedRatios:
       return "the scale ratios that join them to the others disagree";
     case WarningReason::kUntoldPoses:
-      return "they hang on relative poses that are hardly determined, or of "
-             "too few matches to tell whether they are right, which no other "
-             "confirms";
+      return "they hang on relative poses that are hardly determined, that two "
+             "motions explain alike, or of too few matches to tell whether "
+             "they are right, which no other confirms";
     case WarningReason::kUnheld:
       return "nothing that agrees with their places holds them";
     case WarningReason::kDoubtfulNeighbors:
@@ -141,7 +141,7 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
                         writer.Pairs({*loop.left_out}) + ", was left out: "
                   : std::string("all are used: ")) +
              writer.Pairs(loop.edges) + ".",
-         {},
+         loop.DoubtfulViews(),
          "Doubtful: relative poses whose loops do not close, and nothing tells "
          "which are wrong (" +
              std::to_string(summary.loops.size()) + ")"});

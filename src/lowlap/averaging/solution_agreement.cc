@@ -129,9 +129,10 @@ SolutionAgreement FindAgreement(const Scene& scene,
   comparison.SplitPoses(&agreement);
   const std::set<ViewPair> untold(matches.untold.begin(), matches.untold.end());
   for (const ViewPair& views : agreement.held) {
-    if (IsVague(scene.relative_poses.at(views))) {
+    const RelativePose& pose = scene.relative_poses.at(views);
+    if (IsVague(pose)) {
       agreement.vague.push_back(views);
-    } else if (untold.count(views) > 0) {
+    } else if (untold.count(views) > 0 || !pose.alternatives.empty()) {
       agreement.untold.push_back(views);
     }
   }

@@ -44,6 +44,9 @@ std::vector<ViewDoubt> ViewDoubts(const PoseSummary& summary) {
   for (const Contest& contest : summary.contests) {
     doubts.push_back({"contest", contest.views});
   }
+  for (const LoopClosing& loop : summary.loops) {
+    doubts.push_back({"open_loop", loop.DoubtfulViews()});
+  }
   for (const ReliabilityWarning& warning : summary.reliability_warnings) {
     doubts.push_back({WarningReasonName(warning.reason), warning.views});
   }

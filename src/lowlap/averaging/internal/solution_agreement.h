@@ -29,7 +29,7 @@ struct SolutionAgreement {
   std::vector<ViewPair> agreeing, held, contradicting;
   /// Of those held: whose stated deviation is more than that of a weak ratio,
   /// so that they would agree with anything; and others, of which their matches
-  /// tell nothing.
+  /// tell nothing, or not which of two motions it is.
   std::vector<ViewPair> vague, untold;
   /// Not in use, for their own matches.
   std::vector<ViewPair> refuted;  // sorted

@@ -21,8 +21,8 @@ const char* ViewGradeName(ViewGrade grade);
 
 struct GradedView {
   ViewGrade grade = ViewGrade::kFirm;
-  /// Of kDoubtful: "contested_link", "contest" and those of WarningReasonName,
-  /// each once.
+  /// Of kDoubtful: "contested_link", "contest", "open_loop" and those of
+  /// WarningReasonName, each once.
   std::vector<std::string> reasons;
 };
 

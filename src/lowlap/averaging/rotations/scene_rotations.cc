@@ -271,6 +271,14 @@ bool OutlierEdge::IsFalse() const {
   return false;
 }
 
+std::vector<ViewId> LoopClosing::DoubtfulViews() const {
+  std::set<ViewId> views;
+  if (left_out) {
+    for (const ViewPair& edge : edges) views.insert({edge.first, edge.second});
+  }
+  return {views.begin(), views.end()};
+}
+
 std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers) {
   std::vector<ViewPair> pairs;
   pairs.reserve(outliers.size());

@@ -63,6 +63,10 @@ struct LoopClosing {
   /// The closing is too large to be shared out among them: the one of least
   /// evidence was left out.
   std::optional<ViewPair> left_out;
+
+  /// Those of the edges, ascending, if one was left out: it may be another that
+  /// is false. None if the edges share out what is left.
+  std::vector<ViewId> DoubtfulViews() const;
 };
 
 /// A kept relative pose that is the only link of `views` to the others and is
