@@ -18,7 +18,9 @@
 # those that it asks for while you are still there. That is what follows, with
 # the rendered photographs of the bundled room in place of your own.
 #
-#   tutorials/07_room_with_a_phone.sh [LOWLAP] [OUT]
+#   bash tutorials/07_room_with_a_phone.sh [LOWLAP] [OUT]
+#
+# from the clone, after the quickstart.
 set -euo pipefail
 lowlap=$(realpath "${1:-build/quickstart/src/cli/lowlap}")
 out=$(realpath -m "${2:-out/room_with_a_phone}")

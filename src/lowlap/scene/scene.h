@@ -42,7 +42,7 @@ struct Scene {
   Scene(Scene&& other) noexcept;
   Scene& operator=(Scene&& other) noexcept;
 
-  std::string root_path;  // image folder; may be relative to the scene file
+  std::string root_path;  // image folder; relative: to where the program runs
   std::map<ViewId, View> views;
   std::map<IntrinsicId, Intrinsic> intrinsics;
   /// Of the intrinsics that an adjustment moved: as they were given originally.

@@ -42,9 +42,9 @@ Status CheckOutputFolder(const std::string& folder);
 /// Makes the folder and writes what every solving command leaves, as a FileSet:
 /// sfm_data.json (OpenMVG loads it), scene.lowlap (everything), cloud.ply
 /// (points, lines, cameras), report.html (for a person) and summary.json (for
-/// a program). The root_path is made absolute (WithAbsoluteRoot). The page shows
-/// the photographs, if they are where the scene says. Errors: kIo; kCancelled,
-/// with nothing written.
+/// a program). The root_path is made absolute (WithAbsoluteRoot). The page
+/// shows the photographs, if they are where the scene says. Errors: kIo;
+/// kCancelled, with nothing written.
 Status WriteOutputs(Scene scene, const RunSummary& summary,
                     const RunContext& context, const std::string& folder);
 
