@@ -276,9 +276,13 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
       summary.weak_ratios.push_back(views);
     }
   }
-  summary.agreement = std::make_shared<const SolutionAgreement>(FindAgreement(
-      *scene, problem, *solution, rotations.matches,
-      {options.outlier_reach, sigma_rad, RadFromDeg(options.least_false_deg)}));
+  // Where false directions are the rule, they are no measure of the others.
+  const double typical_rad = std::min(
+      sigma_rad, 3 * RadFromDeg(kLittleDeg) / options.outlier_reach);
+  summary.agreement = std::make_shared<const SolutionAgreement>(
+      FindAgreement(*scene, problem, *solution, rotations.matches,
+                    {options.outlier_reach, typical_rad,
+                     RadFromDeg(options.least_false_deg)}));
   summary.reliability_warnings = FindReliabilityWarnings(
       *scene, *summary.agreement, {}, &summary.firm_evidence);
   summary.contests = ContestsAmong(*scene, problem, *solution, summary);

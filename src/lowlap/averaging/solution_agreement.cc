@@ -14,8 +14,21 @@
 namespace lowlap {
 namespace {
 
+// Half the way to another motion that explains the pair as well.
+double HalfWayToAlternatives(const RelativePose& pose) {
+  double farthest_rad = 0;
+  for (const AlternativeMotion& other : pose.alternatives) {
+    farthest_rad =
+        std::max({farthest_rad,
+                  RotationAngleBetween(pose.rotation, other.rotation),
+                  AngleBetween(pose.direction, other.direction)});
+  }
+  return 0.5 * farthest_rad;
+}
+
 bool IsVague(const RelativePose& pose) {
-  return std::max(RotationStddev(pose), DirectionStddev(pose)) >
+  return std::max({RotationStddev(pose), DirectionStddev(pose),
+                   HalfWayToAlternatives(pose)}) >
          DiagnosisOptions().max_stddev;
 }
 
@@ -129,10 +142,9 @@ SolutionAgreement FindAgreement(const Scene& scene,
   comparison.SplitPoses(&agreement);
   const std::set<ViewPair> untold(matches.untold.begin(), matches.untold.end());
   for (const ViewPair& views : agreement.held) {
-    const RelativePose& pose = scene.relative_poses.at(views);
-    if (IsVague(pose)) {
+    if (IsVague(scene.relative_poses.at(views))) {
       agreement.vague.push_back(views);
-    } else if (untold.count(views) > 0 || !pose.alternatives.empty()) {
+    } else if (untold.count(views) > 0) {
       agreement.untold.push_back(views);
     }
   }

@@ -27,9 +27,9 @@ struct SolutionAgreement {
   /// within `reach` deviations of the centres, those that are not too far for
   /// use, and the others.
   std::vector<ViewPair> agreeing, held, contradicting;
-  /// Of those held: whose stated deviation is more than that of a weak ratio,
-  /// so that they would agree with anything; and others, of which their matches
-  /// tell nothing, or not which of two motions it is.
+  /// Of those held: whose stated deviation, or half the distance of the two
+  /// motions that explain them, is more than that of a weak ratio, so that they
+  /// would agree with anything; and others, of which their matches tell nothing.
   std::vector<ViewPair> vague, untold;
   /// Not in use, for their own matches.
   std::vector<ViewPair> refuted;  // sorted
