@@ -149,6 +149,49 @@ TEST(CalibrationScoreTest, AgreesWithTheFreedAdjustment) {
   }
 }
 
+// A view with an intrinsic of its own, in which nothing is observed.
+void AddEmptyView(int id, CameraModel model, Scene* scene) {
+  Intrinsic intrinsic = scene->intrinsics.at(kIntrinsic);
+  intrinsic.model = model;
+  intrinsic.distortion.assign(DistortionCount(model), 0);
+  scene->intrinsics[id] = intrinsic;
+  View view = scene->views.begin()->second;
+  view.filename = "empty " + std::to_string(id) + ".png";
+  view.intrinsic_id = id;
+  view.pose_id = id;
+  scene->poses[id] = {};
+  scene->views[id] = view;
+  scene->features[id] = {};
+}
+
+// Seventeen are tested together. The first has more coefficients than those
+// that the images say something about.
+TEST(CalibrationScoreTest, ManyAreRepresentedByTheFirstThatIsObserved) {
+  TestSceneOptions options = RichScene();
+  options.model = CameraModel::kRadialK1;
+  options.distortion = {-0.03};
+  TestScene test = MakeTestScene(options);
+  test.scene.intrinsics.at(kIntrinsic).distortion = {0};
+  const Intrinsic held = test.scene.intrinsics.at(kIntrinsic);
+  AddEmptyView(1, CameraModel::kBrownT2, &test.scene);
+  for (int n = 0; n < 15; ++n) {
+    AddEmptyView(200 + n, CameraModel::kRadialK1, &test.scene);
+  }
+  const auto summary = Adjusted(&test.scene, {});
+  ASSERT_EQ(summary.calibration_preferences.size(), 1u);
+  const CalibrationPreference& preference =
+      summary.calibration_preferences.front();
+  ASSERT_EQ(preference.intrinsics.size(), 17u);
+  EXPECT_EQ(preference.intrinsics[0], kIntrinsic);
+  EXPECT_EQ(preference.intrinsics[1], IntrinsicId(1));
+  EXPECT_TRUE(preference.parts.distortion);
+  EXPECT_TRUE(preference.held == held);
+  ASSERT_EQ(preference.preferred.distortion.size(), 1u);
+  EXPECT_LT(preference.preferred.distortion[0], 0);
+  EXPECT_THAT(DescribeCalibrationPreferences(summary),
+              ElementsAre(HasSubstr("intrinsic 7 and, likewise, 16 more")));
+}
+
 TEST(CalibrationScoreTest, IsAskedForByTheOptions) {
   TestScene test = MakeTestScene(RichScene());
   kFaults[0].apply(&test.scene.intrinsics.at(kIntrinsic));

@@ -215,6 +215,61 @@ TEST(RefineRatio, ErrorsSharedByACellDoNotAverageOut) {
   EXPECT_LT(stddev, 2.0 * 0.01 / std::sqrt(kCells));
 }
 
+// Four around 0.3.
+std::vector<RatioFeature> FourPoints() {
+  std::vector<RatioFeature> points;
+  for (const double log_ratio : {0.28, 0.29, 0.31, 0.32}) {
+    RatioFeature point;
+    point.log_ratio = log_ratio;
+    point.log_ratio_stddev = 0.02;
+    point.cell = static_cast<int>(points.size());
+    points.push_back(point);
+  }
+  return points;
+}
+
+RatioGroup GroupOf(int count, double stddev) {
+  RatioGroup group;
+  group.count = count;
+  group.sum_of_stddevs = count * stddev;
+  return group;
+}
+
+// The only one of its group is four deviations away, and more precise than
+// all others together.
+TEST(RefineRatio, AGroupWithoutNearFeaturesDoesNotPull) {
+  std::vector<RatioFeature> features = FourPoints();
+  const RatioGroup points = GroupOf(4, 0.02);
+  const RefinedRatio alone = RefineRatio(features, {points}, 0.3);
+  for (const double side : {-1, 1}) {
+    RatioFeature line;
+    line.log_ratio = 0.3 + side * 0.02;
+    line.log_ratio_stddev = 0.005;
+    line.group = 1;
+    line.cell = 4;
+    features.resize(4);
+    features.push_back(line);
+    const RefinedRatio refined =
+        RefineRatio(features, {points, GroupOf(1, 0.005)}, 0.3);
+    EXPECT_LT(refined.probability.back(), 0.01);
+    EXPECT_NEAR(refined.log_ratio, alone.log_ratio, 1e-4);
+    EXPECT_NEAR(refined.log_ratio_stddev, alone.log_ratio_stddev, 1e-4);
+    EXPECT_LT(refined.information_share[1], 0.01);
+  }
+}
+
+TEST(RefineRatio, AGroupWithoutCandidatesChangesNothing) {
+  const RatioGroup points = GroupOf(4, 0.02);
+  const RefinedRatio alone = RefineRatio(FourPoints(), {points}, 0.31);
+  const RefinedRatio refined =
+      RefineRatio(FourPoints(), {points, RatioGroup()}, 0.31);
+  EXPECT_EQ(refined.log_ratio, alone.log_ratio);
+  EXPECT_EQ(refined.log_ratio_stddev, alone.log_ratio_stddev);
+  EXPECT_EQ(refined.probability, alone.probability);
+  EXPECT_EQ(refined.group_noise[1], 1);
+  EXPECT_EQ(refined.information_share[1], 0);
+}
+
 TEST(RefineRatio, SharesOfInformationAreThoseOfTheGroups) {
   Random random(7);
   std::vector<RatioFeature> features = Measurements(100, 0.01, &random);
@@ -223,11 +278,8 @@ TEST(RefineRatio, SharesOfInformationAreThoseOfTheGroups) {
     feature.cell += 100;
     features.push_back(feature);
   }
-  RatioGroup fine, coarse;
-  fine.count = coarse.count = 100;
-  fine.sum_of_stddevs = 1;
-  coarse.sum_of_stddevs = 2;
-  const RefinedRatio refined = RefineRatio(features, {fine, coarse}, 0.3);
+  const RefinedRatio refined =
+      RefineRatio(features, {GroupOf(100, 0.01), GroupOf(100, 0.02)}, 0.3);
   EXPECT_NEAR(refined.information_share[0], 0.8, 0.1);
   EXPECT_NEAR(refined.information_share[1], 0.2, 0.1);
 }

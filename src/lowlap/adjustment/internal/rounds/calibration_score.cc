@@ -238,7 +238,7 @@ void Choose(const Score& score, std::vector<Candidate>* candidates) {
 std::vector<CalibrationPreference> FindCalibrationPreferences(
     const AdjustmentOptions& options, const NoiseLevels& noise,
     CameraSet cameras, StructureState state) {
-  const std::vector<Group> groups = MakeGroups(options, cameras);
+  std::vector<Group> groups = MakeGroups(options, cameras);
   const CameraSet held = cameras;
   AdjustmentOptions freed = options;
   freed.use_lines = false;
@@ -265,6 +265,14 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
   ProblemBuilder builder(freed, request, selection, components, &cameras,
                          &state);
   const LinearisedProblem linearised(&builder);
+  const auto column_of = [&](int intrinsic) {
+    return linearised.KeptColumn(builder.IntrinsicBlock(intrinsic));
+  };
+  // The first of a group represents it: it must be one that was tested.
+  for (Group& group : groups) {
+    std::stable_partition(group.intrinsics.begin(), group.intrinsics.end(),
+                          [&](int n) { return column_of(n) >= 0; });
+  }
 
   std::vector<Candidate> candidates;
   MatX held_directions = MatX::Zero(
@@ -274,8 +282,7 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
   for (std::size_t g = 0; g < groups.size(); ++g) {
     std::vector<int> column(groups[g].intrinsics.size());
     for (std::size_t n = 0; n < column.size(); ++n) {
-      column[n] = linearised.KeptColumn(
-          builder.IntrinsicBlock(groups[g].intrinsics[n]));
+      column[n] = column_of(groups[g].intrinsics[n]);
     }
     for (const Part part : kParts) {
       Candidate candidate{g, part, count, 0, false};

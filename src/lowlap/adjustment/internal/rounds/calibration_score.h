@@ -22,7 +22,8 @@ namespace lowlap {
 ///
 /// One intrinsic at a time, or, beyond 16, all by one common change (of the
 /// focal lengths and the aspect by a factor, of the principal points by a share
-/// of the diagonal). Pinholes are tested for a k1.
+/// of the diagonal); the first of the preference is one that points observe.
+/// Pinholes are tested for a k1.
 ///
 /// Points alone are asked; without them nothing is said. The score of lines has
 /// a mean: on simulated rooms with the true calibration, of 1.7 standard

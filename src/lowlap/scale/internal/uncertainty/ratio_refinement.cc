@@ -59,7 +59,8 @@ class MixtureFit {
       fit_.noise2.push_back(Square(group.noise));
     }
     FindDeviations();
-    constexpr double kRightAtFirst = 2.5;
+    constexpr double kRightAtFirst = 2.5;  // in deviations
+    constexpr double kPriorRight = 0.5;
     for (const Run& run : runs_) {
       run.Of(&fit_.probability) =
           (run.Of(squared_deviation_) <
@@ -67,6 +68,11 @@ class MixtureFit {
               .cast<double>();
     }
     FindWeights();
+    // Without a right one the odds would stay 0, and all of the group be taken
+    // as right.
+    for (const Run& run : runs_) {
+      num_right_[run.group] = std::max(num_right_[run.group], kPriorRight);
+    }
     FindOdds();
   }
 

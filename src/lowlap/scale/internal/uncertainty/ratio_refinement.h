@@ -57,7 +57,8 @@ inline constexpr double kRefinementReach = 6.0;
 /// within reach. By expectation maximisation over mu, phi_g, and the density
 /// and number of wrong features (half a wrong one is there beforehand), from
 /// `initial`. Of `features`, those within kRefinementReach of it. No feature is
-/// cut off, so that nothing makes the noise look smaller than it is.
+/// cut off, so that nothing makes the noise look smaller than it is; a group
+/// without any close to `initial` starts as if half of one were right.
 ///
 /// A right feature has the weight p / (phi_g^2 s^2 m) in the mean, p its
 /// probability; m = 1 but for pairs, which share the noise of their units: the
