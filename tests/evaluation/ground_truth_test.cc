@@ -49,10 +49,23 @@ TEST(GroundTruthByName, AnExactNameIsNotTakenByALooseOne) {
   EXPECT_EQ(truth->count(1), 1u);
 }
 
+TEST(GroundTruthByName, FoldersOfEitherSideNeedNotMatch) {
+  const Scene scene =
+      SceneOf({{"", "1.jpg"}, {"photographs", "2.png"}, {"", "3.jpg"}});
+  const auto truth = GroundTruthByName(scene, {{"images/1.jpg", PoseAt(1)},
+                                               {"images/2.jpg", PoseAt(2)},
+                                               {"left/3.jpg", PoseAt(3)},
+                                               {"right/3.jpg", PoseAt(4)}});
+  ASSERT_TRUE(truth.has_value()) << truth.error().ToString();
+  ASSERT_EQ(truth->size(), 2u);
+  EXPECT_EQ(truth->at(0).center.x(), 1);
+  EXPECT_EQ(truth->at(1).center.x(), 2);
+}
+
 TEST(GroundTruthByName, TimestampsHaveNoExtension) {
   const Scene scene = SceneOf({{"", "17.25.png"}, {"", "17.50.png"}});
-  const auto truth = GroundTruthByName(
-      scene, {{"17.25", PoseAt(1)}, {"17.50", PoseAt(2)}});
+  const auto truth =
+      GroundTruthByName(scene, {{"17.25", PoseAt(1)}, {"17.50", PoseAt(2)}});
   ASSERT_TRUE(truth.has_value()) << truth.error().ToString();
   ASSERT_EQ(truth->size(), 2u);
   EXPECT_EQ(truth->at(0).center.x(), 1);

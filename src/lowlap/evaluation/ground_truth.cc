@@ -1,6 +1,7 @@
 #include <array>
 #include <cctype>
 #include <cstddef>
+#include <optional>
 
 #include "lowlap/evaluation/pose_errors.h"
 
@@ -19,15 +20,22 @@ std::string WithoutExtension(const std::string& name) {
   return has_extension ? name.substr(0, dot) : name;
 }
 
-/// The names of a view, the most exact first.
-std::array<std::string, 3> NamesOf(const View& view) {
-  const std::string path = view.local_path.empty()
-                               ? view.filename
-                               : view.local_path + "/" + view.filename;
-  const std::string base =
-      view.filename.substr(view.filename.find_last_of('/') + 1);
+std::string PathOf(const View& view) {
+  return view.local_path.empty() ? view.filename
+                                 : view.local_path + "/" + view.filename;
+}
+
+/// Path, file name, and that without extension.
+std::array<std::string, 3> NamesOf(const std::string& path) {
+  const std::string base = path.substr(path.find_last_of('/') + 1);
   return {path, base, WithoutExtension(base)};
 }
+
+/// Which name of a view is held against which of a truth, the most exact first.
+struct Level {
+  std::size_t of_view, of_truth;
+};
+constexpr Level kLevels[] = {{0, 0}, {1, 0}, {1, 1}, {2, 2}};
 
 }  // namespace
 
@@ -35,27 +43,24 @@ Result<GroundTruth> GroundTruthByName(
     const Scene& scene, const std::map<std::string, Pose>& pose_by_image) {
   GroundTruth truth;
   std::map<std::string, ViewId> assigned;  // truth name -> view
-  // Truth by its name without extension; nullptr where two truths share it.
-  std::map<std::string, const std::string*> name_by_stem;
-  for (const auto& [name, pose] : pose_by_image) {
-    const auto [entry, inserted] =
-        name_by_stem.emplace(WithoutExtension(name), &name);
-    if (!inserted) entry->second = nullptr;
-  }
   // All views at one level of exactness before any at the next, so that an
   // exact name is never taken by a view that fits it loosely.
-  for (std::size_t level = 0; level < 3; ++level) {
+  for (const Level& level : kLevels) {
+    // Nothing where two truths share a name.
+    std::map<std::string, std::optional<std::string>> truth_by_name;
+    for (const auto& [path, pose] : pose_by_image) {
+      const auto [entry, inserted] =
+          truth_by_name.emplace(NamesOf(path)[level.of_truth], path);
+      if (!inserted) entry->second.reset();
+    }
     std::map<std::string, ViewId> assigned_here;
     for (const auto& [id, view] : scene.views) {
       if (truth.count(id)) continue;
-      std::string name = NamesOf(view)[level];
-      if (level == 2) {
-        const auto found = name_by_stem.find(name);
-        if (found == name_by_stem.end() || found->second == nullptr) continue;
-        name = *found->second;
-      }
-      const auto pose = pose_by_image.find(name);
-      if (pose == pose_by_image.end() || assigned.count(name)) continue;
+      const auto found =
+          truth_by_name.find(NamesOf(PathOf(view))[level.of_view]);
+      if (found == truth_by_name.end() || !found->second) continue;
+      const std::string& name = *found->second;
+      if (assigned.count(name)) continue;
       const auto [entry, inserted] = assigned_here.emplace(name, id);
       if (!inserted) {
         return MakeError(ErrorCode::kInvalidScene,
@@ -63,7 +68,7 @@ Result<GroundTruth> GroundTruthByName(
                              std::to_string(entry->second.value()) + " and " +
                              std::to_string(id.value()) + " equally well");
       }
-      truth.emplace(id, pose->second);
+      truth.emplace(id, pose_by_image.at(name));
     }
     assigned.insert(assigned_here.begin(), assigned_here.end());
   }
@@ -88,7 +93,7 @@ Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
   GroundTruth by_id = GroundTruthFromScene(truth);
   std::map<std::string, Pose> by_name;
   for (const auto& [id, pose] : by_id) {
-    by_name.emplace(NamesOf(truth.views.at(id)).front(), pose);
+    by_name.emplace(PathOf(truth.views.at(id)), pose);
   }
   if (by_name.size() < by_id.size()) return by_id;
   auto named = GroundTruthByName(scene, by_name);

@@ -15,9 +15,9 @@ namespace lowlap {
 using GroundTruth = std::map<ViewId, Pose>;
 
 /// Assigns true poses to the views of a scene by image name: the path below
-/// the image folder if it matches, else the file name, else the file name
-/// without extension (which starts with a letter). Views without truth are left
-/// out.
+/// the image folder if it matches, else the file name, whatever its folder,
+/// else the file name without extension (which starts with a letter); a name
+/// that two truths share decides nothing. Views without truth are left out.
 ///
 /// Errors: kInvalidScene if a name fits two views equally well;
 /// kInsufficientData if no view has a truth.
