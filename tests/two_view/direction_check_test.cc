@@ -1,17 +1,24 @@
 #include "lowlap/two_view/internal/direction_check.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
+#include <vector>
 
 #include "lowlap/geometry/internal/rotation.h"
 #include "tests/support/random_vectors.h"
+#include "tests/two_view/line_scene.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
 namespace {
 
+using ::testing::Contains;
+using testing::LineScene;
+using testing::MakeLineScene;
 using testing::MakeTwoViewScene;
+using ::testing::Not;
 using testing::TwoViewScene;
 using testing::TwoViewSceneOptions;
 
@@ -59,6 +66,54 @@ TEST(DirectionCheck, ReplacesAWrongDirectionUnderTheRightRotation) {
                            scene.cam2_from_cam1.translation),
               RadFromDeg(2));
     EXPECT_GT(check.error_rad, kSameRad);
+  }
+}
+
+// Triplets get their coplanar and trifocal lines from them.
+TEST(DirectionCheck, AReplacedDirectionKeepsTheLineMatchesThatFitIt) {
+  LineScene scene = MakeLineScene({}, 5);
+  const TwoViewScene points = MakeTwoViewScene(Points(30), 5);
+  scene.views.features1.points = points.features1.points;
+  scene.views.features2.points = points.features2.points;
+  scene.views.matches = points.matches;
+  const std::vector<FeatureMatch> right = scene.line_matches;
+  // A part of the second line that the first view does not see.
+  auto& segments2 = scene.views.features2.segments;
+  const NormalizedSegment& whole = segments2[right[0].second];
+  const Vec3 beyond = 2 * (whole.end - whole.start);
+  const FeatureMatch wrong{right[0].first,
+                           static_cast<FeatureIndex>(segments2.size())};
+  segments2.push_back(
+      testing::MakeSegment(whole.start + beyond, whole.end + beyond));
+  scene.line_matches.push_back(wrong);
+  RelativePose pose;
+  pose.views = {3, 8};
+  pose.rotation = scene.cam2_from_cam1.rotation;
+  pose.direction = -scene.cam2_from_cam1.translation;
+  pose.point_inliers = points.matches;
+  pose.line_inliers = scene.line_matches;
+  const DirectionCheck check = CheckDirection(scene.Input(), pose, kSameRad, 5);
+  ASSERT_EQ(check.verdict, DirectionVerdict::kReplaced);
+  const std::vector<FeatureMatch>& kept = check.replacement->line_inliers;
+  // All but those close to epipolar planes.
+  EXPECT_GE(kept.size(), 0.8 * right.size());
+  EXPECT_THAT(kept, Not(Contains(wrong)));
+}
+
+TEST(DirectionCheck, TheCovarianceOfAWrongDirectionIsNotThatOfTheRightOne) {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    // Too few to refine the other direction, and to say how well it is known.
+    const TwoViewScene scene = MakeTwoViewScene(Points(5), seed);
+    RelativePose pose;
+    pose.views = {3, 8};
+    pose.rotation = scene.cam2_from_cam1.rotation;
+    pose.direction = -scene.cam2_from_cam1.translation;
+    pose.point_inliers = scene.matches;
+    pose.covariance = 1e-8 * Eigen::Matrix<double, 5, 5>::Identity();
+    const DirectionCheck check =
+        CheckDirection(scene.Input(), pose, kSameRad, seed);
+    ASSERT_EQ(check.verdict, DirectionVerdict::kReplaced) << seed;
+    EXPECT_FALSE(check.replacement->covariance) << seed;
   }
 }
 

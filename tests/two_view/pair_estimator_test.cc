@@ -2,6 +2,11 @@
 
 #include <gmock/gmock.h>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "lowlap/two_view/internal/search/refine_relative_pose.h"
 #include "support/matchers.h"
 #include "tests/two_view/two_view_scene.h"
 
@@ -102,6 +107,70 @@ TEST(RefinePair, ImprovesOnTheInliersAlone) {
   // Without matches there is nothing to go by.
   rough.point_inliers.clear();
   EXPECT_TRUE(RefinePair(rough, first, second, {}) == rough);
+}
+
+// The share of the variance of `before` that `after` has lost in the direction
+// in which it has lost most; their frames are nearly the same.
+double MostLost(const Mat5& before, const Mat5& after) {
+  const Mat5 half = before.llt().matrixL();
+  const Mat5 inverse = half.inverse();
+  const Mat5 ratio = inverse * after * inverse.transpose();
+  return 1 - ratio.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
+}
+
+TEST(RefinePair, StillSaysWhatOnePlaneLeavesOpen) {
+  for (int seed = 0; seed < 5; ++seed) {
+    TwoViewSceneOptions options;
+    options.planar = true;
+    options.noise_px = 0.3;
+    options.num_wrong = 40;
+    const TwoViewScene scene = MakeTwoViewScene(options, 500 + seed);
+    const PairEstimate estimate = Estimate(scene);
+    ASSERT_TRUE(estimate.pose) << estimate.reason;
+    const RelativePose refined = RefinePair(
+        *estimate.pose, Measure(scene.features1), Measure(scene.features2), {});
+    ASSERT_TRUE(refined.covariance);
+    EXPECT_LT(MostLost(*estimate.pose->covariance, *refined.covariance), 0.02)
+        << seed;
+  }
+}
+
+TEST(RefinePair, StillSaysHowFarItsRivalsWere) {
+  TwoViewSceneOptions options;
+  options.noise_px = 0.3;
+  const TwoViewScene scene = MakeTwoViewScene(options, 4);
+  const ViewMeasurements first = Measure(scene.features1);
+  const ViewMeasurements second = Measure(scene.features2);
+  RelativePose pose = *Estimate(scene).pose;
+  Vec5 along;
+  along << 0.01, -0.02, 0.01, 0.1, 0.2;
+  *pose.covariance += along * along.transpose();
+  const RelativePose refined = RefinePair(pose, first, second, {});
+  EXPECT_LT(MostLost(*pose.covariance, *refined.covariance), 0.02);
+  // What states less than the matches gives way to them.
+  pose.covariance.reset();
+  const Mat5 law = *RefinePair(pose, first, second, {}).covariance;
+  pose.covariance = Mat5(1e-3 * law);
+  const Mat5 same = *RefinePair(pose, first, second, {}).covariance;
+  EXPECT_LT((same - law).norm(), 1e-6 * law.norm());
+}
+
+TEST(RefinePair, AnAlternativeKeepsWhatItsCovarianceSaid) {
+  TwoViewSceneOptions options;
+  options.planar = true;
+  options.noise_px = 0.3;
+  options.cam2_from_cam1 = {RotationFromAngleAxis(Vec3(0.1, -0.1, 0)),
+                            Vec3(0, 0.3, -1).normalized()};
+  const TwoViewScene scene = MakeTwoViewScene(options, 0);
+  RelativePose pose = *Estimate(scene).pose;
+  ASSERT_EQ(pose.alternatives.size(), 1u);
+  pose.alternatives[0].covariance = Mat5(0.01 * Mat5::Identity());
+  const RelativePose refined =
+      RefinePair(pose, Measure(scene.features1), Measure(scene.features2), {});
+  ASSERT_EQ(refined.alternatives.size(), 1u);
+  EXPECT_LT(MostLost(*pose.alternatives[0].covariance,
+                     *refined.alternatives[0].covariance),
+            0.01);
 }
 
 TEST(PairOptions, NeedPointsOrLines) {

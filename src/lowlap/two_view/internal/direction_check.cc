@@ -7,6 +7,7 @@
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/matching/internal/lines/line_transfer.h"
 #include "lowlap/robust/internal/a_contrario_ransac.h"
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
 #include "lowlap/two_view/internal/search/chance_support.h"
@@ -90,7 +91,11 @@ DirectionCheck CheckDirection(const TwoViewInput& input,
   replaced.rotation = found->rotation;
   replaced.direction = found->translation;
   replaced.point_threshold_px = other.threshold;
+  replaced.covariance.reset();  // that of the wrong direction
   replaced = ImproveRelativePose(input, replaced, false, TwoViewOptions());
+  replaced.line_inliers =
+      FilterLineMatches(input.line_matches, *input.features1, *input.features2,
+                        replaced.Cam2FromCam1(), LineFilterOptions());
   check.error_rad = AngleBetween(replaced.direction, pose.direction);
   if (check.error_rad <= same_rad) return check;
   check.verdict = DirectionVerdict::kReplaced;

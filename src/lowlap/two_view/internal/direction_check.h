@@ -19,7 +19,8 @@ enum class DirectionVerdict {
 struct DirectionCheck {
   DirectionVerdict verdict = DirectionVerdict::kUntold;
   /// kReplaced: the pose with the direction that the matches bear out, refined
-  /// on them (ImproveRelativePose).
+  /// on them (ImproveRelativePose), with the line matches that are plausible
+  /// under it. Its log10_nfa is that of the given pose.
   std::optional<RelativePose> replacement;
   /// kReplaced: between the two directions.
   double error_rad = 0;

@@ -1,6 +1,7 @@
 #include "lowlap/two_view/internal/pair_estimator.h"
 
 #include <algorithm>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -8,6 +9,7 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/validation.h"
+#include "lowlap/two_view/internal/search/kept_covariance.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
 
 namespace lowlap {
@@ -44,14 +46,26 @@ RelativePose WithHypothesis(const RelativePose& pose,
   return result;
 }
 
+// One motion refined; whether it is of one plane may be unknown.
+RelativePose ImproveMotion(const TwoViewInput& input, const RelativePose& pose,
+                           std::optional<bool> is_of_one_plane,
+                           const TwoViewOptions& options,
+                           std::vector<FeatureMatch>* lone_matches) {
+  RelativePose improved = ImproveRelativePose(
+      input, pose, is_of_one_plane.value_or(false), options, lone_matches);
+  if (!is_of_one_plane) improved.covariance = KeptCovariance(pose, improved);
+  return improved;
+}
+
 // The pose and its alternatives refined on the matches of `input`. These may
 // have been found with the pose, and draw an alternative over to it: that says
 // nothing, and the alternative stays as it was.
 RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
-                     bool is_of_one_plane, const TwoViewOptions& options,
+                     std::optional<bool> is_of_one_plane,
+                     const TwoViewOptions& options,
                      std::vector<FeatureMatch>* lone_matches) {
   RelativePose improved =
-      ImproveRelativePose(input, pose, is_of_one_plane, options, lone_matches);
+      ImproveMotion(input, pose, is_of_one_plane, options, lone_matches);
   const auto differs = [&](const RelativePose& other) {
     return !SamePose(other.Cam2FromCam1(), improved.Cam2FromCam1());
   };
@@ -59,7 +73,7 @@ RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
   for (const AlternativeMotion& other : pose.alternatives) {
     const RelativePose before = WithHypothesis(pose, other);
     const RelativePose after =
-        ImproveRelativePose(input, before, is_of_one_plane, options);
+        ImproveMotion(input, before, is_of_one_plane, options, nullptr);
     if (differs(after)) {
       alternatives.push_back(MotionOf(after));
     } else if (differs(before)) {
@@ -244,7 +258,7 @@ RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,
   if (options.use_points) input.point_matches = pose.point_inliers;
   if (options.use_lines) input.line_matches = pose.line_inliers;
   RelativePose refined =
-      Improve(input, pose, false, options.two_view, lone_matches);
+      Improve(input, pose, std::nullopt, options.two_view, lone_matches);
   refined.line_inliers =
       FilterLineMatches(pose.line_inliers, first.features, second.features,
                         refined.Cam2FromCam1(), options.line_filter);

@@ -77,7 +77,9 @@ PairEstimate TakePair(const ViewPair& views, const ViewMeasurements& first,
                       const PairOptions& options);
 
 /// The pose improved once more on its inliers, after features have moved; as it
-/// was, where that leads nowhere. `lone_matches` are as in TwoViewResult.
+/// was, where that leads nowhere. Whether it is of one plane, and which rivals
+/// it had, inliers do not tell: what its covariance said of that it still says
+/// (KeptCovariance). `lone_matches` are as in TwoViewResult.
 RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,
                         const ViewMeasurements& second,
                         const PairOptions& options,

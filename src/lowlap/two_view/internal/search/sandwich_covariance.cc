@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "lowlap/two_view/internal/search/at_least.h"
+
 namespace lowlap {
 namespace {
 
@@ -13,25 +15,6 @@ constexpr double kLeastCurvature = 0.1;
 /// A cell to which the fit owes more than all but this share of what it knows
 /// counts as if it were that.
 constexpr double kLeastRest = 1e-3;
-
-/// L^-1 A L^-T for symmetric A: A in units of the information L L^T.
-template <class Mat>
-Mat InUnitsOf(const Eigen::LLT<Mat>& root, const Mat& a) {
-  Mat half = a;
-  root.matrixL().solveInPlace(half);
-  Mat full = half.transpose();
-  root.matrixL().solveInPlace(full);
-  return 0.5 * (full + full.transpose());
-}
-
-/// A with its eigenvalues in units of L L^T raised to `least`.
-template <class Mat>
-Mat AtLeast(const Eigen::LLT<Mat>& root, const Mat& a, double least) {
-  const Eigen::SelfAdjointEigenSolver<Mat> eigen(InUnitsOf(root, a));
-  const Mat basis = Mat(root.matrixL()) * eigen.eigenvectors();
-  return basis * eigen.eigenvalues().cwiseMax(least).asDiagonal() *
-         basis.transpose();
-}
 
 }  // namespace
 
