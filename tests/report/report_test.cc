@@ -102,7 +102,7 @@ TEST(PageData, HasAllSections) {
   scene.scale_ratios.back().log10_nfa = -40;
   ReportContent content = ContentOf(scene);
   content.profiles[{0, 1, 2}] = {
-      {-1, 0, 1}, {0, -40, 0}, {{"lines", {0, -40, 0}}}};
+      {-1, 0, 1}, {0, -4000, 0}, {{"lines", {0, -40, 0}}}};
   const json page = json::parse(PageData(scene, content));
   for (const char* section :
        {"title", "figures", "warnings", "views", "points", "lines",
@@ -136,8 +136,8 @@ TEST(PageData, HasAllSections) {
   EXPECT_TRUE(std::isnan(Decode<float>(page["lines"]["before"]).front()));
   EXPECT_EQ(page["warnings"][0]["views"], json::array({0}));
   const json& triplet = page["triplets"][0];
-  EXPECT_THAT(Decode<std::int16_t>(triplet["profile"]["total"]),
-              ElementsAre(0, -400, 0));
+  EXPECT_THAT(Decode<float>(triplet["profile"]["total"]),
+              ElementsAre(0, -4000, 0));
   EXPECT_TRUE(triplet.contains("true_log_ratio"));
   // The truth has no residuals but rounding, on every observation.
   const json& points = page["residuals"]["points"];

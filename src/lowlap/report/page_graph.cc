@@ -8,14 +8,8 @@
 namespace lowlap {
 namespace {
 
-// In tenths, as 16 bits.
-std::string EncodedNfas(const std::vector<double>& log10_nfas) {
-  std::vector<std::int16_t> tenths;
-  for (const double nfa : log10_nfas) {
-    tenths.push_back(
-        static_cast<std::int16_t>(std::clamp(10 * nfa, -32767.0, 32767.0)));
-  }
-  return Base64(tenths);
+std::string EncodedFloats(const std::vector<double>& values) {
+  return Base64(std::vector<float>(values.begin(), values.end()));
 }
 
 // Ascending places of `most` of so many things, those that come first in order.
@@ -82,13 +76,11 @@ PageJson RatioJson(const ScaleRatio& ratio) {
 }
 
 PageJson ProfileJson(const ReportProfile& profile, bool by_kind) {
-  const std::vector<float> log_ratios(profile.log_ratios.begin(),
-                                      profile.log_ratios.end());
-  PageJson json = {{"log_ratios", Base64(log_ratios)},
-                   {"total", EncodedNfas(profile.log10_nfas)}};
+  PageJson json = {{"log_ratios", EncodedFloats(profile.log_ratios)},
+                   {"total", EncodedFloats(profile.log10_nfas)}};
   if (!by_kind) return json;
   for (const auto& [kind, values] : profile.kinds) {
-    json["kinds"].push_back({kind, EncodedNfas(values)});
+    json["kinds"].push_back({kind, EncodedFloats(values)});
   }
   return json;
 }

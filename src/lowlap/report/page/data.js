@@ -28,11 +28,10 @@ function decodeStructure(structure) {
   };
 }
 
-// NFAs are integers, in tenths.
 function decodeProfile(profile) {
-  const values = base64 => Array.from(decode(base64, Int16Array), v => v / 10);
+  const values = base64 => Array.from(decode(base64, Float32Array));
   return profile && {
-    logRatios: Array.from(decode(profile.log_ratios, Float32Array)),
+    logRatios: values(profile.log_ratios),
     total: values(profile.total),
     kinds: (profile.kinds || []).map(([name, list]) => [name, values(list)]),
   };

@@ -55,8 +55,8 @@ function describeView(view) {
   const moved = view.camera && view.camera_before && Math.hypot(
       ...view.camera.center.map((v, n) => v - view.camera_before.center[n]));
   const rmse = kind => {
-    const { total, rmse_px: px } = page.residuals[kind].views[view.index];
-    return total > 0 ? `${number(px, 2)} px` : '–';
+    const px = rmsePx(kind, view);
+    return px === undefined ? '–' : `${number(px, 2)} px`;
   };
   const canvas = make('canvas', { id: 'photograph' });
   const draw = () => canvas.isConnected && drawPhotograph(canvas, view.index, 2);

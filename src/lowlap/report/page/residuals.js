@@ -45,9 +45,15 @@ function plotHistogram(kind, view, width, height) {
                             'text-anchor': 'middle' }, 'residual (px)')));
 }
 
+// Undefined where nothing is observed.
+function rmsePx(kind, view) {
+  const { total, rmse_px: px } = page.residuals[kind].views[view.index];
+  return total > 0 ? px : undefined;
+}
+
 function plotRmseOfViews(width) {
   const rows = page.views.filter(view => view.camera);
-  const rmse = (kind, view) => page.residuals[kind].views[view.index].rmse_px;
+  const rmse = (kind, view) => rmsePx(kind, view) || 0;
   const most = Math.max(.01, ...rows.map(view => Math.max(
       rmse('points', view), rmse('lines', view))));
   const step = 16, left = 70;

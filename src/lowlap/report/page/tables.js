@@ -52,10 +52,8 @@ function drawCameras(tab) {
     ['relative poses', view => countOf(view.pairs, pair => pair.used)],
     ['points', view => inModel(view.features.landmarks)],
     ['segments', view => inModel(view.features.lines)],
-    ['point RMSE (px)',
-     view => page.residuals.points.views[view.index].rmse_px, 2],
-    ['line RMSE (px)',
-     view => page.residuals.lines.views[view.index].rmse_px, 2],
+    ['point RMSE (px)', view => rmsePx('points', view), 2],
+    ['line RMSE (px)', view => rmsePx('lines', view), 2],
   ];
   if (page.views.some(view => view.center_stddev !== undefined)) {
     columns.push(['deviation (% of the scene)',
