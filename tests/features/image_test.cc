@@ -139,6 +139,12 @@ TEST_F(ImageTest, AJpegIsWholeOnlyWithItsOwnEnd) {
     std::string bytes((std::istreambuf_iterator<char>(stream)), {});
     bytes.insert(2, thumbnail);
     EXPECT_THAT(ReadGrayImage(WriteBytes("whole.jpg", bytes + "more")), IsOk());
+    // Decoders skip what lies between segments; the first is at 2.
+    const std::size_t next = 4 + 256 * static_cast<unsigned char>(bytes[4]) +
+                             static_cast<unsigned char>(bytes[5]);
+    std::string padded = bytes;
+    padded.insert(next, std::string("\1\2\xff\0\3", 5));
+    EXPECT_THAT(ReadGrayImage(WriteBytes("padded.jpg", padded)), IsOk());
     EXPECT_THAT(ReadGrayImage(
                     WriteBytes("half.jpg", bytes.substr(0, bytes.size() / 2))),
                 IsError(ErrorCode::kParse, "cut off"));

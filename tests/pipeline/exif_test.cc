@@ -62,6 +62,15 @@ TEST_F(ExifTest, WithoutUsefulDataThereIsNone) {
   EXPECT_EQ(FocalPx({}), std::nullopt);
   EXPECT_EQ(FocalPx({{EXIF_TAG_FOCAL_LENGTH, 20}}), std::nullopt);
   EXPECT_EQ(FocalPx({{EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM, 0}}), std::nullopt);
+  // 72 dots per inch are a print's; the film equivalent is trusted beside them.
+  std::map<ExifTag, double> print = {{EXIF_TAG_FOCAL_LENGTH, 20},
+                                     {EXIF_TAG_FOCAL_PLANE_X_RESOLUTION, 72},
+                                     {EXIF_TAG_PIXEL_X_DIMENSION, 600}};
+  EXPECT_EQ(FocalPx(print), std::nullopt);
+  print[EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM] = 48;
+  EXPECT_NEAR(*FocalPx(print), 400, 1e-9);
+  EXPECT_EQ(FocalPx({{EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM, 3000}}),
+            std::nullopt);
   EXPECT_THAT(ReadExif("no/such/file.jpg", {300, 200}),
               IsError(ErrorCode::kNotFound, "no/such/file.jpg"));
 }

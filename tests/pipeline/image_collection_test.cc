@@ -251,6 +251,30 @@ TEST_F(ImageCollection, TurnedPhotographsGoByTheirExifOrientation) {
   }
 }
 
+// The principal point is 9 % off the middle of the copies.
+TEST_F(ImageCollection, LittleShrunkCopiesAreKnownByTheSizeAsTaken) {
+  const auto add_taken_at = [&](int width, int height) {
+    for (const char* name : {"a.jpg", "b.jpg"}) {
+      AddImage(name, 400, 300);
+      testing::AddExif({{EXIF_TAG_PIXEL_X_DIMENSION, width},
+                        {EXIF_TAG_PIXEL_Y_DIMENSION, height}},
+                       (folder_ / name).string());
+    }
+  };
+  add_taken_at(472, 354);
+  IntrinsicSource source;
+  source.calibration = Mat3::Identity();
+  (*source.calibration) << 590, 0, 235.5, 0, 590, 176.5, 0, 0, 1;
+  const auto shrunk = SceneFromImages(folder_.string(), source, {});
+  ASSERT_TRUE(shrunk) << shrunk.error().ToString();
+  EXPECT_NEAR(shrunk->FindIntrinsic(0)->fx_px, 500, 1e-9);
+  // A lens that is off its centre stays so, if no size explains it.
+  add_taken_at(800, 600);
+  const auto shifted = SceneFromImages(folder_.string(), source, {});
+  ASSERT_TRUE(shifted) << shifted.error().ToString();
+  EXPECT_EQ(shifted->FindIntrinsic(0)->fx_px, 590);
+}
+
 TEST_F(ImageCollection, ShrunkCopiesAreKnownByTheSizeAsTaken) {
   const std::map<ExifTag, double> taken = {{EXIF_TAG_PIXEL_X_DIMENSION, 400},
                                            {EXIF_TAG_PIXEL_Y_DIMENSION, 300}};

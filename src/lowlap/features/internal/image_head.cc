@@ -126,9 +126,11 @@ std::optional<ImageHead> JpegHead(const std::string& bytes) {
   head.is_cut_off = true;
   std::size_t at = 2;
   while (at + 2 <= bytes.size()) {
-    if (number(at, 1) != 0xff) return head;
+    // Decoders skip what lies between two segments.
+    at = bytes.find('\xff', at);
+    if (at == std::string::npos || at + 2 > bytes.size()) return head;
     const std::uint32_t marker = number(at + 1, 1);
-    if (marker == 0xff) {  // a fill byte
+    if (marker == 0xff || marker == 0) {  // a fill byte; no marker
       ++at;
       continue;
     }

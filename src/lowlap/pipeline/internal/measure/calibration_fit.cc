@@ -140,13 +140,19 @@ Result<CalibratedSize> FindCalibratedSize(const Intrinsic& calibration,
                                           const std::vector<std::string>& paths,
                                           const std::vector<ImageSize>& sizes) {
   const std::vector<ImageSize> candidates = ByFrequency(sizes);
+  std::optional<ImageSize> stored;
+  double least_offset = kCentredShare;
   for (const ImageSize& size : candidates) {
-    if (PrincipalPointOffset(calibration, size) <= kCentredShare) {
-      return CalibratedSize{size, {}};
+    const double offset = PrincipalPointOffset(calibration, size);
+    if (offset <= kSureShare) return CalibratedSize{size, {}};
+    if (!stored && offset <= kCentredShare) {
+      stored = size;
+      least_offset = 0.5 * offset;
     }
   }
   // Shrunk copies often keep the size of the original in their EXIF data;
-  // turned ones are all there is where every photograph stands.
+  // turned ones are all there is where every photograph stands. If a stored
+  // size would do, another must do clearly better.
   for (std::size_t n = 0; n < paths.size(); ++n) {
     LOWLAP_ASSIGN_OR_RETURN(const auto exif, ReadExif(paths[n], sizes[n]));
     const ImageSize upright{sizes[n].height_px, sizes[n].width_px};
@@ -154,11 +160,12 @@ Result<CalibratedSize> FindCalibratedSize(const Intrinsic& calibration,
          {exif.taken, ImageSize{exif.taken.height_px, exif.taken.width_px},
           upright}) {
       if (size.width_px > 0 && size.height_px > 0 &&
-          PrincipalPointOffset(calibration, size) <= kCentredShare) {
+          PrincipalPointOffset(calibration, size) <= least_offset) {
         return CalibratedSize{size, {}};
       }
     }
   }
+  if (stored) return CalibratedSize{*stored, {}};
   const Vec2& point = calibration.principal_point_px;
   const ImageSize& size = candidates.front();
   const double offset = PrincipalPointOffset(calibration, size);

@@ -26,10 +26,12 @@ bool HasShapeOf(const ImageSize& size, const ImageSize& of);
 /// its width or height, whichever is more.
 double PrincipalPointOffset(const Intrinsic& intrinsic, const ImageSize& size);
 
-/// A principal point this near to the middle belongs to the image; the lenses
-/// of cameras are centred to a few percent. Between this and the second bound,
-/// only a crop explains it; beyond, nothing does (the calibration of an image
-/// twice as large puts it into the corner).
+/// A principal point within the first bound of the middle is that of the image;
+/// within the second, if no other size fits better: the lenses of cameras are
+/// centred to a few percent. Between this and the third, only a crop explains
+/// it; beyond, nothing does (the calibration of an image twice as large puts it
+/// into the corner).
+inline constexpr double kSureShare = 0.03;
 inline constexpr double kCentredShare = 0.1;
 inline constexpr double kCroppedShare = 0.25;
 
@@ -50,8 +52,9 @@ Result<FittedIntrinsic> FitToPhotograph(const Intrinsic& given,
 /// The size of the photographs that a calibration matrix was made for, which it
 /// does not say: the most frequent one whose middle is at the principal point,
 /// or the size at which a photograph was taken (EXIF) if it is at the middle of
-/// that. Without one, the most frequent size, and a warning, if the point lies
-/// as off the middle as crops have it. kInvalidArgument otherwise.
+/// that, or nearer to it by half. Without one, the most frequent size, and a
+/// warning, if the point lies as off the middle as crops have it.
+/// kInvalidArgument otherwise.
 struct CalibratedSize {
   ImageSize size;
   std::string warning;  // empty: none

@@ -45,6 +45,10 @@ std::optional<double> PositiveNumber(ExifData* data, ExifTag tag,
   return value;
 }
 
+/// Of the longer side: 136 degrees of view, and less than two.
+constexpr double kLeastFocal = 0.2;
+constexpr double kMostFocal = 30;
+
 // Millimetres per unit of the focal plane's resolution; inches unless told.
 double ResolutionUnitMm(ExifData* data) {
   const double unit =
@@ -96,6 +100,12 @@ Result<ExifGeometry> ReadExif(const std::string& path, const ImageSize& size) {
       film_px && !(geometry.focal_px &&
                    std::abs(*geometry.focal_px - *film_px) <= 0.1 * *film_px)) {
     geometry.focal_px = film_px;
+  }
+  // Resolutions of a print, say, are no sensor's.
+  const int longer_px = std::max(size.width_px, size.height_px);
+  if (geometry.focal_px && !(*geometry.focal_px >= kLeastFocal * longer_px &&
+                             *geometry.focal_px <= kMostFocal * longer_px)) {
+    geometry.focal_px.reset();
   }
   const auto whole = [&](ExifTag tag, ExifIfd part, double limit) {
     const double value = PositiveNumber(data.get(), tag, part).value_or(0);

@@ -23,18 +23,22 @@ void AddOptions(const LineOptions& options, Hash128* hash) {
          coarsest_side_px, max_segments);
 }
 
+void AddMatcher(PointMatcher matcher, Hash128* hash) {
+  if (matcher != PointMatcher::kExact) hash->Add("flann");
+}
+
 void AddOptions(const PointMatchOptions& options, Hash128* hash) {
   const auto& [max_ratio, matcher] = options;
   AddAll(hash, kPointMatchingVersion, max_ratio);
-  if (matcher != PointMatcher::kExact) hash->Add("flann");
+  AddMatcher(matcher, hash);
 }
 
 void AddOptions(const RelaxedPointOptions& options, Hash128* hash) {
   const auto& [starved_below, max_ratio, matcher, neighbors, min_agreeing,
                max_deviation] = options;
-  static_cast<void>(matcher);  // the same as of the first pass
   AddAll(hash, starved_below, max_ratio, neighbors, min_agreeing,
          max_deviation);
+  AddMatcher(matcher, hash);
 }
 
 void AddOptions(const LineMatchOptions& options, Hash128* hash) {
