@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/core/internal/format.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "merge/parts.h"
 #include "support/matchers.h"
@@ -144,6 +145,10 @@ TEST(MatchModel, FindsViewsByImageName) {
   ASSERT_THAT(matched->poses, SizeIs(2));
   EXPECT_EQ(matched->poses.at(2).center.x(), 2);
   EXPECT_EQ(matched->poses.at(5).center.x(), 5);
+  // Notes in a summary hold the name.
+  const auto latin = MatchModel(made.scene, model, "mod\xe9le.json", {});
+  ASSERT_THAT(latin, testing::IsOk());
+  EXPECT_TRUE(IsUtf8(latin->name));
 }
 
 TEST(MatchModel, SaysWhatIsWrong) {

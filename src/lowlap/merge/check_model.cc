@@ -3,6 +3,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/merge/internal/agreement.h"
@@ -74,7 +75,7 @@ Result<PartialModel> MatchModel(const Scene& measured, const Scene& model,
                 name + ": " + std::to_string(num_placed - matched->size()) +
                     " of its cameras are no images of the measured scene");
   }
-  return PartialModel{std::move(name), std::move(*matched)};
+  return PartialModel{Printable(name), std::move(*matched)};
 }
 
 bool RigidPiece::Holds(ViewId a, ViewId b) const {

@@ -266,7 +266,7 @@ std::string ToJson(const Diagnosis& diagnosis, const Scene& scene) {
                          {"groups", std::move(groups)},
                          {"glued", diagnosis.by_triplets.IsGlued()}};
   json["advice"] = writer.Advice();
-  return json.dump(2);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace lowlap

@@ -273,13 +273,13 @@ std::string ToJson(const RunSummary& summary, const Scene& scene) {
                               {"cpu_s", stage.cpu_s}});
   }
   cost["peak_memory_mb"] = PeakMemoryMb();
-  return json.dump(2);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string ToJson(const std::vector<ScaleRatio>& ratios) {
   Json json = Json::array();
   for (const ScaleRatio& ratio : ratios) json.push_back(RatioJson(ratio));
-  return json.dump(2);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string ToJson(const RigidityReport& report) {
@@ -294,7 +294,7 @@ std::string ToJson(const RigidityReport& report) {
   for (const ArticulationView& hinge : report.articulation_views) {
     json["hinges"].push_back({{"view", hinge.view}, {"groups", hinge.groups}});
   }
-  return json.dump(2);
+  return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace lowlap
