@@ -46,7 +46,8 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
   hash.Add(bytes);
   for (const auto& [view, pose] : truth) {
     hash.Add(view.value());
-    for (int n = 0; n < 3; ++n) hash.Add(pose.center(n));
+    for (const double value : pose.center) hash.Add(value);
+    for (const double value : pose.rotation.reshaped()) hash.Add(value);
   }
   std::string text =
       "version " LOWLAP_VERSION "\nscene " + ToHex(hash.value()) + "\nseed " +

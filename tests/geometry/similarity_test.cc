@@ -164,6 +164,8 @@ TEST(AlignPoints, Refuses) {
               IsError(ErrorCode::kInsufficientData, "at least 2"));
   EXPECT_THAT(AlignPoints({p, p, p}, {p, 2 * p, 3 * p}),
               IsError(ErrorCode::kInsufficientData, "coincide"));
+  EXPECT_THAT(AlignPoints({p, 2 * p, 3 * p}, {p, p, p}),
+              IsError(ErrorCode::kInsufficientData, "coincide"));
 }
 
 }  // namespace

@@ -28,14 +28,17 @@ Result<Similarity> AlignPoints(const std::vector<Vec3>& source,
     source_mean += weight * source[n];
     target_mean += weight * target[n];
   }
-  double source_variance = 0;
+  double source_variance = 0, target_variance = 0;
   Mat3 covariance = Mat3::Zero();
   for (std::size_t n = 0; n < source.size(); ++n) {
     const Vec3 s = source[n] - source_mean;
+    const Vec3 t = target[n] - target_mean;
     source_variance += weight * s.squaredNorm();
-    covariance += weight * (target[n] - target_mean) * s.transpose();
+    target_variance += weight * t.squaredNorm();
+    covariance += weight * t * s.transpose();
   }
-  if (source_variance <= 1e-24 * (1.0 + source_mean.squaredNorm())) {
+  if (source_variance <= 1e-24 * (1.0 + source_mean.squaredNorm()) ||
+      target_variance <= 1e-24 * (1.0 + target_mean.squaredNorm())) {
     return MakeError(ErrorCode::kInsufficientData,
                      "alignment needs points that do not coincide");
   }

@@ -21,9 +21,9 @@ struct Similarity {
 
 /// The similarity that minimises sum |target_n - S source_n|^2 (Umeyama 1991).
 ///
-/// Needs equally many points on both sides, at least 2, and sources that do
-/// not coincide. With 2 points, or collinear ones, the rotation about the line
-/// is free and the smallest is returned. Errors: kInvalidArgument,
+/// Needs equally many points on both sides, at least 2, and on either side some
+/// that do not coincide. With 2 points, or collinear ones, the rotation about
+/// the line is free and the smallest is returned. Errors: kInvalidArgument,
 /// kInsufficientData.
 Result<Similarity> AlignPoints(const std::vector<Vec3>& source,
                                const std::vector<Vec3>& target);
