@@ -42,5 +42,5 @@ endif()
 # Debian's packages of what the static libraries are linked with.
 set(LOWLAP_DEVELOPMENT_PACKAGES
     libeigen3-dev libceres-dev libsuitesparse-dev coinor-libclp-dev
-    libopencv-dev libopencv-contrib-dev libexif-dev libexpected-dev
+    libopencv-dev libopencv-contrib-dev libflann-dev libexif-dev libexpected-dev
     zlib1g-dev libsqlite3-dev)

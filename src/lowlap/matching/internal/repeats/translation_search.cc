@@ -143,7 +143,10 @@ double TranslationSearch::Excess(const ConjugateTranslation& translation,
 double TranslationSearch::Log10Nfa(const ConjugateTranslation& translation) {
   double hits = 1, drawn = 1;
   for (; drawn < kRandomPartners; ++drawn) {
-    hits += translation.Explains(WithPartnerOf(Any(), Any())) ? 1 : 0;
+    // One after the other: arguments are evaluated in any order.
+    const AlikePlaces& others = Any();
+    const AlikePlaces& places = Any();
+    hits += translation.Explains(WithPartnerOf(places, others)) ? 1 : 0;
   }
   std::vector<int> points;
   for (const AlikePlaces& places : places_) points.push_back(places.first);
