@@ -15,8 +15,7 @@ namespace {
 Result<GroundTruth> ReadTruth(const std::string& path, const Scene& scene) {
   if (onedsfm::IsProblemFolder(path)) {
     // As a scene it is what was measured.
-    LOWLAP_ASSIGN_OR_RETURN(const Scene solved,
-                            onedsfm::ReadTrueCameras(path));
+    LOWLAP_ASSIGN_OR_RETURN(const Scene solved, onedsfm::ReadTrueCameras(path));
     return GroundTruthFromScene(solved, scene);
   }
   std::error_code ignored;

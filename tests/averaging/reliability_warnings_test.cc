@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 #include "averaging/true_ratios.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
@@ -110,6 +112,33 @@ TEST(ReliabilityWarnings, ViewsThatHangOnOneOfTwoMotions) {
   RelativePose& one = synthetic.scene.relative_poses.at({6, 7});
   one.alternatives.push_back({one.rotation, -one.direction, {}, {}});
   EXPECT_THAT(WarningsOf(synthetic.scene), IsEmpty());
+}
+
+// All its directions are off alike: what is usual is no measure here.
+TEST(ReliabilityWarnings, ATriangleWhoseDirectionsContradictEachOther) {
+  SyntheticOptions options;
+  options.num_views = 3;
+  options.pairs = "all";
+  SyntheticScene synthetic = SceneWithTrueRatios(options);
+  Scene& scene = synthetic.scene;
+  scene.scale_ratios.clear();
+  for (auto& entry : scene.relative_poses) entry.second.log10_nfa = -100;
+  EXPECT_THAT(WarningsOf(scene), IsEmpty());
+  const auto center = [&](ViewId view) {
+    return synthetic.true_poses.at(view).center;
+  };
+  const Vec3 off_plane_in_world =
+      (center(1) - center(0)).cross(center(2) - center(0)).normalized();
+  RelativePose& wrong = scene.relative_poses.at({0, 2});
+  wrong.direction =
+      std::cos(RadFromDeg(15)) * wrong.direction +
+      std::sin(RadFromDeg(15)) *
+          (synthetic.true_poses.at(2).rotation * off_plane_in_world);
+  std::set<ViewId> named;
+  for (const ReliabilityWarning& warning : WarningsOf(scene)) {
+    named.insert(warning.views.begin(), warning.views.end());
+  }
+  EXPECT_THAT(named, ElementsAre(0, 1, 2));
 }
 
 TEST(ReliabilityWarnings, TwoViewsThatTwoMotionsExplain) {

@@ -84,9 +84,8 @@ TEST_F(DiagnoseCommand, SubsetsAreResumed) {
               HasSubstr(four.substr(
                   second_line, four.find('\n', second_line) - second_line)));
   EXPECT_TRUE(std::filesystem::exists(Path("out/results.svg")));
-  for (const char* option :
-       {" --no-adjust", " --principal-point-stddev 0.0003",
-        " --no-directions", " --coplanar-ties pairs"}) {
+  for (const char* option : {" --no-adjust", " --principal-point-stddev 0.0003",
+                             " --no-directions", " --coplanar-ties pairs"}) {
     const Outcome other = OnRoom("subsets", common + option);
     EXPECT_EQ(other.exit_code, 1) << option;
     EXPECT_THAT(other.output,

@@ -16,8 +16,8 @@ Result<IntrinsicSource> ReadIntrinsicSource(const std::string& path);
 /// The true poses of a folder of Strecha's .camera files (or of the one that
 /// holds it as gt_dense_cameras), matched by image name; or of a scene of any
 /// format or the reference cameras of a problem folder of 1DSfM, by name or by
-/// id (GroundTruthFromScene). kInsufficientData if no view of the scene is among
-/// them.
+/// id (GroundTruthFromScene). kInsufficientData if no view of the scene is
+/// among them.
 Result<GroundTruth> ReadGroundTruth(const std::string& path,
                                     const Scene& scene);
 

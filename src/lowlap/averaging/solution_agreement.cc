@@ -18,10 +18,9 @@ namespace {
 double HalfWayToAlternatives(const RelativePose& pose) {
   double farthest_rad = 0;
   for (const AlternativeMotion& other : pose.alternatives) {
-    farthest_rad =
-        std::max({farthest_rad,
-                  RotationAngleBetween(pose.rotation, other.rotation),
-                  AngleBetween(pose.direction, other.direction)});
+    farthest_rad = std::max(
+        {farthest_rad, RotationAngleBetween(pose.rotation, other.rotation),
+         AngleBetween(pose.direction, other.direction)});
   }
   return 0.5 * farthest_rad;
 }

@@ -76,21 +76,6 @@ std::set<ViewPair> ReplacedPoses(const SolveStart& start) {
   return replaced;
 }
 
-// Those whose matches allow the motion that they have now: they were held
-// against another.
-void ForgetRefuted(const std::vector<ReconsideredPose>& reconsidered,
-                   MatchVerdicts* matches) {
-  const auto is_refuted_no_more = [&](const ViewPair& views) {
-    return std::any_of(
-        reconsidered.begin(), reconsidered.end(),
-        [&](const ReconsideredPose& pose) { return pose.views == views; });
-  };
-  std::vector<ViewPair>& refuted = matches->refuted;
-  refuted.erase(
-      std::remove_if(refuted.begin(), refuted.end(), is_refuted_no_more),
-      refuted.end());
-}
-
 // The ratios of the triplets, in their order; those in `known` are not
 // estimated again, unless one of their relative poses is among the replaced.
 Result<std::vector<ScaleRatio>> CompleteRatios(
@@ -168,7 +153,6 @@ Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
   if (options.reconsider_poses) {
     LOWLAP_ASSIGN_OR_RETURN(start.reconsidered,
                             ReconsiderPoses(scene, options.poses, context));
-    ForgetRefuted(start.reconsidered, &matches);
   }
   LOWLAP_ASSIGN_OR_RETURN(
       start.rotations, AverageSceneRotations(*scene, options.poses, context));

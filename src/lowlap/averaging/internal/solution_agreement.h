@@ -29,7 +29,8 @@ struct SolutionAgreement {
   std::vector<ViewPair> agreeing, held, contradicting;
   /// Of those held: whose stated deviation, or half the distance of the two
   /// motions that explain them, is more than that of a weak ratio, so that they
-  /// would agree with anything; and others, of which their matches tell nothing.
+  /// would agree with anything; and others, of which their matches tell
+  /// nothing.
   std::vector<ViewPair> vague, untold;
   /// Not in use, for their own matches.
   std::vector<ViewPair> refuted;  // sorted
