@@ -4,7 +4,6 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/internal/measure/matched_points.h"
@@ -137,7 +136,6 @@ Result<LoadedScene> LoadMeasuredScene(const SceneInput& input,
               "matches folder with -m",
         input.scene);
   }
-  RestoreGivenIntrinsics(&loaded->scene);
   return loaded;
 }
 

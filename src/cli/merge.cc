@@ -9,6 +9,7 @@
 #include "cli/flags/scene_input.h"
 #include "cli/flags/solve_flags.h"
 #include "cli/flags/truth.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/merge/merge_models.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
@@ -42,6 +43,7 @@ Result<LoadedScene> Load(const Flags& flags, const ViewCheck& check,
   }
   LOWLAP_ASSIGN_OR_RETURN(auto loaded,
                           LoadMeasuredScene(measured, context, stages, check));
+  RestoreGivenIntrinsics(&loaded.scene);
   return loaded;
 }
 

@@ -9,6 +9,7 @@
 #include "cli/flags/scene_input.h"
 #include "cli/flags/solve_flags.h"
 #include "cli/flags/truth.h"
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
 
@@ -166,6 +167,7 @@ Result<int> Solve(const Flags& flags) {
   LOWLAP_ASSIGN_OR_RETURN(
       auto loaded, LoadMeasuredScene(flags.input, context, &stages, check));
   summary.pairs = std::move(loaded.pairs);
+  RestoreGivenIntrinsics(&loaded.scene);
   return SolveAndWrite(std::move(loaded.scene), solve, std::move(summary),
                        &stages, context, flags.input.scene, output);
 }

@@ -256,11 +256,7 @@ MeasuredScene MeasuredSceneOf(const py::object& scene, SceneInput input,
       !input.exclude.empty()) {
     RaiseArgument("matchdir, images and exclude go with a path, not a scene");
   }
-  auto measured = scene.cast<std::shared_ptr<Scene>>();
-  if (!measured->given_intrinsics.empty()) {
-    measured = std::make_shared<Scene>(*measured);
-    RestoreGivenIntrinsics(measured.get());
-  }
+  const auto measured = scene.cast<std::shared_ptr<Scene>>();
   if (measured->relative_poses.empty()) {
     Raise({ErrorCode::kInvalidScene,
            "the scene holds no relative poses",

@@ -2,6 +2,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/merge/merge_models.h"
 #include "python/solution.h"
@@ -83,6 +84,7 @@ Solution Merge(const py::object& given, const py::kwargs& kwargs) {
         MeasuredSceneOf(scene, input, call.get(), &stages, match);
     solution.scene = std::make_shared<Scene>(*measured.scene);
     solution.summary.pairs = std::move(measured.pairs);
+    RestoreGivenIntrinsics(solution.scene.get());
   } else {
     photographs.intrinsics = IntrinsicsOf(intrinsics, focal_px);
     solution =

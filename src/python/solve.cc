@@ -29,6 +29,7 @@ Solution Solve(const py::object& scene_or_path, const py::kwargs& kwargs) {
   solution.scene = std::make_shared<Scene>(*measured.scene);
   solution.summary.command = "solve";
   solution.summary.pairs = std::move(measured.pairs);
+  RestoreGivenIntrinsics(solution.scene.get());
   SolveInPlace(arguments, call.get(), &stages, &solution);
   return solution;
 }

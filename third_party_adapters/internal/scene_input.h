@@ -38,9 +38,7 @@ Result<LoadedScene> LoadScene(const SceneInput& input,
                               const RunContext& context, StageLog* stages,
                               const ViewCheck& check = nullptr);
 
-/// The same, with the calibration as it was given (RestoreGivenIntrinsics),
-/// for which relative poses were measured; kInvalidScene if there are none in
-/// the end.
+/// The same; kInvalidScene if there are no relative poses in the end.
 Result<LoadedScene> LoadMeasuredScene(const SceneInput& input,
                                       const RunContext& context,
                                       StageLog* stages,

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 
 namespace lowlap {
@@ -138,7 +137,6 @@ Scene SceneOfPairs(const Scene& scene,
 }
 
 void DropSolution(Scene* scene) {
-  RestoreGivenIntrinsics(scene);
   scene->scale_ratios.clear();
   scene->poses.clear();
   scene->structure.clear();

@@ -19,8 +19,8 @@ void KeepMatchedFeatures(Scene* scene);
 Scene SceneOfPairs(const Scene& scene,
                    const std::map<ViewPair, std::size_t>& hypotheses);
 
-/// Drops what solving finds (scale ratios, poses, structure, coplanar pairs,
-/// refined intrinsics) and keeps what was measured.
+/// Drops what solving finds (scale ratios, poses, structure, coplanar pairs)
+/// and keeps what was measured.
 void DropSolution(Scene* scene);
 
 /// Keeps at most `max_per_pair` (> 0) point inliers of every relative pose,
