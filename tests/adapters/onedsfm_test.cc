@@ -200,7 +200,7 @@ TEST_F(OneDSfmFolder, TruePosesAreOursAndEmptyCamerasAreLeftOut) {
 // Though its ids are others.
 TEST_F(OneDSfmFolder, IsATruthForScenesOfTheSameNames) {
   Scene scene;
-  scene.views[7].local_path = "images";
+  scene.views[7].local_path = scene.views[0].local_path = "images";
   scene.views[7].filename = "e.jpg";
   scene.views[0].filename = "c.png";
   const auto truth = ReadGroundTruth(folder_.Path(), scene);

@@ -93,6 +93,18 @@ TEST_F(Output, ABlockedFileKeepsTheWholeSetAway) {
   EXPECT_FALSE(fs::exists(Path("a.json")));
 }
 
+TEST_F(Output, AFormatThatCannotHoldTheSceneCostsNoOtherResult) {
+  ASSERT_EQ(Lowlap("simulate --views 4 --pairs cycle -o " + Path("a.lowlap"))
+                .exit_code,
+            0);
+  const Outcome solved = Lowlap("solve " + Path("a.lowlap") +
+                                " --no-adjust -o " + Path("out/none.db"));
+  EXPECT_EQ(solved.exit_code, 1);
+  EXPECT_THAT(solved.output, HasSubstr(Path("out/none.db")));
+  EXPECT_THAT(solved.output, HasSubstr("cameras placed: 4/4"));
+  EXPECT_EQ(FilesIn("out"), 5u);
+}
+
 TEST_F(Output, WhatAKilledRunLeftGoesWithTheNextOne) {
   Write("b.json.tmp0", "half a scene");
   EXPECT_EQ(

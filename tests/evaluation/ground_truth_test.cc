@@ -62,6 +62,15 @@ TEST(GroundTruthByName, FoldersOfEitherSideNeedNotMatch) {
   EXPECT_EQ(truth->at(1).center.x(), 2);
 }
 
+TEST(GroundTruthByName, FoldersTellImagesApartWhereAnyMatches) {
+  const Scene scene = SceneOf({{"left", "1.jpg"}, {"right", "2.jpg"}});
+  const auto truth = GroundTruthByName(
+      scene, {{"left/1.jpg", PoseAt(1)}, {"left/2.jpg", PoseAt(2)}});
+  ASSERT_TRUE(truth.has_value());
+  EXPECT_EQ(truth->count(0), 1u);
+  EXPECT_EQ(truth->count(1), 0u);
+}
+
 TEST(GroundTruthByName, TimestampsHaveNoExtension) {
   const Scene scene = SceneOf({{"", "17.25.png"}, {"", "17.50.png"}});
   const auto truth =

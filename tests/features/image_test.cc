@@ -143,7 +143,7 @@ TEST_F(ImageTest, AJpegIsWholeOnlyWithItsOwnEnd) {
     const std::size_t next = 4 + 256 * static_cast<unsigned char>(bytes[4]) +
                              static_cast<unsigned char>(bytes[5]);
     std::string padded = bytes;
-    padded.insert(next, std::string("\1\2\xff\0\3", 5));
+    padded.insert(next, std::string("\1\2\xff\0\3\xff\xd3", 7));
     EXPECT_THAT(ReadGrayImage(WriteBytes("padded.jpg", padded)), IsOk());
     EXPECT_THAT(ReadGrayImage(
                     WriteBytes("half.jpg", bytes.substr(0, bytes.size() / 2))),

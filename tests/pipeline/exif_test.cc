@@ -56,6 +56,8 @@ TEST_F(ExifTest, SensorResolutionIsScaledToTheImage) {
   EXPECT_NEAR(*FocalPx(both), expected_px, 1e-9);
   both[EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM] = 48;
   EXPECT_NEAR(*FocalPx(both), 400, 1e-9);
+  both[EXIF_TAG_FOCAL_LENGTH_IN_35MM_FILM] = 3000;  // no lens has it
+  EXPECT_NEAR(*FocalPx(both), expected_px, 1e-9);
 }
 
 TEST_F(ExifTest, WithoutUsefulDataThereIsNone) {

@@ -277,8 +277,8 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
     }
   }
   // Where false directions are the rule, they are no measure of the others.
-  const double typical_rad =
-      std::min(sigma_rad, 3 * RadFromDeg(kLittleDeg) / options.outlier_reach);
+  const double typical_rad = std::min(
+      sigma_rad, RadFromDeg(kLittleOfDirectionsDeg) / options.outlier_reach);
   summary.agreement = std::make_shared<const SolutionAgreement>(
       FindAgreement(*scene, problem, *solution, rotations.matches,
                     {options.outlier_reach, typical_rad,

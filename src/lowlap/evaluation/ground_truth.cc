@@ -25,17 +25,20 @@ std::string PathOf(const View& view) {
                                  : view.local_path + "/" + view.filename;
 }
 
-/// Path, file name, and that without extension.
-std::array<std::string, 3> NamesOf(const std::string& path) {
+/// Path, file name, and both without extension.
+std::array<std::string, 4> NamesOf(const std::string& path) {
   const std::string base = path.substr(path.find_last_of('/') + 1);
-  return {path, base, WithoutExtension(base)};
+  return {path, base, WithoutExtension(path), WithoutExtension(base)};
 }
 
 /// Which name of a view is held against which of a truth, the most exact first.
+/// Where any view has its truth's folder, folders tell images apart.
 struct Level {
   std::size_t of_view, of_truth;
+  bool drops_folders;
 };
-constexpr Level kLevels[] = {{0, 0}, {1, 0}, {1, 1}, {2, 2}};
+constexpr Level kLevels[] = {{0, 0, false}, {1, 0, false}, {2, 2, false},
+                             {3, 2, false}, {1, 1, true},  {3, 3, true}};
 
 }  // namespace
 
@@ -45,7 +48,9 @@ Result<GroundTruth> GroundTruthByName(
   std::map<std::string, ViewId> assigned;  // truth name -> view
   // All views at one level of exactness before any at the next, so that an
   // exact name is never taken by a view that fits it loosely.
+  bool is_matched_exactly = false;
   for (const Level& level : kLevels) {
+    if (level.drops_folders && is_matched_exactly) break;
     // Nothing where two truths share a name.
     std::map<std::string, std::optional<std::string>> truth_by_name;
     for (const auto& [path, pose] : pose_by_image) {
@@ -71,6 +76,7 @@ Result<GroundTruth> GroundTruthByName(
       truth.emplace(id, pose_by_image.at(name));
     }
     assigned.insert(assigned_here.begin(), assigned_here.end());
+    if (!level.drops_folders) is_matched_exactly = !truth.empty();
   }
   if (truth.empty()) {
     return MakeError(ErrorCode::kInsufficientData,

@@ -14,10 +14,11 @@ namespace lowlap {
 /// world frame, its unit and its scale are the truth's own.
 using GroundTruth = std::map<ViewId, Pose>;
 
-/// Assigns true poses to the views of a scene by image name: the path below
-/// the image folder if it matches, else the file name, whatever its folder,
-/// else the file name without extension (which starts with a letter); a name
-/// that two truths share decides nothing. Views without truth are left out.
+/// Assigns true poses to the views of a scene by image name: the path below the
+/// image folder if it matches, else the file name, else the file name without
+/// extension (which starts with a letter). If that matches no view at all,
+/// truths go by their file names, too, whatever their folders. A name that two
+/// truths share decides nothing. Views without truth are left out.
 ///
 /// Errors: kInvalidScene if a name fits two views equally well;
 /// kInsufficientData if no view has a truth.

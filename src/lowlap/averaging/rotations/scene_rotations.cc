@@ -261,7 +261,7 @@ bool OutlierEdge::IsFalse() const {
     case OutlierReason::kRotation:
       return error_deg > kLittleDeg;
     case OutlierReason::kDirection:
-      return error_deg > 3 * kLittleDeg;
+      return error_deg > kLittleOfDirectionsDeg;
     case OutlierReason::kContradicted:
     case OutlierReason::kOpenLoop:
       return true;

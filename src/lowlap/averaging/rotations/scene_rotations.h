@@ -34,9 +34,9 @@ enum class OutlierReason {
 /// "rotation", "direction", "contradicted", "open_loop", "matches".
 const char* OutlierReasonName(OutlierReason reason);
 
-/// What a rotation may be off without being called false (a direction: three
-/// times that).
+/// What a rotation and a direction may be off without being called false.
 inline constexpr double kLittleDeg = 1.0;
+inline constexpr double kLittleOfDirectionsDeg = 3 * kLittleDeg;
 
 /// A relative pose that was left out, and why.
 struct OutlierEdge {

@@ -1,6 +1,7 @@
 #include "lowlap/averaging/strategies/internal/direction_parts.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "lowlap/averaging/strategies/internal/direction_merging.h"
 #include "lowlap/averaging/strategies/internal/placed_parts.h"

@@ -130,7 +130,8 @@ std::optional<ImageHead> JpegHead(const std::string& bytes) {
     at = bytes.find('\xff', at);
     if (at == std::string::npos || at + 2 > bytes.size()) return head;
     const std::uint32_t marker = number(at + 1, 1);
-    if (marker == 0xff || marker == 0) {  // a fill byte; no marker
+    // Fill bytes, what is no marker, and markers without a segment.
+    if (marker == 0xff || marker <= 1 || (marker >= 0xd0 && marker <= 0xd7)) {
       ++at;
       continue;
     }

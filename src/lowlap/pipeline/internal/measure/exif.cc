@@ -45,9 +45,12 @@ std::optional<double> PositiveNumber(ExifData* data, ExifTag tag,
   return value;
 }
 
-/// Of the longer side: 136 degrees of view, and less than two.
-constexpr double kLeastFocal = 0.2;
-constexpr double kMostFocal = 30;
+// Resolutions of a print, say, are no sensor's: 136 degrees of view at most,
+// and two at least.
+bool IsPlausible(double focal_px, const ImageSize& size) {
+  const int longer_px = std::max(size.width_px, size.height_px);
+  return focal_px >= 0.2 * longer_px && focal_px <= 30 * longer_px;
+}
 
 // Millimetres per unit of the focal plane's resolution; inches unless told.
 double ResolutionUnitMm(ExifData* data) {
@@ -95,17 +98,14 @@ Result<ExifGeometry> ReadExif(const std::string& path, const ImageSize& size) {
           static_cast<unsigned>(bytes.size())),
       &exif_data_unref);
   if (data == nullptr) return geometry;
-  geometry.focal_px = FocalFromSensor(data.get(), size);
-  if (const auto film_px = FocalFromFilm(data.get(), size);
+  const auto plausible = [&](std::optional<double> focal_px) {
+    return focal_px && IsPlausible(*focal_px, size) ? focal_px : std::nullopt;
+  };
+  geometry.focal_px = plausible(FocalFromSensor(data.get(), size));
+  if (const auto film_px = plausible(FocalFromFilm(data.get(), size));
       film_px && !(geometry.focal_px &&
                    std::abs(*geometry.focal_px - *film_px) <= 0.1 * *film_px)) {
     geometry.focal_px = film_px;
-  }
-  // Resolutions of a print, say, are no sensor's.
-  const int longer_px = std::max(size.width_px, size.height_px);
-  if (geometry.focal_px && !(*geometry.focal_px >= kLeastFocal * longer_px &&
-                             *geometry.focal_px <= kMostFocal * longer_px)) {
-    geometry.focal_px.reset();
   }
   const auto whole = [&](ExifTag tag, ExifIfd part, double limit) {
     const double value = PositiveNumber(data.get(), tag, part).value_or(0);
