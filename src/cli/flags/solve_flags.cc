@@ -11,8 +11,10 @@
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -301,6 +303,18 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
   summary.solve = std::move(*result);
   summary.stages = stages->stages();
   if (IsInterrupted()) return MakeError(ErrorCode::kCancelled, {});
+  // Prepared before anything appears, since the disk may be full. A format that
+  // cannot hold the scene costs none of the other results.
+  FileSet scene_file;
+  Result<SceneNotes> notes = SceneNotes();
+  if (!output.scene_file.empty()) {
+    LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(output.folder));
+    notes =
+        WriteScene(WithAbsoluteRoot(scene), output.scene_file, {}, &scene_file);
+    if (!notes && notes.error().code == ErrorCode::kIo) {
+      return tl::unexpected<Error>(notes.error());
+    }
+  }
   LOWLAP_RETURN_IF_ERROR(WriteOutputs(scene, summary, context, output.folder));
 
   PrintPoses(summary.solve->poses, scene);
@@ -321,11 +335,11 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
       "summary.json\n",
       output.folder.c_str());
   if (!output.scene_file.empty()) {
-    // A format that cannot hold the scene costs none of the other results.
-    LOWLAP_ASSIGN_OR_RETURN(
-        const SceneNotes notes,
-        WriteScene(WithAbsoluteRoot(std::move(scene)), output.scene_file));
-    for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
+    LOWLAP_RETURN_IF_ERROR(notes);
+    LOWLAP_RETURN_IF_ERROR(scene_file.Commit());
+    for (const std::string& note : *notes) {
+      context.Log(LogLevel::kWarning, note);
+    }
     std::printf("and the scene to %s\n", output.scene_file.c_str());
   }
   const PoseSummary& poses = summary.solve->poses;
