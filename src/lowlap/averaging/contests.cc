@@ -228,6 +228,7 @@ std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
     Unite(cut.views, &contest.views);
   }
   std::vector<Contest> contests;
+  contests.reserve(by_cause.size());
   for (auto& entry : by_cause) contests.push_back(std::move(entry.second));
   return contests;
 }

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/obj.h"
 #include "lowlap/scene/validation.h"
@@ -139,12 +140,8 @@ class LineFolderWriter {
       const std::uint32_t first = FileId(views.first);
       const std::uint32_t second = FileId(views.second);
       for (const FeatureMatch& match : pose.line_inliers) {
-        const std::string of_first = std::to_string(match.first);
-        const std::string of_second = std::to_string(match.second);
-        texts[first] +=
-            std::to_string(second) + " " + of_first + " " + of_second + "\n";
-        texts[second] +=
-            std::to_string(first) + " " + of_second + " " + of_first + "\n";
+        texts[first] += Format("%u %u %u\n", second, match.first, match.second);
+        texts[second] += Format("%u %u %u\n", first, match.second, match.first);
       }
     }
     return texts;

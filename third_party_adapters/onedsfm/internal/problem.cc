@@ -110,7 +110,7 @@ Status AddView(const Files& files, const std::string& folder, ImageIndex index,
     view.height_px = static_cast<int>(std::lround(2 * keys.half_size_px.y()));
     ViewFeatures& features = scene->features[index];
     for (const Vec2& key : keys.keys_px) {
-      features.points_px.push_back(key - Vec2::Ones());
+      features.points_px.emplace_back(key - Vec2::Ones());
     }
   }
   SetPath(path, &view);

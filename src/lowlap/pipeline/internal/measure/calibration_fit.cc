@@ -26,9 +26,11 @@ std::vector<ImageSize> ByFrequency(const std::vector<ImageSize>& sizes) {
     ++counts[{size.width_px, size.height_px}];
   }
   std::vector<std::pair<int, Size>> order;
+  order.reserve(counts.size());
   for (const auto& [size, count] : counts) order.emplace_back(-count, size);
   std::sort(order.begin(), order.end());
   std::vector<ImageSize> result;
+  result.reserve(order.size());
   for (const auto& entry : order) {
     result.push_back({entry.second.first, entry.second.second});
   }
