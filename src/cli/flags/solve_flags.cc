@@ -14,7 +14,6 @@
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/internal/output/output_folder.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -303,19 +302,18 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
   summary.solve = std::move(*result);
   summary.stages = stages->stages();
   if (IsInterrupted()) return MakeError(ErrorCode::kCancelled, {});
-  // Prepared before anything appears, since the disk may be full. A format that
-  // cannot hold the scene costs none of the other results.
+  // A set of its own: a format that cannot hold the scene costs none of the
+  // other results; a full disk all of them.
   FileSet scene_file;
   Result<SceneNotes> notes = SceneNotes();
-  if (!output.scene_file.empty()) {
-    LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(output.folder));
-    notes =
-        WriteScene(WithAbsoluteRoot(scene), output.scene_file, {}, &scene_file);
-    if (!notes && notes.error().code == ErrorCode::kIo) {
-      return tl::unexpected<Error>(notes.error());
-    }
-  }
-  LOWLAP_RETURN_IF_ERROR(WriteOutputs(scene, summary, context, output.folder));
+  const auto prepare_scene_file = [&](const Scene& solved) -> Status {
+    if (output.scene_file.empty()) return {};
+    notes = WriteScene(solved, output.scene_file, {}, &scene_file);
+    if (notes || notes.error().code != ErrorCode::kIo) return {};
+    return tl::unexpected<Error>(notes.error());
+  };
+  LOWLAP_RETURN_IF_ERROR(
+      WriteOutputs(scene, summary, context, output.folder, prepare_scene_file));
 
   PrintPoses(summary.solve->poses, scene);
   if (summary.solve->adjustment) {

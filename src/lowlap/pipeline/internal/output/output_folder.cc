@@ -55,18 +55,14 @@ Status PrepareOutputFolder(const std::string& folder) {
   return {};
 }
 
-Scene WithAbsoluteRoot(Scene scene) {
+Status WriteOutputs(Scene scene, const RunSummary& summary,
+                    const RunContext& context, const std::string& folder,
+                    const std::function<Status(const Scene&)>& before_commit) {
   if (!scene.root_path.empty()) {
     std::error_code error;
     const fs::path absolute = fs::absolute(scene.root_path, error);
     if (!error) scene.root_path = absolute.lexically_normal().string();
   }
-  return scene;
-}
-
-Status WriteOutputs(Scene scene, const RunSummary& summary,
-                    const RunContext& context, const std::string& folder) {
-  scene = WithAbsoluteRoot(std::move(scene));
   LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(folder));
   FileSet files;
   // One after the other, so that one content at a time is in memory.
@@ -82,6 +78,7 @@ Status WriteOutputs(Scene scene, const RunSummary& summary,
                           MakeReport(summary, scene, context));
   LOWLAP_RETURN_IF_ERROR(add("report.html", FormatReport(scene, report)));
   LOWLAP_RETURN_IF_ERROR(add("summary.json", ToJson(summary, scene) + "\n"));
+  if (before_commit) LOWLAP_RETURN_IF_ERROR(before_commit(scene));
   return files.Commit();
 }
 

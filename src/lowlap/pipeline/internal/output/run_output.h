@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -42,14 +43,14 @@ Status CheckOutputFolder(const std::string& folder);
 /// Makes the folder and writes what every solving command leaves, as a FileSet:
 /// sfm_data.json (OpenMVG loads it), scene.lowlap (everything), cloud.ply
 /// (points, lines, cameras), report.html (for a person) and summary.json (for
-/// a program). The root_path is made absolute (WithAbsoluteRoot). The page
-/// shows the photographs, if they are where the scene says. Errors: kIo;
-/// kCancelled, with nothing written.
-Status WriteOutputs(Scene scene, const RunSummary& summary,
-                    const RunContext& context, const std::string& folder);
-
-/// The scene for files that move away from what a relative root_path was
-/// relative to.
-Scene WithAbsoluteRoot(Scene scene);
+/// a program). A relative root_path is made absolute, since the files move away
+/// from what it was relative to. The page shows the photographs, if they are
+/// where the scene says. `before_commit`, if it is not null, gets the scene
+/// once all files are prepared. Errors: kIo; kCancelled; those of
+/// `before_commit`; with nothing written.
+Status WriteOutputs(
+    Scene scene, const RunSummary& summary, const RunContext& context,
+    const std::string& folder,
+    const std::function<Status(const Scene&)>& before_commit = nullptr);
 
 }  // namespace lowlap
