@@ -17,6 +17,11 @@ constexpr double kRotationFreedom = 3, kPoseFreedom = 5;
 /// Pairs of which at most one may be taken for a translation wrongly.
 constexpr double kLog10Pairs = 3;
 
+/// The votes of two directions have little in common if their epipolar lines
+/// differ by 45 degrees, where along and across begin to change places. So many
+/// caps of half that radius cover as much as the half sphere of directions.
+double Log10Directions() { return -std::log10(1 - std::cos(kPi / 8)); }
+
 /// The rotation that takes the bearings x1 closest to x2, with Cauchy weights
 /// (iterated orthogonal Procrustes).
 Mat3 FitRotation(const PointPairs& pairs, const std::vector<int>& indices,
@@ -96,11 +101,13 @@ TranslationEvidence TestTranslation(const PointPairs& pairs,
   const SampsonResidual across(cam2_from_cam1, pairs);
   const double along_scale = 1 / std::sqrt(1 - kRotationFreedom / (2 * count));
   const double across_scale = 1 / std::sqrt(1 - kPoseFreedom / count);
+  std::vector<bool> is_inlier(pairs.size(), false);
+  for (const int i : inliers) is_inlier[i] = true;
   int num_asked = 0, num_along = 0;
-  for (const int i : inliers) {
+  for (int i = 0; i < pairs.size(); ++i) {
     const std::optional<double> along =
         ErrorAlong(pairs, i, rotation, cam2_from_cam1.translation);
-    if (!along) continue;
+    if (!along || (!is_inlier[i] && std::abs(*along) > threshold_px)) continue;
     ++num_asked;
     num_along += along_scale * std::abs(*along) >
                  std::max(precision_px, across_scale * std::abs(across(i)));
@@ -110,9 +117,10 @@ TranslationEvidence TestTranslation(const PointPairs& pairs,
   const double wrong_share =
       std::min(0.9, ChanceShare(pairs, cam2_from_cam1, threshold_px) *
                         num_outliers / count);
-  evidence.log10_nfa =
-      std::min(0.0, kLog10Pairs + Log10BinomialTail(num_asked, num_along,
-                                                    0.5 * (1 + wrong_share)));
+  evidence.log10_nfa = std::min(
+      0.0,
+      kLog10Pairs + Log10Directions() +
+          Log10BinomialTail(num_asked, num_along, 0.5 * (1 + wrong_share)));
   return evidence;
 }
 

@@ -24,13 +24,15 @@ struct TranslationEvidence {
 /// transfers to within 3 `threshold_px`. If that is most of them, the
 /// translation must prove itself. Any translation fits the matches of a
 /// rotation, for what their noise does across epipolar lines is all it is asked
-/// for; but then nothing tells the two directions apart. So every inlier votes:
-/// is the error that the rotation leaves along its epipolar line greater than
-/// the one that the pose leaves across, each in its own deviation (the shapes
-/// of the points' errors, and what the fits have taken from either)? Without
-/// translation both are as likely, whatever the size of a point's noise; so
-/// often, and by chance matches, the votes are binomial. With one, the parallax
-/// goes along.
+/// for; but then nothing tells the two directions apart. So matches vote: is
+/// the error that the rotation leaves along the epipolar line greater than the
+/// one that the pose leaves across, each in its own deviation (the shapes of
+/// the points' errors, and what the fits have taken from either)? The inliers
+/// are within the threshold across; so that neither is preferred, those that
+/// are within it along vote as well. Without translation both are as likely,
+/// whatever the size of a point's noise; so often, and by chance matches, the
+/// votes are binomial. With one, the parallax goes along. The direction was
+/// chosen among all: the NFA counts those whose votes differ.
 ///
 /// Errors below `precision_px` are none: in a copy of an image nothing moves,
 /// and what is left is rounding.
