@@ -1,10 +1,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iterator>
 #include <string>
 #include <vector>
 
+#include "geometry/random_geometry.h"
 #include "lowlap/core/internal/format.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "merge/parts.h"
@@ -85,6 +87,38 @@ TEST_P(CheckModelTest, NamesACameraThatIsElsewhere) {
   EXPECT_THAT(check.unconfirmed, ElementsAreArray(Range(8, 8)));
 }
 
+// All residuals are as large: that does not excuse any.
+TEST_P(CheckModelTest, DoesNotBearOutWhatIsWrongThroughout) {
+  const PartialModel right = PartOf(made_.true_poses, Range(0, 8));
+  PartialModel mirrored = right, transposed = right, turned = right;
+  for (auto& entry : mirrored.poses) entry.second.center *= -1;
+  for (auto& entry : transposed.poses) {
+    entry.second.rotation.transposeInPlace();
+  }
+  Random random(GetParam());
+  for (auto& entry : turned.poses) {
+    const Vec3 axis = testing::RandomVector(random).normalized();
+    entry.second.rotation =
+        RotationFromAngleAxis(RadFromDeg(40) * axis) * entry.second.rotation;
+  }
+  for (const PartialModel& model : {mirrored, transposed, turned}) {
+    const ModelCheck check = Check(made_, model);
+    EXPECT_THAT(check.pieces, IsEmpty());
+    EXPECT_LT(
+        std::count_if(check.pairs.begin(), check.pairs.end(),
+                      [](const PairAgreement& pair) { return pair.Agrees(); }),
+        static_cast<std::ptrdiff_t>(check.pairs.size()) / 4);
+  }
+}
+
+TEST_P(CheckModelTest, ACameraFarAwayTakesNothingFromTheOthers) {
+  PartialModel model = PartOf(made_.true_poses, Range(0, 8));
+  model.poses.at(8).center = Vec3(1e11, 0, 0);
+  const ModelCheck check = Check(made_, model);
+  ASSERT_THAT(check.pieces, SizeIs(1));
+  EXPECT_THAT(check.unconfirmed, ElementsAreArray(Range(8, 8)));
+}
+
 INSTANTIATE_TEST_SUITE_P(Seeds, CheckModelTest, ::testing::Values(0, 1, 2));
 
 // Nothing contradicts the model, but nothing that was measured has to do with
@@ -149,6 +183,31 @@ TEST(MatchModel, FindsViewsByImageName) {
   const auto latin = MatchModel(made.scene, model, "mod\xe9le.json", {});
   ASSERT_THAT(latin, testing::IsOk());
   EXPECT_TRUE(IsUtf8(latin->name));
+}
+
+TEST(MatchModel, FoldersTellImagesOfOneNameApart) {
+  Scene measured, model;
+  const auto add = [](const char* folder, int number, Scene* scene) {
+    const auto id = static_cast<std::uint32_t>(scene->views.size());
+    View& view = scene->views[id];
+    view.local_path = folder;
+    view.filename = std::to_string(number) + ".png";
+    return id;
+  };
+  for (int n = 0; n < 6; ++n) {
+    add(n < 3 ? "left" : "right", n, &measured);
+    const std::uint32_t id = add("left", n, &model);
+    model.views.at(id).pose_id = id;
+    model.poses[id].center.x() = n;
+  }
+  int num_warnings = 0;
+  RunContext context;
+  context.log = [&](LogLevel, const std::string&) { ++num_warnings; };
+  const auto matched = MatchModel(measured, model, "model.json", context);
+  ASSERT_THAT(matched, testing::IsOk());
+  EXPECT_THAT(matched->poses, SizeIs(3));
+  EXPECT_EQ(matched->poses.count(3), 0u);
+  EXPECT_EQ(num_warnings, 1);
 }
 
 TEST(MatchModel, SaysWhatIsWrong) {

@@ -55,16 +55,9 @@ Result<GroundTruth> MatchByName(const Scene& measured, const Scene& model,
 
 Result<PartialModel> MatchModel(const Scene& measured, const Scene& model,
                                 std::string name, const RunContext& context) {
-  // Programs name images from folders of their own; where these match they
-  // tell images of one name apart.
   auto matched = MatchByName(measured, model, true);
-  auto by_file = MatchByName(measured, model, false);
-  const bool is_ambiguous =
-      !by_file && by_file.error().code == ErrorCode::kInvalidScene;
-  if (by_file ? !matched || by_file->size() > matched->size()
-              : !matched && is_ambiguous) {
-    matched = std::move(by_file);
-  }
+  // Names of which two are one only without folders are an error of their own.
+  if (!matched) matched = MatchByName(measured, model, false);
   if (!matched) {
     matched.error().file = std::move(name);
     return tl::unexpected<Error>(matched.error());

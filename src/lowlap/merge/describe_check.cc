@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -28,41 +29,88 @@ bool IsAcross(const ViewPair& pair, const RigidPiece& a, const RigidPiece& b) {
           (Holds(b.views, pair.first) && Holds(a.views, pair.second)));
 }
 
-// Turns and directions that contradict between two pieces; empty if none do.
-std::string PairsAcross(const ModelCheck& check, const RigidPiece& a,
-                        const RigidPiece& b) {
-  int num_across = 0;
-  std::vector<double> turns, directions;
+// What was measured between two pieces. Of pieces that are far apart there is
+// nothing, and nothing to be said.
+struct Between {
+  std::vector<const PairAgreement*> pairs;
+  std::vector<const RatioAgreement*> ratios;
+};
+
+using PiecePair = std::pair<std::size_t, std::size_t>;  // the smaller first
+
+std::set<PiecePair> PairsOf(const std::vector<std::size_t>& some,
+                            const std::vector<std::size_t>& others) {
+  std::set<PiecePair> pairs;
+  for (const std::size_t p : some) {
+    for (const std::size_t q : others) {
+      if (p != q) pairs.insert(std::minmax(p, q));
+    }
+  }
+  return pairs;
+}
+
+// Of pieces that share views, and of those with anything between them.
+std::map<PiecePair, Between> FindBetween(const ModelCheck& check) {
+  std::map<ViewId, std::vector<std::size_t>> of_view;
+  std::map<ViewPair, std::vector<std::size_t>> of_pair;
+  for (std::size_t p = 0; p < check.pieces.size(); ++p) {
+    for (const ViewId view : check.pieces[p].views) of_view[view].push_back(p);
+    for (const ViewPair& pair : check.pieces[p].pairs) {
+      of_pair[pair].push_back(p);
+    }
+  }
+  std::map<PiecePair, Between> between;
+  for (const auto& entry : of_view) {
+    for (const PiecePair& two : PairsOf(entry.second, entry.second)) {
+      between[two];
+    }
+  }
   for (const PairAgreement& pair : check.pairs) {
-    if (!IsAcross(pair.views, a, b)) continue;
-    ++num_across;
-    if (pair.Agrees()) continue;
-    turns.push_back(pair.rotation_error_rad);
-    directions.push_back(pair.direction_error_rad);
+    for (const PiecePair& two :
+         PairsOf(of_view[pair.views.first], of_view[pair.views.second])) {
+      if (IsAcross(pair.views, check.pieces[two.first],
+                   check.pieces[two.second])) {
+        between[two].pairs.push_back(&pair);
+      }
+    }
+  }
+  for (const RatioAgreement& ratio : check.ratios) {
+    const ViewTriplet& v = ratio.views;
+    for (const PiecePair& two :
+         PairsOf(of_pair[OrderedPair(v.first, v.middle)],
+                 of_pair[OrderedPair(v.middle, v.last)])) {
+      between[two].ratios.push_back(&ratio);
+    }
+  }
+  return between;
+}
+
+// Turns and directions that contradict between two pieces; empty if none do.
+std::string PairsAcross(const Between& between) {
+  std::vector<double> turns, directions;
+  for (const PairAgreement* pair : between.pairs) {
+    if (pair->Agrees()) continue;
+    turns.push_back(pair->rotation_error_rad);
+    directions.push_back(pair->direction_error_rad);
   }
   if (turns.empty()) return {};
   const std::size_t num_against = turns.size();
   return Format(
-      "%zu of %d relative poses between them contradict it, by %.1f degrees of "
+      "%zu of %zu relative poses between them contradict it, by %.1f degrees "
+      "of "
       "rotation and %.1f of direction",
-      num_against, num_across, DegFromRad(Median(std::move(turns))),
+      num_against, between.pairs.size(), DegFromRad(Median(std::move(turns))),
       DegFromRad(Median(std::move(directions))));
 }
 
 // The scale that ratios give the second piece in the first; empty if none do.
-std::string RatiosAcross(const ModelCheck& check, const RigidPiece& a,
-                         const RigidPiece& b) {
-  std::size_t num_across = 0;
+std::string RatiosAcross(const Between& between, const RigidPiece& first) {
   std::vector<double> errors;
-  for (const RatioAgreement& ratio : check.ratios) {
-    const ViewTriplet& v = ratio.views;
-    const bool forward =
-        a.Holds(v.first, v.middle) && b.Holds(v.middle, v.last);
-    const bool backward =
-        b.Holds(v.first, v.middle) && a.Holds(v.middle, v.last);
-    if (!forward && !backward) continue;
-    ++num_across;
-    if (!ratio.Agrees()) errors.push_back(forward ? ratio.error : -ratio.error);
+  for (const RatioAgreement* ratio : between.ratios) {
+    if (ratio->Agrees()) continue;
+    const bool is_forward =
+        first.Holds(ratio->views.first, ratio->views.middle);
+    errors.push_back(is_forward ? ratio->error : -ratio->error);
   }
   if (errors.empty()) return {};
   const std::size_t num_against = errors.size();
@@ -70,7 +118,7 @@ std::string RatiosAcross(const ModelCheck& check, const RigidPiece& a,
   return Format(
       "%zu of %zu scale ratios between them contradict it: the model has the "
       "second %.2f times too %s",
-      num_against, num_across, std::max(factor, 1 / factor),
+      num_against, between.ratios.size(), std::max(factor, 1 / factor),
       factor > 1 ? "large" : "small");
 }
 
@@ -107,23 +155,20 @@ std::vector<std::string> DescribeCheck(const PartialModel& model,
                            check.pieces.size()) +
                     NamesOf(measured, check.pieces[p].views));
   }
-  for (std::size_t p = 0; p < check.pieces.size(); ++p) {
-    for (std::size_t q = p + 1; q < check.pieces.size(); ++q) {
-      const RigidPiece& a = check.pieces[p];
-      const RigidPiece& b = check.pieces[q];
-      const std::string pairs = PairsAcross(check, a, b);
-      const std::string ratios = RatiosAcross(check, a, b);
-      const std::string shared = SharedViews(measured, a, b);
-      // Of pieces that are far apart there is nothing to say.
-      if (pairs.empty() && ratios.empty() && shared.empty()) continue;
-      lines.push_back(
-          Format("%s: pieces %zu and %zu", model.name.c_str(), p + 1, q + 1) +
-          shared + " are not one: " +
-          (pairs.empty() && ratios.empty()
-               ? "nothing that was measured ties their scales"
-               : pairs + (pairs.empty() || ratios.empty() ? "" : "; ") +
-                     ratios));
-    }
+  for (const auto& [two, between] : FindBetween(check)) {
+    const RigidPiece& a = check.pieces[two.first];
+    const RigidPiece& b = check.pieces[two.second];
+    const std::string pairs = PairsAcross(between);
+    const std::string ratios = RatiosAcross(between, a);
+    const std::string shared = SharedViews(measured, a, b);
+    if (pairs.empty() && ratios.empty() && shared.empty()) continue;
+    lines.push_back(
+        Format("%s: pieces %zu and %zu", model.name.c_str(), two.first + 1,
+               two.second + 1) +
+        shared + " are not one: " +
+        (pairs.empty() && ratios.empty()
+             ? "nothing that was measured ties their scales"
+             : pairs + (pairs.empty() || ratios.empty() ? "" : "; ") + ratios));
   }
   if (!check.unconfirmed.empty()) {
     lines.push_back(model.name + ": nothing bears out the places of " +

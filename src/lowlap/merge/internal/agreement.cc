@@ -33,15 +33,22 @@ double LengthOf(const std::map<ViewId, Pose>& poses, ViewId a, ViewId b) {
   return (poses.at(a).center - poses.at(b).center).norm();
 }
 
-// Baselines shorter than this share of the largest distance are rounding.
+// Baselines shorter than this share of the extent are rounding. A camera that
+// is far too far away does not make the others' so.
 double ShortestBaseline(const std::map<ViewId, Pose>& poses) {
   constexpr double kShare = 1e-9;
-  double extent = 0;
+  std::vector<double> x, y, z, distances;
   for (const auto& entry : poses) {
-    extent = std::max(
-        extent, (entry.second.center - poses.begin()->second.center).norm());
+    x.push_back(entry.second.center.x());
+    y.push_back(entry.second.center.y());
+    z.push_back(entry.second.center.z());
   }
-  return kShare * extent;
+  const Vec3 middle(Median(std::move(x)), Median(std::move(y)),
+                    Median(std::move(z)));
+  for (const auto& entry : poses) {
+    distances.push_back((entry.second.center - middle).norm());
+  }
+  return kShare * Median(std::move(distances));
 }
 
 // The errors that are not beyond `reach` of their stated deviations, if these
@@ -125,11 +132,15 @@ std::vector<PairAgreement> ComparePairs(
     direction_stddevs.push_back(DirectionStddev(motion));
   }
   const double reach = options.outlier_reach;
-  const double rotation_stddev =
-      DeviationOf<3>(rotations, rotation_stddevs, reach);
-  const double direction_stddev =
-      DeviationOf<2>(directions, direction_stddevs, reach);
+  // A model that is wrong throughout has large residuals everywhere: these do
+  // not excuse it beyond what is called false.
   const ErrorLimits limits = LimitsOf(options);
+  const double rotation_stddev =
+      std::min(DeviationOf<3>(rotations, rotation_stddevs, reach),
+               limits.least_false_rad);
+  const double direction_stddev =
+      std::min(DeviationOf<2>(directions, direction_stddevs, reach),
+               3 * limits.least_false_rad);
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     pairs[n].rotation_limit_rad =
         limits.RotationRad(rotation_stddev, rotation_stddevs[n]);
@@ -169,8 +180,9 @@ std::vector<RatioAgreement> CompareRatios(const std::vector<ScaleRatio>& ratios,
   const double tenth = DiagnosisOptions().max_stddev;
   const double factor = FactorOf(errors, stddevs, options.outlier_reach);
   for (std::size_t n = 0; n < compared.size(); ++n) {
-    compared[n].limit =
-        std::max(options.outlier_reach * factor * stddevs[n], tenth);
+    const double excused =
+        std::max(stddevs[n], std::min(factor * stddevs[n], tenth));
+    compared[n].limit = std::max(options.outlier_reach * excused, tenth);
   }
   return compared;
 }

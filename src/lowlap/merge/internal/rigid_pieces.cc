@@ -247,6 +247,7 @@ Result<std::vector<ViewTriplet>> FirmTriplets(
 struct Cluster {
   std::set<ViewPair> pairs;
   std::set<ViewId> views;
+  std::vector<std::size_t> labels;
   std::map<std::size_t, double> evidence;  // by label
 };
 
@@ -259,6 +260,7 @@ std::map<std::size_t, Cluster> ClustersOf(
     Cluster& cluster = clusters[labels[e]];
     cluster.pairs.insert(views);
     cluster.views.insert({views.first, views.second});
+    cluster.labels = {labels[e]};
   }
   for (const SignedLink& link : links) {
     const std::size_t a = labels[link.first], b = labels[link.second];
@@ -272,6 +274,25 @@ std::map<std::size_t, Cluster> ClustersOf(
 std::size_t CountShared(const std::set<ViewId>& a, const std::set<ViewId>& b) {
   return static_cast<std::size_t>(std::count_if(
       a.begin(), a.end(), [&](ViewId view) { return b.count(view) > 0; }));
+}
+
+double EvidenceBetween(const Cluster& a, const Cluster& b) {
+  double sum = 0;
+  for (const std::size_t label : b.labels) {
+    const auto found = a.evidence.find(label);
+    if (found != a.evidence.end()) sum += found->second;
+  }
+  return sum;
+}
+
+void Absorb(const Cluster& cluster, Cluster* larger) {
+  larger->pairs.insert(cluster.pairs.begin(), cluster.pairs.end());
+  larger->views.insert(cluster.views.begin(), cluster.views.end());
+  larger->labels.insert(larger->labels.end(), cluster.labels.begin(),
+                        cluster.labels.end());
+  for (const auto& [other, value] : cluster.evidence) {
+    larger->evidence[other] += value;
+  }
 }
 
 // Two pieces of one model that share two views have one scale, that of the
@@ -290,22 +311,24 @@ std::vector<RigidPiece> PiecesOf(std::map<std::size_t, Cluster> clusters) {
       });
   std::vector<Cluster*> accepted;
   for (const std::size_t label : labels) {
-    Cluster& cluster = clusters.at(label);
-    const auto same = std::find_if(
-        accepted.begin(), accepted.end(), [&](const Cluster* larger) {
-          return CountShared(cluster.views, larger->views) >= 2;
-        });
-    if (same == accepted.end()) {
-      accepted.push_back(&cluster);
-      continue;
-    }
-    Cluster& larger = **same;
-    const auto between = larger.evidence.find(label);
-    if (between != larger.evidence.end() && between->second < 0) continue;
-    larger.pairs.insert(cluster.pairs.begin(), cluster.pairs.end());
-    larger.views.insert(cluster.views.begin(), cluster.views.end());
-    for (const auto& [other, value] : cluster.evidence) {
-      larger.evidence[other] += value;
+    Cluster* cluster = &clusters.at(label);
+    // One that has grown may share two views with others accepted before.
+    for (;;) {
+      const auto same = std::find_if(
+          accepted.begin(), accepted.end(), [&](const Cluster* larger) {
+            return CountShared(cluster->views, larger->views) >= 2;
+          });
+      if (same == accepted.end()) {
+        accepted.push_back(cluster);
+        break;
+      }
+      Cluster* larger = *same;
+      if (cluster->pairs.size() > larger->pairs.size()) {
+        std::swap(cluster, larger);
+      }
+      accepted.erase(same);
+      if (EvidenceBetween(*larger, *cluster) >= 0) Absorb(*cluster, larger);
+      cluster = larger;
     }
   }
   std::vector<RigidPiece> pieces;

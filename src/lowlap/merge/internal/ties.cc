@@ -61,8 +61,10 @@ std::string EvidenceAcross(const Scene& scene, const RigidPiece& piece,
     num_agreeing += static_cast<int>(agreeing.count(views));
   }
   if (!has_others) {
-    return Format("of the %d relative poses between them only %d agree",
-                  num_pairs, num_agreeing);
+    return Format(
+        "of the %d relative poses between them %d agree, and tie no three of "
+        "them",
+        num_pairs, num_agreeing);
   }
   if (num_pairs == 0) return "no relative pose joins them to any other view";
   int num_ratios = 0, num_meaningful = 0;

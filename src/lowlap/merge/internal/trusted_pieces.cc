@@ -90,6 +90,19 @@ ScaleRatio RatioOfModel(const ViewTriplet& views, const PartialModel& model,
   return ratio;
 }
 
+std::map<ViewTriplet, const ScaleRatio*> AgreeingRatios(
+    const ModelCheck& check) {
+  std::map<ViewTriplet, const ScaleRatio*> agreeing;
+  for (const RatioAgreement& ratio : check.ratios) {
+    if (ratio.Agrees()) agreeing[ratio.views] = nullptr;
+  }
+  for (const ScaleRatio& ratio : check.measured_ratios) {
+    const auto found = agreeing.find(ratio.views);
+    if (found != agreeing.end()) found->second = &ratio;
+  }
+  return agreeing;
+}
+
 }  // namespace
 
 std::vector<TrustedPiece> TrustedPieces(const Scene& measured,
@@ -115,24 +128,20 @@ void TrustPieces(const std::vector<PartialModel>& models,
   for (const auto& [views, pose] : scene->relative_poses) {
     evidence[views] = pose.log10_nfa;
   }
+  std::vector<std::map<ViewTriplet, const ScaleRatio*>> agreeing_of_models;
+  for (const ModelCheck& check : checks) {
+    agreeing_of_models.push_back(AgreeingRatios(check));
+  }
   std::set<ViewPair> replaced;
   std::map<ViewTriplet, ScaleRatio> ratios;
   for (const TrustedPiece& trusted : pieces) {
     const PartialModel& model = models[trusted.model];
-    const ModelCheck& check = checks[trusted.model];
+    const auto& agreeing = agreeing_of_models[trusted.model];
     for (const ViewPair& views : trusted.piece.pairs) {
       RelativePose& pose = scene->relative_poses.at(views);
       if (replaced.insert(views).second) {
         pose = OfModel(std::move(pose), model, trusted);
       }
-    }
-    std::map<ViewTriplet, const ScaleRatio*> agreeing;
-    for (const RatioAgreement& ratio : check.ratios) {
-      if (ratio.Agrees()) agreeing[ratio.views] = nullptr;
-    }
-    for (const ScaleRatio& ratio : check.measured_ratios) {
-      const auto found = agreeing.find(ratio.views);
-      if (found != agreeing.end()) found->second = &ratio;
     }
     for (const ViewTriplet& views :
          FindTriplets(ViewGraph(trusted.piece.pairs))) {
