@@ -62,6 +62,16 @@ TEST(EvaluatePairs, ConsecutivePairsCloseTheLoopAndMissingOnesFail) {
   EXPECT_EQ(Find(*result, {0, 2}).log10_nfa, -12);
 }
 
+TEST(EvaluatePairs, TruthsOfOtherViewsAreNoPairs) {
+  const Scene scene = FiveViews();
+  GroundTruth truth = GroundTruthFromScene(scene);
+  truth[9] = truth.at(8);
+  const auto result = EvaluatePairs(scene, truth);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->consecutive.num_pairs, 5);
+  EXPECT_TRUE(Find(*result, {0, 8}).consecutive);
+}
+
 TEST(EvaluatePairs, FailsBeyondEitherLimit) {
   Scene scene = FiveViews();
   Turn(&scene.relative_poses.at({0, 2}), 2.1);

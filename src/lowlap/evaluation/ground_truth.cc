@@ -102,11 +102,7 @@ Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
     by_name.emplace(PathOf(truth.views.at(id)), pose);
   }
   if (by_name.size() < by_id.size()) return by_id;
-  auto named = GroundTruthByName(scene, by_name);
-  if (!named && named.error().code == ErrorCode::kInsufficientData) {
-    return by_id;
-  }
-  return named;
+  return GroundTruthByName(scene, by_name);
 }
 
 }  // namespace lowlap

@@ -28,9 +28,8 @@ Result<GroundTruth> GroundTruthByName(
 /// The poses of a scene (a simulated one, a reference solution) as truth.
 GroundTruth GroundTruthFromScene(const Scene& truth);
 
-/// The same for the views of another scene: by image name if no two of its
-/// posed views share one and a name occurs in the other scene, else by view id.
-/// kInvalidScene if a name fits two views of the other scene equally well.
+/// The same for the views of another scene: by image name (GroundTruthByName),
+/// or by view id if two of its posed views share one, as those without names.
 Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
                                          const Scene& scene);
 

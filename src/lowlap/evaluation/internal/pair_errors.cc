@@ -13,9 +13,12 @@
 namespace lowlap {
 namespace {
 
-std::set<ViewPair> ConsecutivePairs(const GroundTruth& truth) {
+std::set<ViewPair> ConsecutivePairs(const Scene& scene,
+                                    const GroundTruth& truth) {
   std::vector<ViewId> views;
-  for (const auto& entry : truth) views.push_back(entry.first);
+  for (const auto& entry : truth) {
+    if (scene.views.count(entry.first)) views.push_back(entry.first);
+  }
   std::set<ViewPair> pairs;
   for (std::size_t n = 0; n + 1 < views.size(); ++n) {
     pairs.insert({views[n], views[n + 1]});
@@ -82,7 +85,7 @@ Result<PairEvaluation> EvaluatePairs(const Scene& scene,
                                      const PairEvaluationOptions& options) {
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::map<ViewPair, PairError> by_views;
-  const std::set<ViewPair> consecutive = ConsecutivePairs(truth);
+  const std::set<ViewPair> consecutive = ConsecutivePairs(scene, truth);
   for (const ViewPair& views : consecutive) by_views[views].consecutive = true;
   for (const ViewPair& views : options.expected) {
     for (const ViewId view : {views.first, views.second}) {
