@@ -191,9 +191,17 @@ TEST(PageData, KeepsThePairsInUseAndTheRatiosOfMostEvidence) {
   EXPECT_EQ(page["pairs"][0]["used"], true);
   EXPECT_EQ(page["pairs"][1]["log10_nfa"], -99);
   EXPECT_EQ(page["thinning"]["num_pairs"], content.pairs.size());
+  EXPECT_EQ(page["thinning"]["num_used_pairs"], 1);
   ASSERT_EQ(page["triplets"].size(), 2u);
   EXPECT_EQ(page["triplets"][0]["views"], json({1, 2, 3}));
   EXPECT_EQ(page["triplets"][1]["views"], json({3, 4, 5}));
+  EXPECT_EQ(page["thinning"]["num_meaningful"], scene.scale_ratios.size());
+
+  // One with a profile is one that matters.
+  content.profiles = {{{2, 3, 4}, {}}};
+  const json asked = json::parse(PageData(scene, content, limits));
+  ASSERT_EQ(asked["triplets"].size(), 2u);
+  EXPECT_EQ(asked["triplets"][0]["views"], json({2, 3, 4}));
 }
 
 TEST(PageData, IsSafeInAScriptElement) {
@@ -238,6 +246,29 @@ TEST(PageData, ShowsTheSolutionBeforeTheAdjustmentInItsGauge) {
   ASSERT_EQ(after.size(), aligned.size());
   for (std::size_t n = 0; n < after.size(); ++n) {
     EXPECT_NEAR(after[n], aligned[n], 1e-5);
+  }
+}
+
+// Where noise moves centres on a line, they do not tell how the scene turned.
+TEST(PageData, CamerasOnALineAreAlignedByTheirRotations) {
+  Scene scene = Room(5, 50);
+  int place = 0;
+  for (auto& entry : scene.poses) {
+    ++place;
+    entry.second.center = Vec3(place, 0.001 * (place / 2 % 2), 0);
+  }
+  ReportContent content = ContentOf(scene);
+  place = 0;
+  for (auto& entry : content.before_adjustment->poses) {
+    ++place;
+    entry.second.center = Vec3(place, 0.001 * (place % 2), 0.001 * (place % 3));
+  }
+  const json page = json::parse(PageData(scene, content));
+  const auto after = Decode<float>(page["points"]["positions"]);
+  const auto aligned = Decode<float>(page["points"]["before"]);
+  ASSERT_EQ(after.size(), aligned.size());
+  for (std::size_t n = 0; n < after.size(); ++n) {
+    EXPECT_NEAR(after[n], aligned[n], 0.05);
   }
 }
 

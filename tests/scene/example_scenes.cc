@@ -3,15 +3,12 @@
 #include <limits>
 #include <string>
 
+#include "geometry/random_geometry.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap::testing {
 namespace {
-
-Vec3 RandomVector(Random& random) {
-  return {random.Gaussian(), random.Gaussian(), random.Gaussian()};
-}
 
 Intrinsic MakeIntrinsic(CameraModel model) {
   Intrinsic intrinsic;

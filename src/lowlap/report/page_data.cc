@@ -1,5 +1,7 @@
 #include "lowlap/report/internal/page_data.h"
 
+#include <algorithm>
+
 #include "lowlap/report/internal/page_parts.h"
 
 namespace lowlap {
@@ -50,11 +52,21 @@ std::string PageData(const Scene& scene, const ReportContent& content,
   page["pairs"] = PairsJson(scene, content, index, limits);
   page["triplets"] = TripletsJson(scene, content, index, limits);
   page["residuals"] = ResidualsJson(scene, content, index);
+  const auto num_used =
+      std::count_if(content.pairs.begin(), content.pairs.end(),
+                    [](const ReportPair& pair) { return pair.is_used; });
+  const auto num_meaningful =
+      std::count_if(scene.scale_ratios.begin(), scene.scale_ratios.end(),
+                    [](const ScaleRatio& ratio) {
+                      return ratio.verdict == RatioVerdict::kMeaningful;
+                    });
   page["thinning"] = {{"point_stride", index.point_stride},
                       {"feature_stride", index.feature_stride},
                       {"num_points", scene.structure.size()},
                       {"num_pairs", content.pairs.size()},
-                      {"num_triplets", scene.scale_ratios.size()}};
+                      {"num_used_pairs", num_used},
+                      {"num_triplets", scene.scale_ratios.size()},
+                      {"num_meaningful", num_meaningful}};
   // File names need not be UTF-8.
   return WithoutMarkup(
       page.dump(-1, ' ', true, PageJson::error_handler_t::replace));

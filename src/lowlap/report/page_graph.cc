@@ -138,8 +138,11 @@ PageJson PairsJson(const Scene& scene, const ReportContent& content,
 PageJson TripletsJson(const Scene& scene, const ReportContent& content,
                       const PageIndex& index, const PageLimits& limits) {
   const std::vector<ScaleRatio>& ratios = scene.scale_ratios;
+  // Profiles are of the weakest ratios, which are asked about first.
   const auto comes_first = [&](std::size_t a, std::size_t b) {
-    return ratios[a].log10_nfa < ratios[b].log10_nfa;
+    const bool has_a = content.profiles.count(ratios[a].views) > 0;
+    const bool has_b = content.profiles.count(ratios[b].views) > 0;
+    return has_a != has_b ? has_a : ratios[a].log10_nfa < ratios[b].log10_nfa;
   };
   const bool by_kind = content.profiles.size() <= limits.profiles_by_kind;
   PageJson triplets = PageJson::array();

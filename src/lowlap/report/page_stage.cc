@@ -1,19 +1,19 @@
 #include <vector>
 
-#include "lowlap/geometry/similarity.h"
 #include "lowlap/report/internal/page_parts.h"
+#include "lowlap/scene/internal/align_poses.h"
 
 namespace lowlap {
 
 ReportStage AlignToScene(const ReportStage& before, const Scene& scene) {
-  std::vector<Vec3> source, target;
+  std::vector<Pose> source, target;
   for (const auto& [id, pose] : before.poses) {
     const auto after = scene.poses.find(id);
     if (after == scene.poses.end()) continue;
-    source.push_back(pose.center);
-    target.push_back(after->second.center);
+    source.push_back(pose);
+    target.push_back(after->second);
   }
-  const auto after_from_before = AlignPoints(source, target);
+  const auto after_from_before = AlignPoses(source, target);
   if (!after_from_before) return before;
   const Similarity& align = *after_from_before;
   ReportStage aligned;

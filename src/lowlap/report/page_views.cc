@@ -100,16 +100,16 @@ PageJson MatchedFeatures(const View& view, const ViewFeatures& features,
 // Evenly chosen where there are many.
 PageJson DetectedFeatures(const View& view, const ViewFeatures& features,
                           std::size_t most) {
-  const auto stride = [&](std::size_t count) {
-    return std::max<std::size_t>(1, count / std::max<std::size_t>(1, most));
-  };
+  const std::size_t count =
+      features.points_px.size() + features.segments.size();
+  const std::size_t limit = std::max<std::size_t>(1, most);
+  const std::size_t stride =
+      std::max<std::size_t>(1, (count + limit - 1) / limit);
   std::vector<std::uint16_t> points_at, segments_at;
-  for (std::size_t n = 0; n < features.points_px.size();
-       n += stride(features.points_px.size())) {
+  for (std::size_t n = 0; n < features.points_px.size(); n += stride) {
     Append(features.points_px[n], view, &points_at);
   }
-  for (std::size_t n = 0; n < features.segments.size();
-       n += stride(features.segments.size())) {
+  for (std::size_t n = 0; n < features.segments.size(); n += stride) {
     Append(features.segments[n], view, &segments_at);
   }
   return {{"num_points", features.points_px.size()},

@@ -14,7 +14,7 @@ struct PageLimits {
   std::size_t features = 600000;        // points with a match, of all views
   std::size_t detected = 120000;        // points and segments without a match
   std::size_t pairs = 5000;             // those in use, then of most evidence
-  std::size_t triplets = 4000;          // those of most evidence are kept
+  std::size_t triplets = 4000;          // those with a profile, then likewise
   std::size_t profiles_by_kind = 1000;  // beyond, profiles are totals only
 };
 

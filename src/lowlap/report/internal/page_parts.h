@@ -33,8 +33,8 @@ struct PageIndex {
 
 PageIndex MakePageIndex(const Scene& scene, const PageLimits& limits);
 
-/// The solution before the adjustment in the gauge of the one after it: their
-/// camera centres are aligned by a similarity. As it is, if that is impossible.
+/// The solution before the adjustment in the gauge of the one after it, by
+/// their cameras (AlignPoses). As it is, if that is impossible.
 ReportStage AlignToScene(const ReportStage& before, const Scene& scene);
 
 PageJson ViewsJson(const Scene& scene, const ReportContent& content,

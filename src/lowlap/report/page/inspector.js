@@ -185,9 +185,9 @@ function plotBoth(triplet) {
 }
 
 function describePage() {
-  const ratios = page.triplets.filter(isMeaningful).length;
   const { num_points: all, point_stride: stride, feature_stride: tracks,
-          num_pairs: pairs, num_triplets: triplets } = page.thinning;
+          num_pairs: pairs, num_used_pairs: used, num_triplets: triplets,
+          num_meaningful: meaningful } = page.thinning;
   return [
     make('h2', {}, page.title),
     make('p', { class: 'note' },
@@ -196,9 +196,8 @@ function describePage() {
     facts([
       ['photographs', page.views.length],
       ['cameras placed', page.views.filter(view => view.camera).length],
-      ['relative poses in use',
-       `${page.pairs.filter(pair => pair.used).length} of ${page.pairs.length}`],
-      ['meaningful scale ratios', `${ratios} of ${page.triplets.length}`],
+      ['relative poses in use', `${used} of ${pairs}`],
+      ['meaningful scale ratios', `${meaningful} of ${triplets}`],
       ['coplanar pairs of lines', page.coplanarPairs.length / 2],
     ]),
     stride > 1 && make('p', { class: 'note' },
@@ -209,8 +208,8 @@ function describePage() {
         make('p', { class: 'note' }, `Of ${pairs} pairs those in use, and of ` +
                                          'most evidence, are here.'),
     triplets > page.triplets.length &&
-        make('p', { class: 'note' }, `Of ${triplets} ratios those of most ` +
-                                         'evidence are here.'),
+        make('p', { class: 'note' }, `Of ${triplets} ratios those with a ` +
+                                         'profile, and of most evidence, are here.'),
     page.warnings.length > 0 && make('h3', {}, 'Warnings'),
     page.warnings.map(({ text }) => make('p', { class: 'warning' }, text)),
   ];

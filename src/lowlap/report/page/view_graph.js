@@ -19,7 +19,7 @@ function layOutGraph(width, height) {
   const places = [];
   for (const view of page.views) {
     const angle = 2 * Math.PI * view.index / page.views.length;
-    if (!isFinite(scale)) {
+    if (!placed.length || !isFinite(scale)) {
       places.push([width / 2 + .42 * height * Math.sin(angle),
                    height / 2 - .42 * height * Math.cos(angle)]);
     } else if (view.camera) {

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <utility>
+#include <vector>
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
@@ -9,6 +10,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/page_photographs.h"
 #include "lowlap/pipeline/internal/output/ratio_profiles.h"
+#include "lowlap/scene/internal/align_poses.h"
 
 namespace lowlap {
 namespace {
@@ -95,17 +97,25 @@ std::vector<ReportPair> MakePairs(const RunSummary& summary,
 }
 
 // The truth in the frame of the scene, where the two can be aligned.
-std::optional<ReportTruth> MakeTruth(const RunSummary& summary) {
+std::optional<ReportTruth> MakeTruth(const RunSummary& summary,
+                                     const Scene& scene) {
   if (!summary.truth || !summary.evaluation ||
       summary.evaluation->scope != EvaluationScope::kFull) {
     return std::nullopt;
   }
-  const Similarity& truth_from_scene = summary.evaluation->truth_from_solution;
-  const Similarity scene_from_truth = truth_from_scene.Inverse();
+  std::vector<Pose> truths, solved;
+  for (const auto& [view, pose] : *summary.truth) {
+    if (const Pose* in_scene = scene.FindPose(view)) {
+      truths.push_back(pose);
+      solved.push_back(*in_scene);
+    }
+  }
+  const auto scene_from_truth = AlignPoses(truths, solved);
+  if (!scene_from_truth) return std::nullopt;
   ReportTruth truth;
   for (const auto& [view, pose] : *summary.truth) {
-    truth.poses[view] = {pose.rotation * truth_from_scene.rotation,
-                         scene_from_truth * pose.center};
+    truth.poses[view] = {pose.rotation * scene_from_truth->rotation.transpose(),
+                         *scene_from_truth * pose.center};
   }
   for (const ViewPoseError& error : summary.evaluation->views) {
     truth.position_errors[error.view] = error.position_error;
@@ -114,11 +124,12 @@ std::optional<ReportTruth> MakeTruth(const RunSummary& summary) {
   return truth;
 }
 
-void AddTruth(const RunSummary& summary, ReportContent* content) {
+void AddTruth(const RunSummary& summary, const Scene& scene,
+              ReportContent* content) {
   if (!summary.evaluation || summary.evaluation->position.count == 0) return;
   content->figures.emplace_back(
       "mean position error", Format("%.4g", summary.evaluation->position.mean));
-  content->truth = MakeTruth(summary);
+  content->truth = MakeTruth(summary, scene);
 }
 
 }  // namespace
@@ -134,7 +145,7 @@ Result<ReportContent> MakeReport(const RunSummary& summary, const Scene& scene,
   }
   content.notes = summary.notes;
   if (summary.solve) AddSolve(*summary.solve, scene, &content);
-  AddTruth(summary, &content);
+  AddTruth(summary, scene, &content);
   content.pairs = MakePairs(summary, scene);
   content.detected = summary.detected;
   LOWLAP_ASSIGN_OR_RETURN(content.photographs, PagePhotographs(scene, context));
