@@ -51,6 +51,27 @@ TEST(TestTranslation, WithoutOneTheEvidenceIsUniform) {
   }
 }
 
+TEST(TestTranslation, CrossingsThatShareALineHaveOneVote) {
+  TwoViewSceneOptions options;
+  options.baseline = 0.02;
+  options.noise_px = 0.3;
+  options.num_right = 200;
+  const TwoViewScene scene = MakeTwoViewScene(options, 2);
+  PointPairs pairs = scene.Pairs();
+  std::vector<int> inliers(200);
+  std::iota(inliers.begin(), inliers.end(), 0);
+  const auto evidence = [&] {
+    return *TestTranslation(pairs, scene.cam2_from_cam1, inliers, 1, 0.1)
+                .log10_nfa;
+  };
+  const double of_points = evidence();
+  for (int n = 0; n < 200; ++n) pairs.lines.push_back({2 * n, 2 * n + 1});
+  EXPECT_EQ(evidence(), of_points);
+  for (int n = 0; n < 200; ++n) pairs.lines[n] = {n / 4, 1000 + n};
+  EXPECT_GT(evidence(), 0.5 * of_points);
+  EXPECT_LT(of_points, 0);
+}
+
 TEST(TestTranslation, NothingMovesInACopy) {
   TwoViewScene scene = MakeTwoViewScene({}, 3);
   scene.features2.points = scene.features1.points;

@@ -85,12 +85,15 @@ std::vector<LineCrossing> FindLineCrossings(
       const auto in2 =
           Cross(features2.segments[ma.second], features2.segments[mb.second]);
       if (!in2) continue;
-      candidates.push_back(
-          {std::max(in1->gap * features1.focal_px,
-                    in2->gap * features2.focal_px),
-           a,
-           b,
-           {in1->point, in2->point, in1->covariance, in2->covariance}});
+      candidates.push_back({std::max(in1->gap * features1.focal_px,
+                                     in2->gap * features2.focal_px),
+                            a,
+                            b,
+                            {in1->point,
+                             in2->point,
+                             in1->covariance,
+                             in2->covariance,
+                             {static_cast<int>(a), static_cast<int>(b)}}});
     }
   }
   std::sort(candidates.begin(), candidates.end(),

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "lowlap/core/ids.h"
@@ -16,6 +17,8 @@ struct LineCrossing {
   /// end, its line is there to within (1 - s)^2 + s^2.
   Mat2 covariance1 = Mat2::Identity();
   Mat2 covariance2 = Mat2::Identity();
+  /// The two that cross, by their place among the matches.
+  std::array<int, 2> matches = {};
 };
 
 /// Crossings of neighbouring matched lines, as points to be tried: where the

@@ -22,12 +22,14 @@ ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random) {
   pairs.common_error_side1 =
       kCommonErrorShare * input.image_size1_px.norm() / pairs.focal1_px;
   const auto add = [&](int match, const Vec3& x1, const Vec3& x2,
-                       const Mat2& covariance1, const Mat2& covariance2) {
+                       const Mat2& covariance1, const Mat2& covariance2,
+                       const std::array<int, 2>& lines) {
     shuffled.match_of_pair.push_back(match);
     pairs.x1.push_back(x1);
     pairs.x2.push_back(x2);
     pairs.covariance1.push_back(covariance1);
     pairs.covariance2.push_back(covariance2);
+    pairs.lines.push_back(lines);
   };
   const auto shape = [](const std::vector<Mat2>* covariances, std::size_t n) {
     return covariances == nullptr ? Mat2(Mat2::Identity()) : (*covariances)[n];
@@ -39,14 +41,14 @@ ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random) {
     if (x1.z() != 0 && x2.z() != 0) {
       add(static_cast<int>(m), x1, x2,
           shape(input.point_covariances1, match.first),
-          shape(input.point_covariances2, match.second));
+          shape(input.point_covariances2, match.second), {-1, -1});
     }
   }
   for (const LineCrossing& crossing : FindLineCrossings(
            *input.features1, *input.features2, input.line_matches)) {
     add(ShuffledMatches::kCrossing, crossing.x1, crossing.x2,
         kLineVariance * crossing.covariance1,
-        kLineVariance * crossing.covariance2);
+        kLineVariance * crossing.covariance2, crossing.matches);
   }
   for (int n = pairs.size(); n > 1; --n) {
     const auto k = random.Index(static_cast<std::uint32_t>(n));
@@ -55,6 +57,7 @@ ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random) {
     std::swap(pairs.x2[n - 1], pairs.x2[k]);
     std::swap(pairs.covariance1[n - 1], pairs.covariance1[k]);
     std::swap(pairs.covariance2[n - 1], pairs.covariance2[k]);
+    std::swap(pairs.lines[n - 1], pairs.lines[k]);
   }
   return shuffled;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <set>
 
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/log_combinatorics.h"
@@ -65,6 +66,15 @@ std::optional<double> ErrorAlong(const PointPairs& pairs, int i,
          std::sqrt(variance);
 }
 
+/// Takes the lines of match i; false if others have taken one before.
+bool TakeLines(const PointPairs& pairs, int i, std::set<int>* taken) {
+  if (pairs.lines.empty() || pairs.lines[i][0] < 0) return true;
+  const auto [first, second] = pairs.lines[i];
+  if (taken->count(first) || taken->count(second)) return false;
+  taken->insert({first, second});
+  return true;
+}
+
 /// log10 P(at least k of n events of chance p).
 double Log10BinomialTail(int n, int k, double p) {
   double sum = 0, greatest = -1e300;
@@ -103,11 +113,15 @@ TranslationEvidence TestTranslation(const PointPairs& pairs,
   const double across_scale = 1 / std::sqrt(1 - kPoseFreedom / count);
   std::vector<bool> is_inlier(pairs.size(), false);
   for (const int i : inliers) is_inlier[i] = true;
+  std::set<int> taken_lines;
   int num_asked = 0, num_along = 0;
   for (int i = 0; i < pairs.size(); ++i) {
     const std::optional<double> along =
         ErrorAlong(pairs, i, rotation, cam2_from_cam1.translation);
-    if (!along || (!is_inlier[i] && std::abs(*along) > threshold_px)) continue;
+    if (!along || (!is_inlier[i] && std::abs(*along) > threshold_px) ||
+        !TakeLines(pairs, i, &taken_lines)) {
+      continue;
+    }
     ++num_asked;
     num_along += along_scale * std::abs(*along) >
                  std::max(precision_px, across_scale * std::abs(across(i)));

@@ -31,8 +31,9 @@ struct TranslationEvidence {
 /// are within the threshold across; so that neither is preferred, those that
 /// are within it along vote as well. Without translation both are as likely,
 /// whatever the size of a point's noise; so often, and by chance matches, the
-/// votes are binomial. With one, the parallax goes along. The direction was
-/// chosen among all: the NFA counts those whose votes differ.
+/// votes are binomial; of crossings that share a line, one votes. With one, the
+/// parallax goes along. The direction was chosen among all: the NFA counts
+/// those whose votes differ.
 ///
 /// Errors below `precision_px` are none: in a copy of an image nothing moves,
 /// and what is left is rounding.

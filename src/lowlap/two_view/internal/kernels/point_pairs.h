@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "lowlap/geometry/types.h"
@@ -17,6 +18,9 @@ struct PointPairs {
   /// the deviation across the epipolar line. Empty: round, of variance 1.
   std::vector<Mat2> covariance1 = {};
   std::vector<Mat2> covariance2 = {};
+  /// The two line matches that cross, of a crossing; negative for a point.
+  /// Empty: all are points. Crossings that share a line err together.
+  std::vector<std::array<int, 2>> lines = {};
   /// Side of a square of view 1, normalised, whose matches err together
   /// (SandwichCovariance); 0: all are independent.
   double common_error_side1 = 0;
