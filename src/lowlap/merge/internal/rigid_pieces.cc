@@ -332,6 +332,7 @@ std::vector<RigidPiece> PiecesOf(std::map<std::size_t, Cluster> clusters) {
     }
   }
   std::vector<RigidPiece> pieces;
+  pieces.reserve(accepted.size());
   for (const Cluster* cluster : accepted) {
     pieces.push_back({{cluster->views.begin(), cluster->views.end()},
                       {cluster->pairs.begin(), cluster->pairs.end()}});
@@ -373,11 +374,10 @@ Result<std::vector<RigidPiece>> FindRigidPieces(
   };
   for (const ViewTriplet& views : FindTriplets(graph)) {
     const auto found = measured.find(views);
-    if (found == measured.end()) {
-      asked[views.middle].push_back(views);
-    } else if (!found->second->Agrees()) {
+    if (found != measured.end() && !found->second->Agrees()) {
       link(views, -1);
-    } else if (found->second->limit <= reach * firm) {
+    } else if (found != measured.end() &&
+               found->second->limit <= reach * firm) {
       link(views, 1);
     } else {
       asked[views.middle].push_back(views);

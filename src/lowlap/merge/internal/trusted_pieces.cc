@@ -129,6 +129,7 @@ void TrustPieces(const std::vector<PartialModel>& models,
     evidence[views] = pose.log10_nfa;
   }
   std::vector<std::map<ViewTriplet, const ScaleRatio*>> agreeing_of_models;
+  agreeing_of_models.reserve(checks.size());
   for (const ModelCheck& check : checks) {
     agreeing_of_models.push_back(AgreeingRatios(check));
   }

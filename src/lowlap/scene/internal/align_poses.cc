@@ -23,8 +23,8 @@ std::vector<Vec3> Tips(const std::vector<Pose>& poses, double length) {
   for (const Pose& pose : poses) {
     for (int axis = 0; axis < 3; ++axis) {
       const Vec3 tip = length * pose.rotation.row(axis).transpose();
-      tips.push_back(pose.center + tip);
-      tips.push_back(pose.center - tip);
+      tips.emplace_back(pose.center + tip);
+      tips.emplace_back(pose.center - tip);
     }
   }
   return tips;

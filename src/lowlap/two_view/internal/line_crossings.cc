@@ -113,6 +113,7 @@ std::vector<LineCrossing> FindLineCrossings(
               return std::tie(p.a, p.b) < std::tie(q.a, q.b);
             });
   std::vector<LineCrossing> crossings;
+  crossings.reserve(kept.size());
   for (const Candidate& c : kept) crossings.push_back(c.crossing);
   return crossings;
 }
