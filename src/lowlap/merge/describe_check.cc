@@ -162,13 +162,16 @@ std::vector<std::string> DescribeCheck(const PartialModel& model,
     const std::string ratios = RatiosAcross(between, a);
     const std::string shared = SharedViews(measured, a, b);
     if (pairs.empty() && ratios.empty() && shared.empty()) continue;
-    lines.push_back(
-        Format("%s: pieces %zu and %zu", model.name.c_str(), two.first + 1,
-               two.second + 1) +
-        shared + " are not one: " +
-        (pairs.empty() && ratios.empty()
-             ? "nothing that was measured ties their scales"
-             : pairs + (pairs.empty() || ratios.empty() ? "" : "; ") + ratios));
+    std::string why = pairs;
+    if (!pairs.empty() && !ratios.empty()) why += "; ";
+    why += ratios;
+    if (why.empty()) why = "nothing that was measured ties their scales";
+    std::string line = Format("%s: pieces %zu and %zu", model.name.c_str(),
+                              two.first + 1, two.second + 1);
+    line += shared;
+    line += " are not one: ";
+    line += why;
+    lines.push_back(std::move(line));
   }
   if (!check.unconfirmed.empty()) {
     lines.push_back(model.name + ": nothing bears out the places of " +
