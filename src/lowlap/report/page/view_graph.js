@@ -78,8 +78,9 @@ function drawArc(triplet, places, n) {
                                fixed(triplet.log10_nfa, 1)));
 }
 
-function drawNode(view, places) {
+function drawNode(view, places, width) {
   const [cx, cy] = places[view.index];
+  const isAtEnd = cx > width - 90;  // no room for a name after it
   const isChosen = selectedViews().includes(view.index);
   return makeSvg(
       'g', { class: 'clickable', 'data-node': view.index,
@@ -92,7 +93,9 @@ function drawNode(view, places) {
         stroke: 'var(--panel)', 'stroke-width': 1.5,
       }),
       page.views.length <= 80 &&
-          makeSvg('text', { x: cx + 8, y: cy - 6 }, shortName(view.index)));
+          makeSvg('text', { x: cx + (isAtEnd ? -8 : 8), y: cy - 6,
+                            'text-anchor': isAtEnd ? 'end' : 'start' },
+                  shortName(view.index)));
 }
 
 // The view whose ratios are shown: the middle one of the selection.
@@ -117,6 +120,6 @@ function drawGraph(tab) {
       makeSvg('svg', { viewBox: `0 0 ${width} ${height}` },
               edges.map(pair => drawEdge(pair, places)),
               arcs.slice(0, MOST_ARCS).map((t, n) => drawArc(t, places, n)),
-              page.views.map(view => drawNode(view, places))),
+              page.views.map(view => drawNode(view, places, width))),
       evidenceLegend('evidence'));
 }
