@@ -217,6 +217,17 @@ TEST(ReliabilityWarnings, AllViewsWhereNoPartIsMostOfThem) {
   EXPECT_EQ(warnings[0].views.size(), 8u);
 }
 
+// Views 0 to 3 and 3 to 6: four are most of seven, but so are the other four.
+TEST(ReliabilityWarnings, AllViewsOfTwoPartsThatAreAsLarge) {
+  SyntheticScene synthetic = WellMeasuredScene("chain");
+  synthetic.scene.relative_poses.erase({6, 7});
+  FindRatio({2, 3, 4}, &synthetic.scene)->log10_nfa = -1;
+  const auto warnings = WarningsOf(synthetic.scene);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].reason, WarningReason::kWeakScale);
+  EXPECT_THAT(warnings[0].views, ElementsAre(0, 1, 2, 3, 4, 5, 6));
+}
+
 TEST(ReliabilityWarnings, NoViewIsNamedTwice) {
   SyntheticScene synthetic = WellMeasuredScene("chain");
   for (ScaleRatio& ratio : synthetic.scene.scale_ratios) ratio.log10_nfa = -1;

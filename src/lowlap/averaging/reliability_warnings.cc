@@ -125,10 +125,10 @@ class Warnings {
       warn(GroupOf(firm.edges.front(), AnalyzeRigidity(Graph({}), all)),
            std::move(weak));
       warn(agreement_.placed, Unheld(held));
-      // The last warning says what joins the parts. Fewer than three views are
-      // named already.
+      // The last warning says what joins the parts, which share a view. Fewer
+      // than three views are named already.
       if (firm.views.size() > 2 &&
-          2 * firm.views.size() <= agreement_.placed.size()) {
+          2 * firm.views.size() <= agreement_.placed.size() + 1) {
         AddViews(firm.views, &warnings.back());
       }
     }

@@ -44,9 +44,9 @@ struct AdjustedEvidence {
 ///   deviation is more than that of a weak ratio, and whose views would not
 ///   hold each other without them and weak ratios; two views are none if the
 ///   scene has more. Every other view hangs on what was set aside, or on other
-///   such views, and is doubtful for it; if they are half of the placed views
-///   or more, so are the firm ones: nothing says which of the parts is in its
-///   place.
+///   such views, and is doubtful for it; if they, and the one that joins them
+///   to the firm ones, are as many as these, so are the firm ones: nothing says
+///   which of the parts is in its place.
 /// - A ratio is no weaker than an adjustment that bears it out leaves it:
 ///   where it is within three deviations of `adjusted`, the smaller deviation
 ///   of both counts.
