@@ -53,7 +53,8 @@ void AddRun(CLI::App* program, Action* action) {
       "Calibrate a folder of photographs: features, matches, relative "
       "poses, scale ratios, poses, bundle adjustment");
   PhotographFlags& photographs = flags->photographs;
-  AddOption(command, "images", photographs.images, "Folder of photographs")
+  AddOption(command, "images", photographs.images,
+            "Folder of photographs; not those in its subfolders")
       .Required();
   AddOption(command, "-o,--output", flags->output, "Folder for the results")
       .Required();

@@ -18,6 +18,29 @@ constexpr char kCamera[] =
     "0.00679989 0.994707 -0.102528 \n-7.28137 -7.57667 0.204446 \n"
     "3072 2048\n";
 
+TEST(Strecha, ReadsCalibrationMatricesAsProgramsWriteThem) {
+  for (const char* text :
+       {"487.5,0,299.5\n0,487,199.5\n0,0,1\n",
+        "[[487.5, 0, 299.5],\n [0, 487, 199.5],\n [0, 0, 1]]",
+        "[487.5 0 299.5; 0 487 199.5; 0 0 1]",
+        "# fx 0 cx, 1\n487.5 0 299.5\n0 487 199.5\n0 0 1",
+        "\xef\xbb\xbf"
+        "487.5 0 299.5 0 487 199.5 0 0 1"}) {
+    const Result<Mat3> k = ParseCalibrationMatrix(text, "K.txt");
+    ASSERT_TRUE(k) << text << ": " << k.error().ToString();
+    EXPECT_EQ((*k)(0, 0), 487.5);
+    EXPECT_EQ((*k)(1, 2), 199.5);
+  }
+  // Decimal commas.
+  for (const char* text : {"487,5 0 299,5 0 487,5 199,5 0 0 1",
+                           "PINHOLE 600 400 487.5 487.5 299.5 199.5"}) {
+    const Result<Mat3> k = ParseCalibrationMatrix(text, "K.txt");
+    ASSERT_FALSE(k);
+    EXPECT_NE(k.error().message.find("fx 0 cx / 0 fy cy / 0 0 1"),
+              std::string::npos);
+  }
+}
+
 TEST(Strecha, ReadsACalibrationMatrixWithTwoFocalLengths) {
   for (const char* text :
        {"2759.48 0 1520.69 \n0 2764.16 1006.81 \n0 0 1 ",

@@ -153,6 +153,14 @@ TEST(GroundTruthFromScene, GoesByIdWhereNamesDoNotTell) {
   EXPECT_EQ(by_id->at(0).center.x(), 0);
 }
 
+TEST(GroundTruthByName, SaysWhichNameSeveralTruthsShare) {
+  const Scene scene = SceneOf({{"", "a.jpg"}, {"", "b.jpg"}});
+  const auto truth =
+      GroundTruthByName(scene, {{"left/a.jpg", {}}, {"right/a.jpg", {}}});
+  ASSERT_FALSE(truth.has_value());
+  EXPECT_NE(truth.error().message.find("called 'a.jpg'"), std::string::npos);
+}
+
 // Other programs count views from one, or in another order.
 TEST(GroundTruthFromScene, DoesNotGoByIdAgainstNames) {
   const Scene scene = SceneOf({{"", "b.jpg"}, {"", "a.jpg"}});

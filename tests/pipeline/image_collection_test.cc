@@ -166,6 +166,56 @@ TEST_F(ImageCollection, IntrinsicsOfAnotherSceneGoByFileName) {
   EXPECT_THAT(misfit.error().message, ::testing::HasSubstr("60 x 30"));
 }
 
+TEST_F(ImageCollection, FoldersTellViewsOfOneNameApart) {
+  fs::create_directories(folder_ / "cam1");
+  AddImage("cam1/a.png", 40, 30);
+  AddImage("cam1/b.png", 40, 30);
+  IntrinsicSource source;
+  source.scene.emplace();
+  for (const std::uint32_t camera : {1, 2}) {
+    Intrinsic& intrinsic = source.scene->intrinsics[camera];
+    intrinsic.width_px = 40;
+    intrinsic.height_px = 30;
+    intrinsic.fx_px = intrinsic.fy_px = 25.0 * camera;
+    intrinsic.principal_point_px = Vec2(19.5, 14.5);
+    for (const char* name : {"a.png", "b.png"}) {
+      View view;
+      view.intrinsic_id = camera;
+      view.filename = "cam" + std::to_string(camera) + "/" + name;
+      const auto id = static_cast<std::uint32_t>(source.scene->views.size());
+      source.scene->views[id] = view;
+    }
+  }
+  const std::string folder = (folder_ / "cam1").string();
+  const auto scene = SceneFromImages(folder, source, {});
+  ASSERT_TRUE(scene) << scene.error().ToString();
+  EXPECT_EQ(scene->FindIntrinsic(0)->fx_px, 25);
+  EXPECT_EQ(scene->FindIntrinsic(1)->fx_px, 25);
+
+  fs::rename(folder_ / "cam1", folder_ / "copy");
+  const auto copy = SceneFromImages((folder_ / "copy").string(), source, {});
+  ASSERT_FALSE(copy);
+  EXPECT_THAT(copy.error().message,
+              ::testing::HasSubstr("'cam1/a.png' and 'cam2/a.png'"));
+}
+
+TEST_F(ImageCollection, SaysThatSubfoldersAreNotTakenAndSkipsHiddenFiles) {
+  fs::create_directories(folder_ / "sub");
+  AddImage("sub/a.png", 8, 8);
+  const auto none = SceneFromImages(folder_.string(), Focal(9), {});
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message, ::testing::HasSubstr("subfolders"));
+  AddImage("a.png", 8, 8);
+  AddImage("b.png", 8, 8);
+  std::ofstream(folder_ / "._a.png") << "of another system";
+  std::vector<std::string> notes;
+  const auto scene = SceneFromImages(folder_.string(), Focal(9), {}, &notes);
+  ASSERT_TRUE(scene) << scene.error().ToString();
+  EXPECT_EQ(scene->views.size(), 2u);
+  EXPECT_THAT(
+      notes, ::testing::ElementsAre("photographs in subfolders are not taken"));
+}
+
 TEST_F(ImageCollection, ACalibrationOfAnotherSizeIsRefusedAndNamed) {
   AddImage("a.png", 400, 300);
   AddImage("b.png", 400, 300);

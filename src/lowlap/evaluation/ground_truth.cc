@@ -49,6 +49,7 @@ Result<GroundTruth> GroundTruthByName(
   // All views at one level of exactness before any at the next, so that an
   // exact name is never taken by a view that fits it loosely.
   bool is_matched_exactly = false;
+  std::string shared_name;
   for (const Level& level : kLevels) {
     if (level.drops_folders && is_matched_exactly) break;
     // Nothing where two truths share a name.
@@ -63,7 +64,11 @@ Result<GroundTruth> GroundTruthByName(
       if (truth.count(id)) continue;
       const auto found =
           truth_by_name.find(NamesOf(PathOf(view))[level.of_view]);
-      if (found == truth_by_name.end() || !found->second) continue;
+      if (found == truth_by_name.end()) continue;
+      if (!found->second) {
+        if (shared_name.empty()) shared_name = found->first;
+        continue;
+      }
       const std::string& name = *found->second;
       if (assigned.count(name)) continue;
       const auto [entry, inserted] = assigned_here.emplace(name, id);
@@ -80,8 +85,12 @@ Result<GroundTruth> GroundTruthByName(
   }
   if (truth.empty()) {
     return MakeError(ErrorCode::kInsufficientData,
-                     "no view of the scene has a true pose: no image name "
-                     "occurs in the ground truth");
+                     shared_name.empty()
+                         ? "no view of the scene has a true pose: no image "
+                           "name occurs in the ground truth"
+                         : "no view of the scene has a true pose: several "
+                           "images of the ground truth are called '" +
+                               shared_name + "'");
   }
   return truth;
 }
@@ -101,7 +110,7 @@ Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
   for (const auto& [id, pose] : by_id) {
     by_name.emplace(PathOf(truth.views.at(id)), pose);
   }
-  if (by_name.size() < by_id.size()) return by_id;
+  if (by_name.empty() || by_name.size() < by_id.size()) return by_id;
   return GroundTruthByName(scene, by_name);
 }
 

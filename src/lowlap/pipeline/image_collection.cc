@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <system_error>
 
@@ -30,6 +31,11 @@ bool HasImageExtension(const fs::path& path) {
          kExtensions.end();
 }
 
+// Other systems keep what they know of a file in a hidden one of its name.
+bool IsHidden(const fs::path& path) {
+  return path.filename().string().front() == '.';
+}
+
 bool NameFits(const std::string& name, const std::string& filename) {
   return name == filename || name == fs::path(filename).stem().string();
 }
@@ -50,7 +56,7 @@ Result<std::vector<std::string>> ListImages(const std::string& folder) {
   std::vector<std::string> names;
   for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
        entry.increment(error)) {
-    if (!HasImageExtension(entry->path())) continue;
+    if (IsHidden(entry->path()) || !HasImageExtension(entry->path())) continue;
     const std::string path = entry->path().string();
     std::error_code unreadable;
     const fs::file_status status = fs::status(entry->path(), unreadable);
@@ -69,6 +75,23 @@ Result<std::vector<std::string>> ListImages(const std::string& folder) {
   return names;
 }
 
+bool HasImagesInSubfolders(const std::string& folder) {
+  std::error_code error;
+  fs::recursive_directory_iterator entry(
+      folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && entry != fs::recursive_directory_iterator();
+       entry.increment(error)) {
+    std::error_code unreadable;
+    if (IsHidden(entry->path())) {
+      entry.disable_recursion_pending();
+    } else if (entry.depth() > 0 && HasImageExtension(entry->path()) &&
+               entry->is_regular_file(unreadable)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 Intrinsic WithFocal(double focal_px, const ImageSize& size) {
   Intrinsic intrinsic;
   intrinsic.width_px = size.width_px;
@@ -83,33 +106,80 @@ Intrinsic WithFocal(double focal_px, const ImageSize& size) {
 Result<Intrinsic> FromExif(const std::string& path, const ImageSize& size) {
   LOWLAP_ASSIGN_OR_RETURN(const auto exif, ReadExif(path, size));
   if (!exif.focal_px) {
-    return MakeError(ErrorCode::kInsufficientData,
-                     "holds no focal length in EXIF data; give a calibration "
-                     "matrix, a focal length, or a file of intrinsics",
-                     path);
+    return MakeError(
+        ErrorCode::kInsufficientData,
+        "holds no focal length in EXIF data, which is read from JPEG "
+        "files; give a calibration matrix, a focal length, or a "
+        "file of intrinsics",
+        path);
   }
   return WithFocal(*exif.focal_px, size);
 }
 
-// The id of the intrinsic in a scene that an image is to have.
-Result<IntrinsicId> FindInScene(const Scene& scene, const std::string& name,
-                                const std::string& path) {
-  IntrinsicId id = kInvalidId;
-  for (const auto& [view_id, view] : scene.views) {
-    if (fs::path(view.filename).filename() == name &&
-        scene.FindIntrinsic(view_id) != nullptr) {
-      id = view.intrinsic_id;
+// How many names, from the last on, two paths have in common.
+int CommonNames(const fs::path& a, const fs::path& b) {
+  const std::vector<fs::path> in_a(a.begin(), a.end()),
+      in_b(b.begin(), b.end());
+  const auto ends =
+      std::mismatch(in_a.rbegin(), in_a.rend(), in_b.rbegin(), in_b.rend());
+  return static_cast<int>(ends.first - in_a.rbegin());
+}
+
+// The ids of the intrinsics in a scene that images are to have.
+class IntrinsicsOfImages {
+ public:
+  explicit IntrinsicsOfImages(const Scene& scene) : scene_(scene) {
+    for (const auto& [id, view] : scene.views) {
+      if (scene.FindIntrinsic(id) != nullptr) {
+        views_[fs::path(view.filename).filename().string()].push_back(&view);
+      }
     }
   }
-  if (id == kInvalidId && scene.intrinsics.size() == 1) {
-    id = scene.intrinsics.begin()->first;
+
+  // Of views of one file name those count whose folders fit best.
+  Result<IntrinsicId> Find(const std::string& path) {
+    const auto named = views_.find(fs::path(path).filename().string());
+    if (named == views_.end()) return TheOnlyOne(path);
+    const View* best = nullptr;
+    int most = 0;
+    for (const View* view : named->second) {
+      const int common = CommonNames(PathOf(*view), path);
+      if (common > most) {
+        most = common;
+        best = view;
+      } else if (common == most && view->intrinsic_id != best->intrinsic_id) {
+        return MakeError(ErrorCode::kInvalidArgument,
+                         "'" + PathOf(*best).generic_string() + "' and '" +
+                             PathOf(*view).generic_string() +
+                             "' of the given scene have this file name, and "
+                             "different intrinsics",
+                         path);
+      }
+    }
+    return best->intrinsic_id;
   }
-  if (id == kInvalidId) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "the given scene has no intrinsic for this image", path);
+
+  // Images that the scene does not list, and that have its only intrinsic.
+  int num_unlisted() const { return num_unlisted_; }
+
+ private:
+  static fs::path PathOf(const View& view) {
+    return fs::path(view.local_path) / view.filename;
   }
-  return id;
-}
+
+  Result<IntrinsicId> TheOnlyOne(const std::string& path) {
+    if (scene_.intrinsics.size() != 1) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "the given scene has no intrinsic for this image", path);
+    }
+    ++num_unlisted_;
+    return scene_.intrinsics.begin()->first;
+  }
+
+  const Scene& scene_;
+  std::map<std::string, std::vector<const View*>> views_;  // by file name
+  int num_unlisted_ = 0;
+};
 
 // One calibration for all photographs, with the size that it is for; a focal
 // length alone is the same however a photograph is turned.
@@ -177,12 +247,19 @@ Result<Scene> SceneFromImages(const std::string& folder,
     }
     names.erase(kept, names.end());
   }
+  std::vector<std::string> unused;
+  if (notes == nullptr) notes = &unused;
+  const std::string left_out = HasImagesInSubfolders(folder)
+                                   ? "photographs in subfolders are not taken"
+                                   : "";
   if (names.size() < 2) {
-    return MakeError(
-        ErrorCode::kInsufficientData,
-        "at least two images are needed, found " + std::to_string(names.size()),
-        folder);
+    return MakeError(ErrorCode::kInsufficientData,
+                     "at least two images are needed, found " +
+                         std::to_string(names.size()) +
+                         (left_out.empty() ? "" : "; " + left_out),
+                     folder);
   }
+  if (!left_out.empty()) notes->push_back(left_out);
 
   std::vector<std::string> paths;
   std::vector<ImageSize> sizes;
@@ -191,11 +268,11 @@ Result<Scene> SceneFromImages(const std::string& folder,
     LOWLAP_ASSIGN_OR_RETURN(const auto size, ReadImageSize(paths.back()));
     sizes.push_back(size);
   }
-  std::vector<std::string> unused;
-  if (notes == nullptr) notes = &unused;
   LOWLAP_ASSIGN_OR_RETURN(const auto common,
                           CommonIntrinsic(intrinsics, paths, sizes, notes));
 
+  std::optional<IntrinsicsOfImages> given_for;
+  if (intrinsics.scene) given_for.emplace(*intrinsics.scene);
   Scene scene;
   scene.root_path = folder;
   for (std::size_t n = 0; n < names.size(); ++n) {
@@ -203,8 +280,7 @@ Result<Scene> SceneFromImages(const std::string& folder,
     Result<Intrinsic> given;
     IntrinsicId wanted = kInvalidId;
     if (intrinsics.scene) {
-      LOWLAP_ASSIGN_OR_RETURN(const auto id,
-                              FindInScene(*intrinsics.scene, name, paths[n]));
+      LOWLAP_ASSIGN_OR_RETURN(const auto id, given_for->Find(paths[n]));
       wanted = id;
       given = intrinsics.scene->intrinsics.at(id);
     } else if (common) {
@@ -233,6 +309,11 @@ Result<Scene> SceneFromImages(const std::string& folder,
     view.intrinsic_id = Add(fitted.intrinsic, wanted, &scene);
     view.pose_id = static_cast<PoseId>(n);
     scene.views[static_cast<ViewId>(n)] = view;
+  }
+  if (given_for && given_for->num_unlisted() > 0) {
+    notes->push_back("the given scene does not list " +
+                     std::to_string(given_for->num_unlisted()) +
+                     " of the photographs: they have its only intrinsic");
   }
   return scene;
 }

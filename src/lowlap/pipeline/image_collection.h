@@ -18,15 +18,16 @@ struct IntrinsicSource {
   /// One focal length in pixels; the principal point is the image centre.
   std::optional<double> focal_px;
   /// The intrinsics of this scene's views, any camera model, found by file
-  /// name; for an image it does not list, its only intrinsic.
+  /// name, and by folders where views of one name have different ones; for an
+  /// image it does not list, its only intrinsic.
   std::optional<Scene> scene;
 };
 
-/// A scene of all images of a folder (not of its subfolders): views numbered
-/// from 0 in the order of the file names, one intrinsic for equal sizes and
-/// focal lengths (of IntrinsicSource::scene: its own ids), nothing else. Files
-/// that are no images (.jpg .jpeg .png .tif .tiff .bmp .pgm .ppm .webp) are
-/// skipped.
+/// A scene of all images of a folder (not of its subfolders, and none whose
+/// name starts with a dot): views numbered from 0 in the order of the file
+/// names, one intrinsic for equal sizes and focal lengths (of
+/// IntrinsicSource::scene: its own ids), nothing else. Files that are no images
+/// (.jpg .jpeg .png .tif .tiff .bmp .pgm .ppm .webp) are skipped.
 ///
 /// The intrinsics must fit the photographs: they are scaled to photographs of
 /// another size, and turned with those whose EXIF orientation says that they

@@ -61,6 +61,24 @@ Status CheckCalibration(const Mat3& k, const std::string& file) {
   return {};
 }
 
+// What programs put about the numbers of a matrix: a byte-order mark, comments,
+// commas, semicolons, brackets.
+std::string WithoutPunctuation(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) {
+    text.remove_prefix(kByteOrderMark.size());
+  }
+  std::string numbers;
+  bool is_comment = false;
+  for (const char c : text) {
+    is_comment = c == '#' || (is_comment && c != '\n');
+    const bool is_number =
+        !is_comment && c != ',' && c != ';' && c != '[' && c != ']';
+    numbers += is_number ? c : ' ';
+  }
+  return numbers;
+}
+
 bool IsImageSize(double value) {
   return value >= 1 && value <= 1e6 && value == std::floor(value);
 }
@@ -69,9 +87,14 @@ bool IsImageSize(double value) {
 
 Result<Mat3> ParseCalibrationMatrix(std::string_view text,
                                     const std::string& file) {
-  LOWLAP_ASSIGN_OR_RETURN(const std::vector<double> numbers,
-                          ParseNumbers(text, 9, file));
-  const Mat3 calibration = MatrixFromRows(numbers.data());
+  auto numbers = ParseNumbers(WithoutPunctuation(text), 9, file);
+  if (!numbers) {
+    numbers.error().message +=
+        "; a matrix fx 0 cx / 0 fy cy / 0 0 1 is expected (with distortion: a "
+        "scene, or a COLMAP model's folder)";
+    return tl::unexpected<Error>(numbers.error());
+  }
+  const Mat3 calibration = MatrixFromRows(numbers->data());
   LOWLAP_RETURN_IF_ERROR(CheckCalibration(calibration, file));
   return calibration;
 }

@@ -13,7 +13,8 @@ namespace lowlap::strecha {
 // The files of the multi-view benchmark of Strecha et al., CVPR 2008.
 
 /// A `K.txt`: nine numbers, row by row,
-///   fx 0 cx / 0 fy cy / 0 0 1.
+///   fx 0 cx / 0 fy cy / 0 0 1,
+/// with commas, semicolons, brackets, and comments after # about them.
 /// fx and fy are both kept. The file has no image size. Errors: kParse unless
 /// it holds nine finite numbers; kUnsupported for skew or a last row other
 /// than 0 0 1; kInvalidArgument for a focal length that is not positive.
