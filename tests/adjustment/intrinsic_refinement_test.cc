@@ -138,6 +138,29 @@ TEST(RefineAllIntrinsicsTest, AWrongFocalLengthIsFound) {
   }
 }
 
+// Every solve goes on from where the last one ended, lines too.
+TEST(RefineAllIntrinsicsTest, SolvesWithoutRoundsBetweenThemAgree) {
+  TestSceneOptions scene_options;
+  scene_options.noise_px = 0.3;
+  scene_options.pairs_per_triplet = 8;
+  TestScene test = MakeTestScene(scene_options);
+  Intrinsic& intrinsic = test.scene.intrinsics.at(7);
+  const double truth_px = intrinsic.fx_px;
+  intrinsic.fx_px *= 0.97;
+  intrinsic.fy_px *= 0.97;
+  AdjustmentOptions options;
+  options.max_outlier_rounds = 0;
+  RefineAllIntrinsics({true}, &test.scene, &options);
+  ASSERT_THAT(BuildStructure(&test.scene, {}, {}), IsOk());
+  const auto summary = AdjustScene(&test.scene, options, {});
+  ASSERT_THAT(summary, IsOk());
+  EXPECT_NEAR(intrinsic.fx_px / truth_px, 1, 0.003);
+  EXPECT_LT(summary->lines.final_rmse_px, 0.5);
+  ASSERT_GE(summary->solves.size(), 2u);
+  EXPECT_LT(summary->solves[1].initial_cost,
+            1.5 * summary->solves[0].final_cost);
+}
+
 TEST(RefineAllIntrinsicsTest, AnUnknownDistortionIsFound) {
   TestSceneOptions scene_options;
   scene_options.noise_px = 0.3;

@@ -71,6 +71,13 @@ TEST(PointShape, WhiteningInvertsTheCovariance) {
       Mat2::Identity(), 1e-12));
 }
 
+TEST(PointShape, OfANearlySingularCovarianceIsFinite) {
+  const PointShape shape =
+      PointShape::FromCovariance({3, 1.7320508075688772, 1});
+  EXPECT_TRUE(std::isfinite(shape.log_variance_ratio));
+  EXPECT_TRUE(shape.Whitening(1).allFinite());
+}
+
 TEST(PointShape, ExponentIsThatOfTheErrors) {
   for (const double exponent : {0.0, 0.5, 1.0}) {
     TestScene test = SceneOnGrain(exponent, 20, 6, 3);

@@ -9,6 +9,7 @@
 
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/internal/costs/direction_cost.h"
+#include "lowlap/adjustment/internal/rounds/problem_selection.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/geometry/internal/rotation.h"
@@ -203,6 +204,39 @@ TEST(FindDirectionSights, FindsTheDirectionsInEveryView) {
   const auto none = FindDirectionSights(scene, CameraSet(scene), {});
   ASSERT_TRUE(none);
   EXPECT_THAT(*none, IsEmpty());
+}
+
+// They are in the frame of the component while that is solved.
+TEST(EnterComponentFrames, TurnsTheDirectionsOfAComponent) {
+  const SyntheticScene room = Room();
+  const Scene scene = TrueSolution(room);
+  CameraSet cameras(scene);
+  StructureState state;
+  state.points = LoadPoints(scene, cameras);
+  state.directions = GroupDirections(Sights(cameras, 0.1, 0), cameras);
+  ASSERT_THAT(state.directions, SizeIs(3));
+  const std::vector<Component> components = FindComponents(
+      cameras, state, SelectForSolve(cameras, state, AdjustmentOptions()));
+  ASSERT_THAT(components, SizeIs(1));
+  EXPECT_THAT(components[0].directions, ::testing::ElementsAre(0, 1, 2));
+  const auto largest_angle_deg = [&] {
+    double largest = 0;
+    for (const SceneDirection& direction : state.directions) {
+      for (const DirectionSight& sight : direction.sights) {
+        const Vec3 in_camera =
+            cameras.poses[sight.pose].cam_from_world * direction.direction;
+        largest = std::max(largest, LineAngleDeg(in_camera, sight.direction));
+      }
+    }
+    return largest;
+  };
+  const Vec3 in_world = state.directions[0].direction;
+  EXPECT_LT(largest_angle_deg(), 1e-6);
+  const auto references = EnterComponentFrames(components, &cameras, &state);
+  EXPECT_LT(largest_angle_deg(), 1e-6);
+  EXPECT_GT(LineAngleDeg(state.directions[0].direction, in_world), 1);
+  LeaveComponentFrames(components, references, &cameras, &state);
+  EXPECT_LT(LineAngleDeg(state.directions[0].direction, in_world), 1e-6);
 }
 
 // A chain of few noisy points drifts; what is parallel does not.

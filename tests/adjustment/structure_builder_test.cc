@@ -6,6 +6,7 @@
 #include <set>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/adjustment/internal/structure/track_fit.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/validation.h"
 #include "test_scene.h"
@@ -25,6 +26,19 @@ StructureSummary Build(Scene* scene, const StructureOptions& options = {}) {
   EXPECT_THAT(summary, IsOk());
   EXPECT_THAT(ValidateScene(*scene), IsOk());
   return summary.value_or(StructureSummary{});
+}
+
+TEST(Agreement, RoundingDecidesNothing) {
+  Agreement one, other;
+  one.count = other.count = 2;
+  one.squares = 1e-27;
+  other.squares = 1e-13;
+  EXPECT_FALSE(one.BetterThan(other));
+  EXPECT_FALSE(other.BetterThan(one));
+  other.squares = 0.01;
+  EXPECT_TRUE(one.BetterThan(other));
+  other.count = 3;
+  EXPECT_TRUE(other.BetterThan(one));
 }
 
 // A track's outcome is counted once.

@@ -230,6 +230,8 @@ class Adjuster {
                                noise_};
     LOWLAP_ASSIGN_OR_RETURN(
         last_, SolveOnce(options_, request, context_, &cameras_, &state_));
+    // Segments are undistorted with the intrinsics of the last solve.
+    if (options_.MovesIntrinsics()) RefreshRays(scene_, cameras_, &state_);
     const SolveReport& report = last_.report;
     context_.Log(LogLevel::kInfo,
                  "adjustment: " + stage + ": cost " +
@@ -295,8 +297,6 @@ class Adjuster {
   }
 
   Result<ObservationChanges> Update(bool take_new_pairs) {
-    // Segments are undistorted with the intrinsics of the last solve.
-    if (options_.MovesIntrinsics()) RefreshRays(scene_, cameras_, &state_);
     LOWLAP_RETURN_IF_ERROR(
         FollowPoses(options_, noise_.lines, context_, cameras_, &state_));
     EstimateNoise();

@@ -254,6 +254,8 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
   state.pairs.clear();
   state.priors.clear();
   state.ratio_priors.clear();
+  // Directions are those of lines, and of the calibration that is held.
+  state.directions.clear();
   const ProblemSelection selection = SelectForSolve(cameras, state, freed);
   if (groups.empty() || selection.IsEmpty()) return {};
   const std::vector<Component> components =

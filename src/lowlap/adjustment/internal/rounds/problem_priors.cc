@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <map>
 
 #include "lowlap/adjustment/internal/costs/direction_cost.h"
 #include "lowlap/adjustment/internal/costs/plane_costs.h"
@@ -102,25 +101,14 @@ void ProblemBuilder::AddDirections() {
   losses_.push_back(std::make_unique<ceres::CauchyLoss>(kLossScale));
   ceres::LossFunction* loss = losses_.back().get();
   const std::vector<int> component_of = ComponentOfPoses();
-  for (std::size_t n = 0; n < state_->directions.size(); ++n) {
-    const SceneDirection& direction = state_->directions[n];
-    // Components have frames of their own: a direction is that of the one with
-    // most of its sights.
-    std::map<int, int> num_sights;
-    for (const DirectionSight& sight : direction.sights) {
-      ++num_sights[component_of[sight.pose]];
-    }
-    num_sights.erase(-1);
-    if (num_sights.empty()) continue;
-    const auto most = std::max_element(
-        num_sights.begin(), num_sights.end(),
-        [](const auto& a, const auto& b) { return a.second < b.second; });
-    if (most->second < 2) continue;
-    for (const DirectionSight& sight : direction.sights) {
-      if (component_of[sight.pose] != most->first) continue;
-      AddResiduals(
-          std::make_unique<DirectionCost>(sight.direction, sight.covariance),
-          loss, {RotationBlock(sight.pose), DirectionBlock(n)});
+  for (std::size_t c = 0; c < components_.size(); ++c) {
+    for (const int n : components_[c].directions) {
+      for (const DirectionSight& sight : state_->directions[n].sights) {
+        if (component_of[sight.pose] != static_cast<int>(c)) continue;
+        AddResiduals(
+            std::make_unique<DirectionCost>(sight.direction, sight.covariance),
+            loss, {RotationBlock(sight.pose), DirectionBlock(n)});
+      }
     }
   }
 }

@@ -47,6 +47,10 @@ void MoveComponent(const Component& component, const Eigen::Quaterniond& turn,
         turn.toRotationMatrix() * plane.bend * turn.conjugate() / scale;
     plane.thickness *= scale;
   }
+  for (const int n : component.directions) {
+    Vec3& direction = state->directions[n].direction;
+    direction = (turn * direction).normalized();
+  }
 }
 
 // Calls visit(pose) with the first pose of every landmark on the plane.
@@ -170,6 +174,18 @@ std::vector<Component> FindComponents(const CameraSet& cameras,
   }
   for (const auto& [plane, pose] : pose_of_plane) {
     by_root.at(find(pose)).planes.push_back(plane);
+  }
+  for (std::size_t n = 0; n < state.directions.size(); ++n) {
+    std::map<std::size_t, int> num_sights;
+    for (const DirectionSight& sight : state.directions[n].sights) {
+      if (observed[sight.pose]) ++num_sights[find(sight.pose)];
+    }
+    const auto most = std::max_element(
+        num_sights.begin(), num_sights.end(),
+        [](const auto& a, const auto& b) { return a.second < b.second; });
+    if (most != num_sights.end() && most->second >= 2) {
+      by_root.at(most->first).directions.push_back(static_cast<int>(n));
+    }
   }
   std::vector<Component> components;
   for (const std::size_t root : roots) {

@@ -34,6 +34,8 @@ struct Component {
   std::vector<int> points;
   std::vector<int> lines;
   std::vector<int> planes;
+  /// Those of which most sights are of its poses, at least two.
+  std::vector<int> directions;
   int reference = -1;   // the pose that is held: that with most observations
   int partner = -1;     // the pose farthest from it
   double baseline = 0;  // their distance; 0 if all centres coincide

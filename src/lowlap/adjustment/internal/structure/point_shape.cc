@@ -26,8 +26,11 @@ PointShape PointShape::FromCovariance(const Vec3& covariance) {
   const Eigen::SelfAdjointEigenSolver<Mat2> solver(matrix);
   PointShape shape;
   shape.weak_direction = solver.eigenvectors().col(1);
-  shape.log_variance_ratio =
-      std::log(solver.eigenvalues()(1) / solver.eigenvalues()(0));
+  // A valid covariance may be singular but for rounding.
+  constexpr double kLeastShare = 1e-6;
+  const double weak = solver.eigenvalues()(1);
+  const double strong = std::max(solver.eigenvalues()(0), kLeastShare * weak);
+  shape.log_variance_ratio = std::log(weak / strong);
   return shape;
 }
 

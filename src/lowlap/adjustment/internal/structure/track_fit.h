@@ -28,8 +28,11 @@ struct Agreement {
   int count = 0;
   double squares = 0;
 
+  /// Two segments fit their line exactly: what rounding leaves decides nothing.
   bool BetterThan(const Agreement& other) const {
-    return count != other.count ? count > other.count : squares < other.squares;
+    constexpr double kRounding = 1e-9;
+    return count != other.count ? count > other.count
+                                : squares + kRounding < other.squares;
   }
 };
 
