@@ -55,11 +55,9 @@ TEST(TestTranslation, CrossingsThatShareALineHaveOneVote) {
   TwoViewSceneOptions options;
   options.baseline = 0.02;
   options.noise_px = 0.3;
-  options.num_right = 200;
   const TwoViewScene scene = MakeTwoViewScene(options, 2);
   PointPairs pairs = scene.Pairs();
-  std::vector<int> inliers(200);
-  std::iota(inliers.begin(), inliers.end(), 0);
+  const std::vector<int> inliers = testing::AllIndices(pairs);
   const auto evidence = [&] {
     return *TestTranslation(pairs, scene.cam2_from_cam1, inliers, 1, 0.1)
                 .log10_nfa;
