@@ -44,15 +44,20 @@ Track Updated(const CameraSet& cameras, const TriangulationLimits& limits,
 // them.
 template <class Track>
 Status UpdateTracks(const CameraSet& cameras, const TriangulationLimits& limits,
-                    const std::vector<char>& solved, const RunContext& context,
-                    std::vector<Track>* tracks, ObservationChanges* changes) {
+                    double gate, const std::vector<char>& solved,
+                    const RunContext& context, std::vector<Track>* tracks,
+                    ObservationChanges* changes) {
+  TriangulationLimits wide = limits;
+  wide.threshold_px *= gate;
   std::vector<Track> updated = *tracks;
   const Status status =
       ParallelFor(context, {}, updated.size(), [&](std::size_t n) {
+        const bool redundant = updated[n].candidates.size() > 2;
+        const TriangulationLimits& used = redundant ? wide : limits;
         if (solved[n]) {
-          updated[n] = Updated(cameras, limits, (*tracks)[n]);
+          updated[n] = Updated(cameras, used, (*tracks)[n]);
         } else {
-          Triangulate(cameras, limits, &updated[n]);
+          Triangulate(cameras, used, &updated[n]);
         }
       });
   if (!status) return status;
@@ -133,7 +138,7 @@ NoiseLevels EstimateAllNoise(const CameraSet& cameras,
 
 Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
                                               const NoiseLevels& noise,
-                                              bool take_new_pairs,
+                                              const ObservationUpdate& update,
                                               const RunContext& context,
                                               const CameraSet& cameras,
                                               StructureState* state) {
@@ -141,16 +146,16 @@ Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
   if (options.use_points) {
     LOWLAP_RETURN_IF_ERROR(
         UpdateTracks(cameras, LimitsOf<PointTrackState>(options, noise.points),
-                     std::vector<char>(state->points.size(), 1), context,
-                     &state->points, &changes));
+                     update.gate, std::vector<char>(state->points.size(), 1),
+                     context, &state->points, &changes));
   }
   if (!options.use_lines) return changes;
   LOWLAP_RETURN_IF_ERROR(UpdateTracks(
-      cameras, LimitsOf<LineTrackState>(options, noise.lines),
+      cameras, LimitsOf<LineTrackState>(options, noise.lines), update.gate,
       SolvedLines(options, cameras, *state), context, &state->lines, &changes));
   if (!options.use_coplanar) return changes;
   changes.changed += SelectPairs(options, cameras, noise.coplanar.threshold_px,
-                                 take_new_pairs, state);
+                                 update.take_new_pairs, state);
   changes.total += state->pairs.size();
   return changes;
 }

@@ -29,13 +29,20 @@ struct ObservationChanges {
   }
 };
 
+struct ObservationUpdate {
+  bool take_new_pairs = false;
+  /// Of tracks with more than two candidates: how many times the threshold an
+  /// error may be.
+  double gate = 1;
+};
+
 /// Decides anew which candidates of the used kinds are in use: those within the
 /// threshold of their kind at the present landmarks. A landmark that not all
 /// candidates fit is also triangulated afresh, and so is a track without one;
 /// what more candidates fit is taken. Then the pairs (SelectPairs).
 Result<ObservationChanges> UpdateObservations(const AdjustmentOptions& options,
                                               const NoiseLevels& noise,
-                                              bool take_new_pairs,
+                                              const ObservationUpdate& update,
                                               const RunContext& context,
                                               const CameraSet& cameras,
                                               StructureState* state);

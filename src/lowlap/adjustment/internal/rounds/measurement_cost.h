@@ -1,0 +1,27 @@
+#pragma once
+
+#include "lowlap/adjustment/internal/structure/structure_state.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+
+namespace lowlap {
+
+/// How well the cameras explain what more than two views show: the sum over all
+/// candidates of the tracks that have more than two, in use or not,
+///   sum min(|r|^2, t^2) / s^2,
+/// with the residuals r at the landmark that is best for the track, the noise
+/// level s and the threshold t of its kind. Each track is triangulated anew,
+/// however well its landmark is determined; one without a landmark keeps one
+/// candidate that would fit any. Two sets of cameras can be compared by it at
+/// the same noise and the same whitening, whatever each had in use.
+///
+/// Tracks of two views are not asked: they were chosen by a relative pose, and
+/// bear out its errors.
+///
+/// Error: kCancelled.
+Result<double> MeasurementCost(const CameraSet& cameras,
+                               const StructureState& state,
+                               const NoiseLevels& noise,
+                               const RunContext& context);
+
+}  // namespace lowlap

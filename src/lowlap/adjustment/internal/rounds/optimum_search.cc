@@ -1,0 +1,265 @@
+#include "lowlap/adjustment/internal/rounds/optimum_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "lowlap/adjustment/internal/planes/free_landmark.h"
+#include "lowlap/adjustment/internal/planes/scene_planes.h"
+#include "lowlap/adjustment/internal/rounds/kind_statistics.h"
+#include "lowlap/adjustment/internal/rounds/measurement_cost.h"
+#include "lowlap/adjustment/internal/rounds/pairs.h"
+#include "lowlap/core/internal/propagate.h"
+
+namespace lowlap {
+namespace {
+
+constexpr double kRoughTolerance = 1e-5;
+// Pairs could be exchanged for one another for ever.
+constexpr int kRoundsWithNewPairs = 3;
+constexpr int kRoundsWithPlanes = 3;
+// The share of the observations that may still change when planes take over.
+constexpr double kToleranceBeforePlanes = 1e-2;
+constexpr double kPlaneTolerance = 1e-4;
+constexpr double kFirstTolerance = 1e-3;
+// A wide gate is reached step by step: what is far off because the cameras are
+// comes closer with what is let in first, and what is false does not.
+constexpr double kGateStep = 3;  // thresholds
+constexpr int kGateSteps = 3;
+
+// A plane says of both lines what their pair says.
+void ReleasePairsOnPlanes(StructureState* state) {
+  std::vector<char> on_plane(state->lines.size(), 0);
+  for (const PlaneState& plane : state->planes) {
+    for (const PlaneTie& tie : plane.lines) on_plane[tie.landmark] = 1;
+  }
+  for (PairState& pair : state->pairs) {
+    if (on_plane[pair.first] != 0 && on_plane[pair.second] != 0) {
+      pair.used = false;
+    }
+  }
+}
+
+NoiseLevels Widened(NoiseLevels noise, double gate) {
+  noise.points.threshold_px *= gate;
+  noise.lines.threshold_px *= gate;
+  return noise;
+}
+
+}  // namespace
+
+OptimumSearch::OptimumSearch(const AdjustmentOptions& options,
+                             const RunContext& context, const Scene& scene,
+                             Optimum* optimum, AdjustmentSummary* summary)
+    : options_(options),
+      context_(context),
+      scene_(scene),
+      now_(optimum),
+      summary_(summary) {}
+
+Status OptimumSearch::Run() {
+  LOWLAP_RETURN_IF_ERROR(Begin());
+  LOWLAP_RETURN_IF_ERROR(SettleObservations());
+  if (options_.max_outlier_rounds == 0) {
+    LOWLAP_RETURN_IF_ERROR(TiePlanes());
+  } else {
+    LOWLAP_RETURN_IF_ERROR(SearchAgain());
+  }
+  return Solve("final", false, options_.function_tolerance);
+}
+
+Status OptimumSearch::Begin() {
+  // Before the observations are settled, a rough optimum will do.
+  const double tolerance =
+      std::max(options_.function_tolerance, kFirstTolerance);
+  EstimateNoise();
+  LOWLAP_RETURN_IF_ERROR(FindDirections());
+  if (options_.use_lines && options_.use_coplanar) {
+    SelectPairs(options_, now_->cameras, now_->noise.coplanar.threshold_px,
+                true, &now_->state);
+  }
+  const KindRmse initial =
+      ComputeRmse(now_->cameras, now_->state, options_.coplanar_residual);
+  summary_->points.initial_rmse_px = initial[0];
+  summary_->lines.initial_rmse_px = initial[1];
+  summary_->coplanar.initial_rmse_px = initial[2];
+  if (options_.fixed_rotations_first) {
+    LOWLAP_RETURN_IF_ERROR(Solve("fixed rotations", true, tolerance));
+  }
+  // Without its plane a wall leaves a valley, along which the last digits of
+  // the cost would lead far away.
+  return Solve("everything", false, tolerance);
+}
+
+// Ends with planes, where there are any, or with observations at rest.
+Status OptimumSearch::SettleObservations() {
+  const double tolerance =
+      std::max(options_.function_tolerance, kRoughTolerance);
+  bool with_planes = options_.use_lines && options_.use_coplanar &&
+                     options_.coplanar_ties != CoplanarTies::kPairs;
+  now_->at_rest = options_.max_outlier_rounds == 0;
+  for (int round = 1; round <= options_.max_outlier_rounds; ++round) {
+    LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes,
+                            Update({round <= kRoundsWithNewPairs}));
+    const double changed = changes.Share();
+    if (with_planes && changed <= kToleranceBeforePlanes) {
+      LOWLAP_RETURN_IF_ERROR(LinkPlanes());
+      if (!now_->state.planes.empty()) return {};
+      with_planes = false;
+    }
+    now_->at_rest = changed <= options_.outlier_round_tolerance;
+    if (now_->at_rest) break;
+    ++summary_->outlier_rounds;
+    now_->state.directions = GroupDirections(sights_, now_->cameras);
+    LOWLAP_RETURN_IF_ERROR(
+        Solve("round " + std::to_string(round), false, tolerance));
+  }
+  if (with_planes) LOWLAP_RETURN_IF_ERROR(LinkPlanes());
+  return {};
+}
+
+// Every round draws together what lies on a plane.
+Status OptimumSearch::TiePlanes() {
+  const int rounds = now_->state.planes.empty() ? 0 : kRoundsWithPlanes;
+  for (int round = 1; round <= rounds; ++round) {
+    if (round > 1) LOWLAP_RETURN_IF_ERROR(LinkPlanes());
+    if (options_.coplanar_ties == CoplanarTies::kPlanes) {
+      ReleasePairsOnPlanes(&now_->state);
+    }
+    LOWLAP_RETURN_IF_ERROR(
+        Solve("planes " + std::to_string(round), false, kPlaneTolerance));
+    if (options_.max_outlier_rounds == 0) continue;
+    LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes, Update({}));
+    // With the ties, one on the verge may change sides for ever.
+    now_->at_rest = changes.changed <= 1 ||
+                    changes.Share() <= options_.outlier_round_tolerance;
+  }
+  return {};
+}
+
+// False if nothing came in.
+Result<bool> OptimumSearch::WidenGate() {
+  now_->state.planes.clear();
+  for (int step = 1; step <= kGateSteps; ++step) {
+    const double gate = step * kGateStep;
+    LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes,
+                            Update({false, gate}));
+    if (step == 1 && changes.changed == 0) return false;
+    now_->state.directions = GroupDirections(sights_, now_->cameras);
+    const NoiseLevels noise = now_->noise;
+    now_->noise = Widened(noise, gate);
+    LOWLAP_RETURN_IF_ERROR(
+        Solve("gate " + std::to_string(step), false, kRoughTolerance));
+    now_->noise = noise;
+  }
+  return true;
+}
+
+// Planes cost most of the time: what is no better before them is left there.
+Result<bool> OptimumSearch::FindBetter(const Optimum& settled,
+                                       const Optimum& tied) {
+  LOWLAP_ASSIGN_OR_RETURN(bool better, WidenGate());
+  if (!better) return false;
+  LOWLAP_RETURN_IF_ERROR(SettleObservations());
+  LOWLAP_ASSIGN_OR_RETURN(better, ExplainsMoreThan(settled));
+  if (!better) return false;
+  LOWLAP_RETURN_IF_ERROR(TiePlanes());
+  return ExplainsMoreThan(tied);
+}
+
+Status OptimumSearch::SearchAgain() {
+  const Optimum settled = *now_;
+  LOWLAP_RETURN_IF_ERROR(TiePlanes());
+  Optimum tied = *now_;
+  stage_prefix_ = "again: ";
+  const Result<bool> better = FindBetter(settled, tied);
+  stage_prefix_.clear();
+  if (!better && better.error().code == ErrorCode::kCancelled) {
+    return tl::unexpected<Error>(better.error());
+  }
+  // A search that fails is none.
+  if (!better || !*better) *now_ = std::move(tied);
+  return {};
+}
+
+// By more than one observation says.
+Result<bool> OptimumSearch::ExplainsMoreThan(const Optimum& other) const {
+  StructureState state = now_->state;
+  WhitenPoints(other.point_shape_exponent, &state.points);
+  LOWLAP_ASSIGN_OR_RETURN(
+      const double cost,
+      MeasurementCost(now_->cameras, state, other.noise, context_));
+  LOWLAP_ASSIGN_OR_RETURN(
+      const double other_cost,
+      MeasurementCost(other.cameras, other.state, other.noise, context_));
+  const auto say = [](const NoiseScale& noise) {
+    return std::pow(noise.threshold_px / noise.stddev_px, 2);
+  };
+  const double least =
+      std::min(say(other.noise.points), say(other.noise.lines));
+  return cost + least < other_cost;
+}
+
+Status OptimumSearch::Solve(const std::string& stage, bool fixed_rotations,
+                            double function_tolerance) {
+  const SolveRequest request{stage_prefix_ + stage, fixed_rotations,
+                             function_tolerance, now_->noise};
+  LOWLAP_ASSIGN_OR_RETURN(now_->last, SolveOnce(options_, request, context_,
+                                                &now_->cameras, &now_->state));
+  // Segments are undistorted with the intrinsics of the last solve.
+  if (options_.MovesIntrinsics()) {
+    RefreshRays(scene_, now_->cameras, &now_->state);
+  }
+  const SolveReport& report = now_->last.report;
+  context_.Log(LogLevel::kInfo, "adjustment: " + report.stage + ": cost " +
+                                    std::to_string(report.initial_cost) +
+                                    " -> " + std::to_string(report.final_cost) +
+                                    " in " + std::to_string(report.iterations) +
+                                    " iterations");
+  summary_->solves.push_back(report);
+  summary_->iterations += report.iterations;
+  return {};
+}
+
+// The shapes first: they say in which units the errors of points are.
+void OptimumSearch::EstimateNoise() {
+  std::vector<PointTrackState>& points = now_->state.points;
+  now_->point_shape_exponent = EstimateShapeExponent(now_->cameras, points);
+  WhitenPoints(now_->point_shape_exponent, &points);
+  now_->noise = EstimateAllNoise(now_->cameras, now_->state, options_);
+}
+
+// Seen through a calibration that moves they would be others.
+Status OptimumSearch::FindDirections() {
+  if (!options_.use_directions || !options_.use_lines ||
+      options_.coplanar_ties == CoplanarTies::kPairs ||
+      options_.MovesIntrinsics()) {
+    return {};
+  }
+  LOWLAP_ASSIGN_OR_RETURN(sights_,
+                          FindDirectionSights(scene_, now_->cameras, context_));
+  now_->state.directions = GroupDirections(sights_, now_->cameras);
+  return {};
+}
+
+// The planes of the structure as it is; those before, should there be none.
+Status OptimumSearch::LinkPlanes() {
+  LOWLAP_ASSIGN_OR_RETURN(std::vector<PlaneState> planes,
+                          FindPlanes(FreeLandmarks(options_, now_->noise,
+                                                   now_->cameras, now_->state),
+                                     context_));
+  if (!planes.empty()) now_->state.planes = std::move(planes);
+  return {};
+}
+
+Result<ObservationChanges> OptimumSearch::Update(
+    const ObservationUpdate& update) {
+  LOWLAP_RETURN_IF_ERROR(FollowPoses(options_, now_->noise.lines, context_,
+                                     now_->cameras, &now_->state));
+  EstimateNoise();
+  return UpdateObservations(options_, now_->noise, update, context_,
+                            now_->cameras, &now_->state);
+}
+
+}  // namespace lowlap

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lowlap/adjustment/adjustment_options.h"
+#include "lowlap/adjustment/adjustment_summary.h"
+#include "lowlap/adjustment/internal/directions/scene_directions.h"
+#include "lowlap/adjustment/internal/rounds/outlier_round.h"
+#include "lowlap/adjustment/internal/rounds/solve.h"
+#include "lowlap/adjustment/internal/structure/structure_state.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+
+namespace lowlap {
+
+/// Where an adjustment is.
+struct Optimum {
+  CameraSet cameras;
+  StructureState state;
+  NoiseLevels noise;
+  /// As in AdjustmentSummary::point_shape_exponent.
+  double point_shape_exponent = 0;
+  SolveOutcome last;
+  bool at_rest = false;  // a further round would change next to nothing
+};
+
+/// The solves and rounds of AdjustScene.
+///
+/// What is out of use has no say: cameras that have drifted put the very
+/// observations out of use that would bring them back, of landmarks that three
+/// views see, and rest in an optimum of their own. So once there is one, the
+/// gate of such tracks is widened to three, six, and nine thresholds, and the
+/// search goes on from where that leads. Where it ends is taken if that
+/// explains more of what was measured (MeasurementCost).
+class OptimumSearch {
+ public:
+  /// `scene` and all others must outlive this. `optimum` holds the start.
+  OptimumSearch(const AdjustmentOptions& options, const RunContext& context,
+                const Scene& scene, Optimum* optimum,
+                AdjustmentSummary* summary);
+
+  /// Writes to the summary what the solves were. Errors as SolveOnce.
+  Status Run();
+
+ private:
+  Status Begin();
+  Status SettleObservations();
+  Status TiePlanes();
+  Status SearchAgain();
+  Result<bool> FindBetter(const Optimum& settled, const Optimum& tied);
+  Result<bool> WidenGate();
+  Result<bool> ExplainsMoreThan(const Optimum& other) const;
+
+  Status Solve(const std::string& stage, bool fixed_rotations,
+               double function_tolerance);
+  void EstimateNoise();
+  Status FindDirections();
+  Status LinkPlanes();
+  Result<ObservationChanges> Update(const ObservationUpdate& update);
+
+  const AdjustmentOptions& options_;
+  const RunContext& context_;
+  const Scene& scene_;
+  Optimum* now_;
+  AdjustmentSummary* summary_;
+  std::vector<DirectionSight> sights_;
+  std::string stage_prefix_;
+};
+
+}  // namespace lowlap

@@ -1,0 +1,67 @@
+#include "lowlap/adjustment/internal/rounds/measurement_cost.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "test_scene.h"
+
+namespace lowlap {
+namespace {
+
+using test::MakeTestScene;
+using test::TestScene;
+using test::TestSceneOptions;
+
+constexpr NoiseScale kNoise{0.5, 2};
+constexpr double kWorth = 16;  // of one observation: (t / s)^2
+
+double CostOf(const Scene& scene) {
+  const CameraSet cameras(scene);
+  StructureState state;
+  state.points = LoadPoints(scene, cameras);
+  state.lines = LoadLines(scene, cameras, false);
+  const Result<double> cost =
+      MeasurementCost(cameras, state, {kNoise, kNoise, kNoise}, {});
+  return cost ? *cost : std::numeric_limits<double>::quiet_NaN();
+}
+
+TEST(MeasurementCostTest, NothingWithoutErrors) {
+  EXPECT_NEAR(CostOf(MakeTestScene({}).scene), 0, 1e-6);
+}
+
+TEST(MeasurementCostTest, AFalseObservationCostsItsWorth) {
+  TestScene test = MakeTestScene({});
+  for (const auto& [id, track] : test.scene.point_tracks) {
+    if (track.size() < 4) continue;
+    const FeatureRef& ref = track.front();
+    test.scene.features.at(ref.view).points_px[ref.feature] += Vec2(0, 300);
+    break;
+  }
+  EXPECT_NEAR(CostOf(test.scene), kWorth, 1e-6);
+}
+
+TEST(MeasurementCostTest, TracksOfTwoViewsAreNotAsked) {
+  TestSceneOptions options;
+  options.max_point_views = 2;
+  options.max_line_views = 2;
+  options.noise_px = 1;
+  options.point_outliers = 0.2;
+  EXPECT_EQ(CostOf(MakeTestScene(options).scene), 0);
+}
+
+// However far off they are: what is out counts as such.
+TEST(MeasurementCostTest, DriftCosts) {
+  TestSceneOptions options;
+  options.noise_px = 0.3;
+  TestScene test = MakeTestScene(options);
+  const double right = CostOf(test.scene);
+  test::PerturbScales(0.02, 1, &test.scene);
+  const double drifted = CostOf(test.scene);
+  test::PerturbScales(0.2, 1, &test.scene);
+  EXPECT_GT(drifted, 1.5 * right);
+  EXPECT_GT(CostOf(test.scene), drifted);
+}
+
+}  // namespace
+}  // namespace lowlap
