@@ -113,5 +113,20 @@ TEST(ScaleContests, NoneWithoutAJoint) {
               IsEmpty());
 }
 
+// Many ways of little evidence lead to the one link of much.
+TEST(Contests, ALinkThatManyWaysLeadTo) {
+  EvidenceOfPairs in_use;
+  for (std::uint32_t a = 0; a < 24; ++a) {
+    for (std::uint32_t b = a + 1; b < 24; ++b) {
+      if ((a < 12) == (b < 12)) in_use[{a, b}] = 40;
+    }
+  }
+  in_use[{11, 12}] = 400;
+  const auto contests = FindContests(in_use, {}, {{{0, 23}, 300}});
+  ASSERT_EQ(contests.size(), 1u);
+  EXPECT_THAT(contests[0].links, ElementsAre(ViewPair{11, 12}));
+  EXPECT_EQ(contests[0].views.size(), 12u);
+}
+
 }  // namespace
 }  // namespace lowlap

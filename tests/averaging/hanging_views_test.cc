@@ -64,5 +64,15 @@ TEST(HangingViews, NoneWhereOthersHold) {
   EXPECT_EQ(summary.reliability_warnings.size(), 1u);
 }
 
+// Whatever their ids.
+TEST(HangingViews, AllOfTwoPartsThatAreAsLarge) {
+  PoseSummary summary = Chain();
+  Doubt(3, &summary);
+  WarnOfHangingViews(&summary);
+  ASSERT_EQ(summary.reliability_warnings.size(), 2u);
+  EXPECT_THAT(summary.reliability_warnings[1].views,
+              ElementsAre(0, 1, 2, 4, 5, 6));
+}
+
 }  // namespace
 }  // namespace lowlap

@@ -108,6 +108,9 @@ TEST(PoseWarnings, NoneWhereAllIsWell) {
   options.num_views = 12;
   options.pairs = "window:2";
   SyntheticScene synthetic = SceneWithTrueRatios(options);
+  for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
+    ratio.kinds = {{"lines", 20, 20}};
+  }
   const auto summary =
       SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
   ASSERT_TRUE(summary);

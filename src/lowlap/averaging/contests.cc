@@ -32,13 +32,13 @@ class LeastCut {
     }
   }
 
-  /// Empty if nothing joins the two, or more than kMaxWays ways do.
-  std::set<ViewId> SideOf(ViewId from_view, ViewId to_view) {
+  /// Empty if nothing joins the two, or `max_searches` do not fill all ways.
+  std::set<ViewId> SideOf(ViewId from_view, ViewId to_view, int max_searches) {
     const std::optional<std::size_t> from = IndexOf(from_view);
     const std::optional<std::size_t> to = IndexOf(to_view);
     if (!from || !to) return {};
     std::set<ViewId> side;
-    for (int way = 0; way <= kMaxWays; ++way) {
+    for (int way = 0; way < max_searches; ++way) {
       const std::vector<std::size_t> reached = Reach(*from, *to);
       if (into_[*to] == nullptr) {
         if (way == 0) break;
@@ -139,11 +139,17 @@ std::vector<ViewId> SmallerSide(const ViewGraph& graph,
 void AddPoseContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
                      const EvidenceOfPairs& rejected,
                      std::vector<Contest>* contests) {
-  LeastCut cuts(graph, in_use);
+  EvidenceOfPairs one_each;
+  for (const auto& entry : in_use) one_each[entry.first] = 1;
+  LeastCut ways(graph, one_each), cuts(graph, in_use);
   std::set<std::set<ViewId>> sides;
   for (const auto& entry : rejected) {
-    const auto [side_entry, is_new] =
-        sides.insert(cuts.SideOf(entry.first.first, entry.first.second));
+    const auto [first, second] = entry.first;
+    // Every search finds one more way where each pair takes one.
+    if (ways.SideOf(first, second, kMaxWays + 1).empty()) continue;
+    // Evidence may flow over one link from many ways.
+    const auto [side_entry, is_new] = sides.insert(
+        cuts.SideOf(first, second, std::numeric_limits<int>::max()));
     const std::set<ViewId>& side = *side_entry;
     // Many pairs have the same cut.
     if (side.empty() || !is_new) continue;

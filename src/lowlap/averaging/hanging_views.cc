@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/averaging/internal/solution_agreement.h"
 #include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/scene/view_graph.h"
@@ -27,13 +28,18 @@ void WarnOfHangingViews(PoseSummary* summary) {
   const ViewGraph graph = ViewGraph(summary->firm_evidence.edges)
                               .WithoutViews({doubtful.begin(), doubtful.end()});
   const RigidityReport report =
-      AnalyzeRigidity(graph, summary->firm_evidence.ratios);
+      AnalyzeRigidity(graph, summary->firm_evidence.ratios,
+                      summary->agreement ? summary->agreement->flat
+                                         : std::vector<ViewTriplet>());
   const std::vector<ViewId>& placed = summary->components.front();
   std::set<ViewId> firm;
   if (!report.groups.empty()) {
     const std::vector<ViewId>& largest = report.groups.front().views;
+    // Nothing says which of two parts is in its place.
+    const bool is_tie = report.groups.size() > 1 &&
+                        report.groups[1].views.size() == largest.size();
     // Two views hold each other whatever is wrong.
-    if (largest.size() > 2 || placed.size() <= 2) {
+    if ((largest.size() > 2 && !is_tie) || placed.size() <= 2) {
       firm.insert(largest.begin(), largest.end());
     }
   }

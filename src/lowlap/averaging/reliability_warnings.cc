@@ -10,6 +10,7 @@
 
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
+#include "lowlap/core/internal/union_find.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -89,7 +90,7 @@ class Warnings {
     untold.untold = Unconfirmed(strong);
     const ViewGraph told = Graph(untold.untold);
     *evidence = {told.pairs(), strong};
-    const RigidityReport groups = AnalyzeRigidity(told, strong);
+    const RigidityReport groups = Analyze(told, strong);
     if (groups.groups.empty()) {
       untold.views = agreement_.placed;
       if (!untold.untold.empty()) warnings.push_back(std::move(untold));
@@ -117,12 +118,12 @@ class Warnings {
     };
     if (firm.views.size() > 2) held = firm.views;
     if (firm.views.size() < agreement_.placed.size()) {
-      const RigidityReport by_strong = AnalyzeRigidity(Graph({}), strong);
+      const RigidityReport by_strong = Analyze(Graph({}), strong);
       ReliabilityWarning weak;
       warn(GroupOf(firm.edges.front(), by_strong), std::move(untold));
       weak.reason = WarningReason::kWeakScale;
       weak.ratios = WeakRatios(by_strong);
-      warn(GroupOf(firm.edges.front(), AnalyzeRigidity(Graph({}), all)),
+      warn(GroupOf(firm.edges.front(), Analyze(Graph({}), all)),
            std::move(weak));
       warn(agreement_.placed, Unheld(held));
       // The last warning says what joins the parts, which share a view. Fewer
@@ -231,6 +232,11 @@ class Warnings {
     return ViewGraph(agreement_.held, agreement_.placed).WithoutPairs(without);
   }
 
+  RigidityReport Analyze(const ViewGraph& graph,
+                         const RatioTriplets& ratios) const {
+    return AnalyzeRigidity(graph, ratios, agreement_.flat);
+  }
+
   static std::vector<ViewId> GroupOf(const ViewPair& edge,
                                      const RigidityReport& report) {
     for (const RigidGroup& group : report.groups) {
@@ -260,7 +266,7 @@ class Warnings {
     std::vector<ViewPair> without = vague_;
     without.insert(without.end(), untold_.begin(), untold_.end());
     if (without.empty()) return unconfirmed;
-    const RigidityReport told = AnalyzeRigidity(Graph(without), strong);
+    const RigidityReport told = Analyze(Graph(without), strong);
     for (const ViewPair& views : vague_) {
       if (!HoldsBoth(told, views)) unconfirmed.push_back(views);
     }
@@ -268,7 +274,7 @@ class Warnings {
       if (HoldsBoth(told, views)) continue;
       without = vague_;
       without.push_back(views);
-      if (!HoldsBoth(AnalyzeRigidity(Graph(without), strong), views)) {
+      if (!HoldsBoth(Analyze(Graph(without), strong), views)) {
         unconfirmed.push_back(views);
       }
     }
@@ -310,36 +316,58 @@ class Warnings {
     return warning;
   }
 
-  // Without ratios if those across the articulation agree well enough.
+  // The parts that only contradicted ratios join to the largest; without ratios
+  // if there are none.
   ReliabilityWarning ContradictedArticulation(
       const ScaleArticulation& articulation) const {
     std::map<ViewId, std::size_t> part;
     for (std::size_t p = 0; p < articulation.parts.size(); ++p) {
       for (const ViewId view : articulation.parts[p]) part[view] = p;
     }
-    double for_it = 0, against = 0;
+    struct Balance {
+      double for_it = 0, against = 0;
+      std::vector<ViewTriplet> rejected;
+    };
+    std::map<std::pair<std::size_t, std::size_t>, Balance> balances;
+    const auto balance_of = [&](const ViewTriplet& views) -> Balance* {
+      if (views.middle != articulation.view) return nullptr;
+      const auto first = part.find(views.first), last = part.find(views.last);
+      if (first == part.end() || last == part.end() ||
+          first->second == last->second) {
+        return nullptr;
+      }
+      return &balances[std::minmax(first->second, last->second)];
+    };
     for (const std::size_t r : articulation.ratios) {
-      for_it += Evidence(agreeing_ratios_[r].log10_nfa);
+      const ScaleRatio& ratio = agreeing_ratios_[r];
+      if (Balance* const balance = balance_of(ratio.views)) {
+        balance->for_it += Evidence(ratio.log10_nfa);
+      }
+    }
+    for (const ScaleRatio& ratio : rejected_ratios_) {
+      if (Balance* const balance = balance_of(ratio.views)) {
+        balance->against += Evidence(ratio.log10_nfa);
+        balance->rejected.push_back(ratio.views);
+      }
+    }
+    UnionFind joined(articulation.parts.size());
+    for (const auto& [parts, balance] : balances) {
+      if (2 * balance.against <= balance.for_it) {
+        joined.Union(parts.first, parts.second);
+      }
     }
     ReliabilityWarning warning;
     warning.reason = WarningReason::kContradictedRatios;
-    for (const ScaleRatio& ratio : rejected_ratios_) {
-      if (ratio.views.middle != articulation.view) continue;
-      const auto first = part.find(ratio.views.first);
-      const auto last = part.find(ratio.views.last);
-      if (first == part.end() || last == part.end() ||
-          first->second == last->second) {
-        continue;
-      }
-      against += Evidence(ratio.log10_nfa);
-      warning.ratios.push_back(ratio.views);
+    for (const auto& [parts, balance] : balances) {
+      if (joined.Find(parts.first) == joined.Find(parts.second)) continue;
+      warning.ratios.insert(warning.ratios.end(), balance.rejected.begin(),
+                            balance.rejected.end());
     }
-    if (2 * against <= for_it) warning.ratios.clear();
     for (std::size_t p = 1; p < articulation.parts.size(); ++p) {
-      warning.views.insert(warning.views.end(), articulation.parts[p].begin(),
-                           articulation.parts[p].end());
+      if (joined.Find(p) != joined.Find(0)) {
+        AddViews(articulation.parts[p], &warning);
+      }
     }
-    std::sort(warning.views.begin(), warning.views.end());
     return warning;
   }
 

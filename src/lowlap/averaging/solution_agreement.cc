@@ -7,9 +7,11 @@
 #include <utility>
 
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
+#include "lowlap/averaging/strategies/internal/component_closure.h"
 #include "lowlap/core/internal/median.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/median_deviation.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -58,39 +60,74 @@ class Comparison {
     std::sort(agreement->agreeing.begin(), agreement->agreeing.end());
   }
 
+  void FindFlat(SolutionAgreement* agreement) const {
+    std::map<ViewPair, const DirectionEdge*> edges;
+    for (const DirectionEdge& edge : problem_.edges) {
+      edges.emplace(ViewsOf(edge), &edge);
+    }
+    const auto outwards = [&](ViewId from, const DirectionEdge& edge) -> Vec3 {
+      return problem_.views[edge.first] == from
+                 ? edge.direction_in_world
+                 : Vec3(-edge.direction_in_world);
+    };
+    for (const auto& views : FindTriangles(ViewGraph(agreement->held))) {
+      int num_flat = 0, middle = 0;
+      double least_cosine = 1;
+      for (int n = 0; n < 3; ++n) {
+        const ViewId at = views[n];
+        const DirectionEdge& a = *edges.at(OrderedPair(at, views[(n + 1) % 3]));
+        const DirectionEdge& b = *edges.at(OrderedPair(at, views[(n + 2) % 3]));
+        const Vec3 to_a = outwards(at, a), to_b = outwards(at, b);
+        if (to_a.cross(to_b).norm() <
+            kSeparation * std::max(a.stddev_rad, b.stddev_rad)) {
+          ++num_flat;
+        }
+        if (to_a.dot(to_b) >= least_cosine) continue;
+        least_cosine = to_a.dot(to_b);
+        middle = n;
+      }
+      // With one, the far end of a narrow triangle, all places are fixed.
+      if (num_flat < 2) continue;
+      agreement->flat.push_back(
+          {views[(middle + 1) % 3], views[middle], views[(middle + 2) % 3]});
+    }
+  }
+
   void SplitRatios(SolutionAgreement* agreement) const {
-    std::map<ViewTriplet, const ScaleRatio*> ratios;
+    std::set<ViewTriplet> ratios;
     for (const ScaleRatio& ratio : scene_.scale_ratios) {
-      ratios.emplace(ratio.views, &ratio);
+      ratios.insert(ratio.views);
     }
     const std::set<ViewPair> held(agreement->held.begin(),
                                   agreement->held.end());
-    std::vector<std::pair<const ScaleRatio*, double>> errors;
+    struct RatioError {
+      ViewTriplet views;
+      double error, stddev;
+    };
+    std::vector<RatioError> errors;
     std::vector<double> normalised;
     for (const RatioMeasurement& used : problem_.ratios) {
-      const auto ratio = ratios.find(used.views);
       const DirectionEdge& from = problem_.edges[used.reference];
       const DirectionEdge& to = problem_.edges[used.target];
-      if (ratio == ratios.end() || held.count(ViewsOf(from)) == 0 ||
+      if (ratios.count(used.views) == 0 || held.count(ViewsOf(from)) == 0 ||
           held.count(ViewsOf(to)) == 0) {
         continue;
       }
       const double error =
           std::abs(std::log(Baseline(to).norm() / Baseline(from).norm()) -
                    used.log_ratio);
-      errors.emplace_back(ratio->second, error / used.stddev);
-      normalised.push_back(errors.back().second);
+      errors.push_back({used.views, error, used.stddev});
+      normalised.push_back(error / used.stddev);
     }
     const double scale =
         std::max(1.0, Median(std::move(normalised)) / kMedianOfNorm<1>);
     // As DiagnosisOptions::max_stddev: less does not make a ratio useless.
     constexpr double kTenth = 0.1;
-    for (const auto& [ratio, error] : errors) {
-      const double stddev = std::max(ratio->log_ratio_stddev, kRatioErrorFloor);
+    for (const auto& [views, error, stddev] : errors) {
       const bool agrees =
-          error <= std::max(options_.reach * scale, kTenth / stddev);
+          error <= std::max(options_.reach * scale * stddev, kTenth);
       (agrees ? agreement->agreeing_ratios : agreement->rejected_ratios)
-          .push_back(ratio->views);
+          .push_back(views);
     }
   }
 
@@ -139,6 +176,7 @@ SolutionAgreement FindAgreement(const Scene& scene,
   std::sort(agreement.refuted.begin(), agreement.refuted.end());
   const Comparison comparison(scene, problem, solution, options);
   comparison.SplitPoses(&agreement);
+  comparison.FindFlat(&agreement);
   const std::set<ViewPair> untold(matches.untold.begin(), matches.untold.end());
   for (const ViewPair& views : agreement.held) {
     if (IsVague(scene.relative_poses.at(views))) {

@@ -118,5 +118,20 @@ TEST(AnalyzeRigidity, AnEmptyGraphHasNothing) {
   EXPECT_TRUE(report.articulation_views.empty());
 }
 
+// Three views on a line, and a fourth beside it.
+TEST(Rigidity, LengthsOnALineAddUp) {
+  const ViewGraph graph({{0, 1}, {0, 2}, {1, 2}, {0, 3}, {2, 3}});
+  const std::vector<ViewTriplet> flat = {{0, 1, 2}};
+  EXPECT_EQ(AnalyzeRigidity(graph).groups.size(), 1u);
+  const RigidityReport open = AnalyzeRigidity(graph, {}, flat);
+  ASSERT_EQ(open.groups.size(), 1u);
+  const ViewGraph line({{0, 1}, {0, 2}, {1, 2}});
+  EXPECT_EQ(AnalyzeRigidity(line, {}, flat).groups.size(), 3u);
+  for (const ViewTriplet& ratio :
+       {ViewTriplet{0, 1, 2}, ViewTriplet{1, 0, 2}, ViewTriplet{0, 2, 1}}) {
+    EXPECT_EQ(AnalyzeRigidity(line, {ratio}, flat).groups.size(), 1u);
+  }
+}
+
 }  // namespace
 }  // namespace lowlap

@@ -90,5 +90,28 @@ TEST(ScoreCycles, KnowsNothingOfATree) {
   EXPECT_EQ(support.typical_rad, 0);
 }
 
+TEST(ScoreCycles, SomeOfTheTrianglesOfADenseGraphTellEnough) {
+  constexpr std::size_t kViews = 140;
+  RotationGraph graph;
+  Random random(3);
+  for (std::size_t n = 0; n < kViews; ++n) {
+    graph.truth.push_back(RandomRotation(&random));
+  }
+  for (std::size_t a = 0; a < kViews; ++a) {
+    for (std::size_t b = a + 1; b < kViews; ++b) {
+      const bool wrong = random.Uniform() < 0.3;
+      graph.Add(a, b,
+                wrong ? Vec3(0.3 * RandomVector(&random, 1).normalized())
+                      : GaussianVector(&random, 0.003),
+                wrong);
+    }
+  }
+  const CycleSupport support = ScoreCycles(kViews, graph.measurements);
+  for (std::size_t e = 0; e < graph.measurements.size(); ++e) {
+    EXPECT_EQ(support.num_cycles[e], 100);
+    EXPECT_EQ(support.error_rad[e] > 0.1, graph.is_false[e]);
+  }
+}
+
 }  // namespace
 }  // namespace lowlap

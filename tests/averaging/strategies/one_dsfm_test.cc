@@ -176,5 +176,24 @@ TEST(OneDSfm, AProblemWithoutEdgesIsFine) {
   EXPECT_TRUE(z->empty());
 }
 
+// A tree that hangs on a graph whose directions are all wrong.
+TEST(OneDSfm, NeverContradictsAnEdgeOnNoCycle) {
+  const Edges edges = {{0, 1}, {1, 2}, {2, 3}, {3, 4}, {0, 4}, {0, 2},
+                       {1, 3}, {4, 5}, {5, 6}, {5, 7}, {5, 8}};
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    RandomProblem made = MakeRandomProblem(9, edges, seed, false);
+    Random random(seed);
+    for (std::size_t e = 0; e < 7; ++e) {
+      made.problem.edges[e].direction_in_world =
+          RandomVector(&random, 1).normalized();
+    }
+    const auto z = EdgeContradictions(made.problem, {}, RunContext());
+    ASSERT_TRUE(z);
+    for (std::size_t e = 7; e < edges.size(); ++e) {
+      EXPECT_EQ((*z)[e], 0) << "seed " << seed << ", edge " << e;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace lowlap

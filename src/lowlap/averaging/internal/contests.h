@@ -17,16 +17,17 @@ using EvidenceOfRatios = std::map<ViewTriplet, double>;
 ///
 /// For every rejected pair whose views are joined, the cut of least evidence
 /// between the two is looked at: it is contested if the rejected pairs across
-/// it have more than half the evidence of those in use. Views that eight ways
-/// join are not contested. Where one camera joins a set of views to the others,
-/// the ratios across it say how large they are: these are contested if the
-/// rejected pairs that pass the camera by have more than half the evidence of
-/// the best of them (what misleads one ratio across a camera misleads the
-/// next).
+/// it have more than half the evidence of those in use. Views that more than
+/// eight ways without a common pair join are not contested. Where one camera
+/// joins a set of views to the others, the ratios across it say how large they
+/// are: these are contested if the rejected pairs that pass the camera by have
+/// more than half the evidence of the best of them (what misleads one ratio
+/// across a camera misleads the next).
 ///
 /// What the same pairs contradict is one contest: one relative pose contradicts
-/// every link of a chain. Cost: eight searches of the graph for each rejected
-/// pair, and one for each camera that joins parts.
+/// every link of a chain. Cost: nine searches of the graph for each rejected
+/// pair, about as many more where eight ways or less join it, and one for each
+/// camera that joins parts.
 std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
                                   const EvidenceOfRatios& ratios,
                                   const EvidenceOfPairs& rejected);

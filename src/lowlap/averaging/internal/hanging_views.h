@@ -8,7 +8,8 @@ namespace lowlap {
 /// the firm evidence does not hold together with the largest set once the views
 /// of all other warnings are gone, in place of an earlier such warning. Two
 /// views are no such set if more are placed: they hold each other whatever is
-/// wrong.
+/// wrong. Nor is one of two sets of the same size: nothing says which of them
+/// is in its place.
 void WarnOfHangingViews(PoseSummary* summary);
 
 }  // namespace lowlap

@@ -32,6 +32,10 @@ struct SolutionAgreement {
   /// would agree with anything; and others, of which their matches tell
   /// nothing.
   std::vector<ViewPair> vague, untold;
+  /// Triangles of those held, by end, middle and other end, whose directions
+  /// are less than ten standard deviations from those of a line, as of a walk
+  /// straight ahead: they do not fix the ratios of its lengths.
+  std::vector<ViewTriplet> flat;
   /// Not in use, for their own matches.
   std::vector<ViewPair> refuted;  // sorted
   /// Of the ratios in use across relative poses that are held, those within

@@ -24,6 +24,97 @@ void MergeTriangles(const ViewGraph& graph,
   }
 }
 
+// A triangle on a line.
+struct FlatTriangle {
+  std::array<std::size_t, 3> edges;  // the long one last
+};
+
+std::vector<FlatTriangle> FlatTriangles(const ViewGraph& graph,
+                                        const std::vector<ViewTriplet>& flat) {
+  std::vector<FlatTriangle> triangles;
+  for (const ViewTriplet& v : flat) {
+    const auto a = graph.FindPair(v.first, v.middle);
+    const auto b = graph.FindPair(v.middle, v.last);
+    const auto ends = graph.FindPair(v.first, v.last);
+    if (a && b && ends) triangles.push_back({{*a, *b, *ends}});
+  }
+  return triangles;
+}
+
+std::vector<ViewTriangle> OpenTriangles(const ViewGraph& graph,
+                                        const std::vector<ViewTriplet>& flat) {
+  std::vector<ViewTriangle> open = FindTriangles(graph);
+  if (flat.empty()) return open;
+  std::set<ViewTriangle> on_lines;
+  for (const ViewTriplet& v : flat) {
+    ViewTriangle views = {v.first, v.middle, v.last};
+    std::sort(views.begin(), views.end());
+    on_lines.insert(views);
+  }
+  open.erase(std::remove_if(open.begin(), open.end(),
+                            [&](const ViewTriangle& views) {
+                              return on_lines.count(views) > 0;
+                            }),
+             open.end());
+  return open;
+}
+
+// Lengths on a line add up: two that are known give the third. Those of which
+// no two are known are left in `flat`.
+void AddUpLengths(std::vector<FlatTriangle>* flat, UnionFind* sets) {
+  for (std::size_t before = flat->size() + 1; flat->size() < before;) {
+    before = flat->size();
+    flat->erase(std::remove_if(flat->begin(), flat->end(),
+                               [&](const FlatTriangle& triangle) {
+                                 const auto& [a, b, c] = triangle.edges;
+                                 if (sets->Find(a) != sets->Find(b) &&
+                                     sets->Find(b) != sets->Find(c) &&
+                                     sets->Find(a) != sets->Find(c)) {
+                                   return false;
+                                 }
+                                 sets->Union(a, b);
+                                 sets->Union(b, c);
+                                 return true;
+                               }),
+                flat->end());
+  }
+}
+
+// MergeRigidParts without the long edges of `flat` that nothing else holds: to
+// generic centres they would close their triangles. Whether it merged anything.
+bool MergePartsBut(const std::vector<FlatTriangle>& flat,
+                   const ViewGraph& graph, UnionFind* sets) {
+  std::vector<std::size_t> labels = sets->Labels();
+  std::vector<int> sizes(labels.size(), 0);
+  for (const std::size_t label : labels) ++sizes[label];
+  std::vector<bool> is_idle(labels.size(), false);
+  for (const FlatTriangle& triangle : flat) {
+    const std::size_t long_edge = triangle.edges[2];
+    is_idle[long_edge] = sizes[labels[long_edge]] == 1;
+  }
+  std::vector<ViewPair> pairs;
+  std::vector<std::size_t> edges;
+  for (std::size_t e = 0; e < labels.size(); ++e) {
+    if (is_idle[e]) continue;
+    pairs.push_back(graph.pairs()[e]);
+    edges.push_back(e);
+  }
+  UnionFind parts(edges.size());
+  std::map<std::size_t, std::size_t> first_of_label;
+  for (std::size_t n = 0; n < edges.size(); ++n) {
+    parts.Union(n, first_of_label.emplace(labels[edges[n]], n).first->second);
+  }
+  MergeRigidParts(pairs, &parts);
+  const std::vector<std::size_t> merged = parts.Labels();
+  std::vector<std::size_t> first_merged;
+  bool any = false;
+  for (std::size_t n = 0; n < edges.size(); ++n) {
+    if (merged[n] == first_merged.size()) first_merged.push_back(edges[n]);
+    any |= sets->Union(edges[n], first_merged[merged[n]]);
+  }
+  return any;
+}
+
 // Number of point tracks that each triangle's three views share.
 std::vector<int> SharedTracks(const Scene& scene,
                               const std::vector<ViewTriangle>& triangles) {
@@ -88,15 +179,19 @@ RigidityReport Report(const ViewGraph& graph, UnionFind* sets) {
 }  // namespace
 
 RigidityReport AnalyzeRigidity(const ViewGraph& graph,
-                               const std::vector<ViewTriplet>& ratios) {
+                               const std::vector<ViewTriplet>& ratios,
+                               const std::vector<ViewTriplet>& flat) {
   UnionFind sets(graph.pairs().size());
-  MergeTriangles(graph, FindTriangles(graph), &sets);
+  MergeTriangles(graph, OpenTriangles(graph, flat), &sets);
   for (const ViewTriplet& views : ratios) {
     const auto reference = graph.FindPair(views.first, views.middle);
     const auto target = graph.FindPair(views.middle, views.last);
     if (reference && target) sets.Union(*reference, *target);
   }
-  MergeRigidParts(graph.pairs(), &sets);
+  std::vector<FlatTriangle> unknown = FlatTriangles(graph, flat);
+  do {
+    AddUpLengths(&unknown, &sets);
+  } while (MergePartsBut(unknown, graph, &sets) && !unknown.empty());
   return Report(graph, &sets);
 }
 

@@ -11,8 +11,10 @@
 namespace lowlap {
 namespace {
 
-// A measurement without a triangle may have thousands of 4-cycles; the first
-// ones tell enough.
+// In a dense graph every measurement has hundreds of triangles, and one without
+// a triangle may have thousands of 4-cycles: some of them tell enough, and all
+// would not fit into memory.
+constexpr std::size_t kMaxTriangles = 100;
 constexpr std::size_t kMaxQuads = 64;
 
 struct Cycle {
@@ -47,14 +49,7 @@ class CycleFinder {
   std::vector<std::vector<Cycle>> Find() const {
     std::vector<std::vector<Cycle>> through(measurements_.size());
     for (std::size_t e = 0; e < measurements_.size(); ++e) {
-      const RotationMeasurement& m = measurements_[e];
-      for (const Neighbor& to_first : neighbors_[m.first]) {
-        const std::size_t apex = to_first.view;
-        if (apex == m.second) continue;
-        for (const std::size_t f : Between(m.second, apex)) {
-          through[e].push_back(Close({e, f, to_first.edge, 0}, 3, m.first));
-        }
-      }
+      FindSomeTriangles(e, &through[e]);
       if (through[e].empty()) FindQuads(e, &through[e]);
     }
     return through;
@@ -69,6 +64,27 @@ class CycleFinder {
     std::vector<std::size_t> edges;
     for (; it != list.end() && it->view == b; ++it) edges.push_back(it->edge);
     return edges;
+  }
+
+  // Evenly among all, by apex.
+  void FindSomeTriangles(std::size_t e, std::vector<Cycle>* cycles) const {
+    const RotationMeasurement& m = measurements_[e];
+    std::vector<std::pair<std::size_t, std::size_t>> others;
+    const std::vector<Neighbor>& around_second = neighbors_[m.second];
+    auto begin = around_second.begin();
+    for (const Neighbor& to_first : neighbors_[m.first]) {
+      const std::size_t apex = to_first.view;
+      while (begin != around_second.end() && begin->view < apex) ++begin;
+      for (auto it = begin; it != around_second.end() && it->view == apex;
+           ++it) {
+        others.emplace_back(it->edge, to_first.edge);
+      }
+    }
+    const std::size_t count = std::min(others.size(), kMaxTriangles);
+    for (std::size_t n = 0; n < count; ++n) {
+      const auto& [f, g] = others[n * others.size() / count];
+      cycles->push_back(Close({e, f, g, 0}, 3, m.first));
+    }
   }
 
   void FindQuads(std::size_t e, std::vector<Cycle>* cycles) const {

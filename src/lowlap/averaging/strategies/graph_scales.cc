@@ -4,7 +4,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "lowlap/averaging/internal/cancellation.h"
@@ -19,22 +18,26 @@
 namespace lowlap {
 namespace {
 
-// The centres of a group's views in the group's own gauge; other entries are
-// unspecified.
+// The centres of a group's views, in their order, in the group's own gauge.
 Result<std::vector<Vec3>> SolveScaleGroup(const TranslationProblem& problem,
                                           const EdgeScales& scales,
                                           const EdgeGroup& group,
                                           const RunContext& context) {
   constexpr double kAlongLog = 0.02;
+  const auto index_of = [&](std::size_t view) {
+    return static_cast<std::size_t>(
+        std::lower_bound(group.views.begin(), group.views.end(), view) -
+        group.views.begin());
+  };
   std::vector<CenterEdge> edges;
   edges.reserve(group.edges.size());
   for (const std::size_t e : group.edges) {
     const DirectionEdge& edge = problem.edges[e];
-    edges.push_back({edge.first, edge.second, edge.direction_in_world,
-                     std::exp(scales.log_length[e]), edge.stddev_rad,
-                     kAlongLog});
+    edges.push_back({index_of(edge.first), index_of(edge.second),
+                     edge.direction_in_world, std::exp(scales.log_length[e]),
+                     edge.stddev_rad, kAlongLog});
   }
-  return SolveCenters(problem.views.size(), edges, context);
+  return SolveCenters(group.views.size(), edges, context);
 }
 
 /// One component under construction.
@@ -48,14 +51,20 @@ class Growth {
         groups_(groups),
         placed_(problem.views.size(), false),
         centers_(problem.views.size(), Vec3::Zero()),
-        used_(groups.size(), false) {}
+        used_(groups.size(), false),
+        edges_of_view_(problem.views.size()) {
+    for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+      edges_of_view_[problem.edges[e].first].push_back(e);
+      edges_of_view_[problem.edges[e].second].push_back(e);
+    }
+  }
 
   Status Start(std::size_t g) {
     const auto local = SolveScaleGroup(problem_, scales_, groups_[g], context_);
     if (!local) return tl::unexpected<Error>(local.error());
     used_[g] = true;
-    for (const std::size_t view : groups_[g].views) {
-      Place(view, (*local)[view]);
+    for (std::size_t n = 0; n < local->size(); ++n) {
+      Place(groups_[g].views[n], (*local)[n]);
     }
     return {};
   }
@@ -103,11 +112,12 @@ class Growth {
 
   // A group that shares two or more views gets its scale from their distances.
   Result<bool> JoinGroup(std::size_t g) {
-    std::vector<std::size_t> shared;
+    const std::vector<std::size_t>& views = groups_[g].views;
+    std::vector<std::size_t> shared;  // indices into `views`
     bool adds_views = false;
-    for (const std::size_t view : groups_[g].views) {
-      if (placed_[view]) {
-        shared.push_back(view);
+    for (std::size_t n = 0; n < views.size(); ++n) {
+      if (placed_[views[n]]) {
+        shared.push_back(n);
       } else {
         adds_views = true;
       }
@@ -117,21 +127,21 @@ class Growth {
     const auto local = SolveScaleGroup(problem_, scales_, groups_[g], context_);
     if (!local) return tl::unexpected<Error>(local.error());
     Vec3 local_mean = Vec3::Zero(), mean = Vec3::Zero();
-    for (const std::size_t view : shared) {
-      local_mean += (*local)[view] / static_cast<double>(shared.size());
-      mean += centers_[view] / static_cast<double>(shared.size());
+    for (const std::size_t n : shared) {
+      local_mean += (*local)[n] / static_cast<double>(shared.size());
+      mean += centers_[views[n]] / static_cast<double>(shared.size());
     }
     double dot = 0, square = 0;
-    for (const std::size_t view : shared) {
-      const Vec3 offset = (*local)[view] - local_mean;
-      dot += offset.dot(centers_[view] - mean);
+    for (const std::size_t n : shared) {
+      const Vec3 offset = (*local)[n] - local_mean;
+      dot += offset.dot(centers_[views[n]] - mean);
       square += offset.squaredNorm();
     }
     if (!(square > 0) || !(dot > 0)) return false;
     const double scale = dot / square;
-    for (const std::size_t view : groups_[g].views) {
-      if (!placed_[view]) {
-        Place(view, mean + scale * ((*local)[view] - local_mean));
+    for (std::size_t n = 0; n < views.size(); ++n) {
+      if (!placed_[views[n]]) {
+        Place(views[n], mean + scale * ((*local)[n] - local_mean));
       }
     }
     return true;
@@ -162,9 +172,7 @@ class Growth {
             std::max(component.stddev_rad, problem_.edges[e].stddev_rad);
       }
       component.views = groups_[g].views;
-      for (const std::size_t view : component.views) {
-        component.centers.push_back(local[view]);
-      }
+      component.centers = local;
       components.push_back(std::move(component));
       group_of.push_back(g);
     }
@@ -197,14 +205,15 @@ class Growth {
       Vec3 rhs = Vec3::Zero();
       double stddev = 0;
       int count = 0;
-      for (const DirectionEdge& edge : problem_.edges) {
-        const std::optional<std::size_t> other = OtherEnd(edge, view);
-        if (!other || !placed_[*other]) continue;
+      for (const std::size_t e : edges_of_view_[view]) {
+        const DirectionEdge& edge = problem_.edges[e];
+        const std::size_t other = OtherEnd(edge, view);
+        if (!placed_[other]) continue;
         const Mat3 across =
             Mat3::Identity() -
             edge.direction_in_world * edge.direction_in_world.transpose();
         normal += across;
-        rhs += across * centers_[*other];
+        rhs += across * centers_[other];
         stddev = std::max(stddev, edge.stddev_rad);
         ++count;
       }
@@ -226,19 +235,17 @@ class Growth {
     return true;
   }
 
-  static std::optional<std::size_t> OtherEnd(const DirectionEdge& edge,
-                                             std::size_t view) {
-    if (edge.first == view) return edge.second;
-    if (edge.second == view) return edge.first;
-    return std::nullopt;
+  static std::size_t OtherEnd(const DirectionEdge& edge, std::size_t view) {
+    return edge.first == view ? edge.second : edge.first;
   }
 
   bool AllForward(std::size_t view, const Vec3& center) const {
-    for (const DirectionEdge& edge : problem_.edges) {
-      const std::optional<std::size_t> other = OtherEnd(edge, view);
-      if (!other || !placed_[*other]) continue;
+    for (const std::size_t e : edges_of_view_[view]) {
+      const DirectionEdge& edge = problem_.edges[e];
+      const std::size_t other = OtherEnd(edge, view);
+      if (!placed_[other]) continue;
       const double sign = edge.second == view ? 1 : -1;
-      if (sign * edge.direction_in_world.dot(center - centers_[*other]) <= 0) {
+      if (sign * edge.direction_in_world.dot(center - centers_[other]) <= 0) {
         return false;
       }
     }
@@ -252,6 +259,7 @@ class Growth {
   std::vector<bool> placed_;
   std::vector<Vec3> centers_;
   std::vector<bool> used_;
+  std::vector<std::vector<std::size_t>> edges_of_view_;
 };
 
 }  // namespace

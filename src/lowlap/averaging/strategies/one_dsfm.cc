@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "lowlap/averaging/strategies/internal/vertex_order.h"
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -43,6 +46,24 @@ std::vector<double> BrokenWeights(const TranslationProblem& problem,
   return broken;
 }
 
+std::vector<std::size_t> EdgesOnNoCycle(const TranslationProblem& problem) {
+  std::map<ViewPair, std::vector<std::size_t>> edges_of_pair;
+  std::vector<ViewPair> pairs;
+  for (std::size_t e = 0; e < problem.edges.size(); ++e) {
+    const DirectionEdge& edge = problem.edges[e];
+    pairs.push_back(OrderedPair(static_cast<ViewId>(edge.first),
+                                static_cast<ViewId>(edge.second)));
+    edges_of_pair[pairs.back()].push_back(e);
+  }
+  std::vector<std::size_t> edges;
+  for (const ViewPair& bridge : FindBridges(ViewGraph(std::move(pairs)))) {
+    const std::vector<std::size_t>& of_pair = edges_of_pair.at(bridge);
+    // Two edges of one pair are a cycle.
+    if (of_pair.size() == 1) edges.push_back(of_pair.front());
+  }
+  return edges;
+}
+
 }  // namespace
 
 Status OneDSfmOptions::Validate() const {
@@ -73,6 +94,8 @@ Result<std::vector<double>> EdgeContradictions(
       mean[e] += each[e] / static_cast<double>(count);
     }
   }
+  // Next to false cycles the greedy order may break what is on none.
+  for (const std::size_t e : EdgesOnNoCycle(problem)) mean[e] = 0;
   return mean;
 }
 

@@ -38,6 +38,10 @@ struct RigidityReport {
 /// without these relative poses are ignored. The best case: every direction is
 /// exact.
 ///
+/// `flat`: triangles, by end, middle and other end, that are known to lie on a
+/// line. Their directions say only that the lengths add up: two fix the third,
+/// and until then the edge of the two ends fixes nothing.
+///
 /// Edges belong to one group iff their lengths are proportional in every
 /// solution of C_j - C_i = s_ij d_ij, and s_jk = tau s_ij for the ratios. The
 /// test is generic: the null space of these equations for random centres in a
@@ -47,7 +51,8 @@ struct RigidityReport {
 /// that no single view separates; beyond 250 of them only parts that share two
 /// views are merged.
 RigidityReport AnalyzeRigidity(const ViewGraph& graph,
-                               const std::vector<ViewTriplet>& ratios = {});
+                               const std::vector<ViewTriplet>& ratios = {},
+                               const std::vector<ViewTriplet>& flat = {});
 
 /// What averaging over triplets stands on: triplets of views, each with a scale
 /// of its own, joined where they share an edge. A triplet counts if its three

@@ -13,7 +13,8 @@ struct CycleSupport {
   /// Estimated error of each measurement, in radians; 0 where no cycle is
   /// known.
   std::vector<double> error_rad;
-  /// Cycles that were looked at; 0: nothing is known about the measurement.
+  /// Cycles that were looked at, a hundred at most; 0: nothing is known about
+  /// the measurement.
   std::vector<int> num_cycles;
   /// The lower quartile of error_rad over measurements with cycles: what a
   /// right measurement looks like while at most three in four are wrong.
