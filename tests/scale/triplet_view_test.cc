@@ -34,6 +34,26 @@ TEST(MakeTripletView, ChainsThroughTheFeaturesOfTheMiddleView) {
   EXPECT_EQ(reversed->points[0].in_i, features.normalized.at(2).points[7]);
 }
 
+// One blob with two orientations is two features of one place.
+TEST(MakeTripletView, PointsOfOnePlaceInAllViewsAreOne) {
+  Scene scene = RowOfViews().scene;
+  for (const ViewId view : {0, 1, 2}) {
+    std::vector<Vec2>& points = scene.features.at(view).points_px;
+    points[6] = points[5];
+  }
+  scene.relative_poses.at({0, 1}).point_inliers = {{5, 5}, {6, 6}, {7, 7}};
+  scene.relative_poses.at({1, 2}).point_inliers = {{5, 5}, {6, 6}, {7, 7}};
+  const auto triplet = MakeTripletView(SceneFeatures(scene), {0, 1, 2});
+  ASSERT_TRUE(triplet.has_value());
+  ASSERT_EQ(triplet->points.size(), 2u);
+  EXPECT_EQ(triplet->points[0].point_in_middle, 5u);
+  EXPECT_EQ(triplet->points[1].point_in_middle, 7u);
+  // Another place in one view is another match.
+  scene.features.at(2).points_px[6].x() += 20;
+  EXPECT_EQ(MakeTripletView(SceneFeatures(scene), {0, 1, 2})->points.size(),
+            3u);
+}
+
 // A line that view 1 breaks into segments 6 and 7, each matched in one pair; 7
 // is the longer one. Line 8 is whole.
 Scene BrokenInTheMiddle() {

@@ -1,7 +1,9 @@
 #include "lowlap/scale/triplet_view.h"
 
 #include <algorithm>
+#include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "lowlap/core/internal/propagate.h"
@@ -86,6 +88,17 @@ void Chain(const std::vector<MiddleMatch>& ij,
     }
   }
 }
+
+// Orders points by where the three views show them.
+struct ByPlaces {
+  bool operator()(const TripletPoint& a, const TripletPoint& b) const {
+    const auto places = [](const TripletPoint& point) {
+      return std::make_tuple(point.in_i.x(), point.in_i.y(), point.in_j.x(),
+                             point.in_j.y(), point.in_k.x(), point.in_k.y());
+    };
+    return places(a) < places(b);
+  }
+};
 
 // The longest piece of a line in each view, kInvalidId where there is none. (A
 // segment through all pieces is longer, but no better: pieces are matched to a
@@ -185,6 +198,7 @@ Result<TripletView> MakeTripletView(const SceneFeatures& features,
   triplet.points.reserve(
       std::min(edges[0]->point_inliers.size(), edges[1]->point_inliers.size()));
   const auto is_valid = [](const Vec3& point) { return point.z() > 0; };
+  std::set<TripletPoint, ByPlaces> known;
   Chain(from_middle(0, &RelativePose::point_inliers),
         from_middle(1, &RelativePose::point_inliers), j.features->points.size(),
         [&](const MiddleMatch& ij, const MiddleMatch& jk) {
@@ -192,7 +206,7 @@ Result<TripletView> MakeTripletView(const SceneFeatures& features,
                                    j.features->points[ij.middle],
                                    k.features->points[jk.neighbor]};
           if (is_valid(point.in_i) && is_valid(point.in_j) &&
-              is_valid(point.in_k)) {
+              is_valid(point.in_k) && known.insert(point).second) {
             triplet.points.push_back(point);
           }
         });

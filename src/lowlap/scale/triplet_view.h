@@ -113,7 +113,9 @@ struct TripletView {
 
 /// Reads a triplet out of the scene: the inlier matches of its two relative
 /// poses, chained through the middle view. Points: through the feature index,
-/// every combination where one is matched more than once. Lines: through the
+/// every combination where one is matched more than once; of points at the same
+/// places of all three views, as detectors give of one blob with two
+/// orientations, the first, for they err together. Lines: through the
 /// line track of the segments; the longest of its matched pieces in a view
 /// stands for the line, which says what one line says however often it is
 /// broken. Matches of segments of different tracks, which BuildLineTracks

@@ -100,6 +100,7 @@ TEST(FindPlanes, KnowsNoPlaneOutsideItsExtent) {
 TEST(FindPlanes, TakesFewOrNoSamples) {
   EXPECT_TRUE(FindPlanes({}).planes.empty());
   std::vector<DepthSample> samples(3);
+  for (int n = 0; n < 3; ++n) samples[n].ray.x() = 0.1 * n;
   EXPECT_TRUE(FindPlanes(samples).planes.empty());
   EXPECT_EQ(FindPlanes(samples).plane_of_sample,
             std::vector<int>(3, PairPlanes::kNoPlane));
@@ -123,6 +124,41 @@ TEST(FindPlanes, DoesNotDependOnTheOrderOfTheMatches) {
   for (std::size_t n = 0; n < planes.planes.size(); ++n) {
     EXPECT_EQ(planes.planes[n].samples, reversed.planes[n].samples);
     EXPECT_EQ(planes.planes[n].parameters, reversed.planes[n].parameters);
+  }
+}
+
+// Neither among more samples than are used.
+TEST(FindPlanes, DoesNotDependOnTheOrderOfManyMatches) {
+  SyntheticPlanesOptions options;
+  options.noise_px = 0.5;
+  options.num_points_per_wall = 3 * kMaxPlaneSamples / 4;
+  SyntheticPlanes scene = MakeSyntheticPlanes(options, 8);
+  const PairPlanes planes = scene.PlanesIj();
+  std::rotate(scene.points_ij.begin(), scene.points_ij.begin() + 100,
+              scene.points_ij.end());
+  const PairPlanes rotated = scene.PlanesIj();
+  ASSERT_EQ(planes.planes.size(), rotated.planes.size());
+  for (std::size_t n = 0; n < planes.planes.size(); ++n) {
+    EXPECT_EQ(planes.planes[n].parameters, rotated.planes[n].parameters);
+  }
+}
+
+TEST(FindPlanes, MatchesOfOnePlaceAreOneSample) {
+  SyntheticPlanesOptions options;
+  options.noise_px = 0.5;
+  SyntheticPlanes scene = MakeSyntheticPlanes(options, 9);
+  const PairPlanes planes = scene.PlanesIj();
+  const std::vector<MatchedPoint> once = scene.points_ij;
+  for (MatchedPoint point : once) {
+    point.point_in_middle += 1000;  // another feature
+    scene.points_ij.push_back(point);
+  }
+  const PairPlanes twice = scene.PlanesIj();
+  EXPECT_EQ(twice.samples.size(), planes.samples.size());
+  EXPECT_EQ(twice.matched.size(), 2 * planes.matched.size());
+  ASSERT_EQ(twice.planes.size(), planes.planes.size());
+  for (std::size_t n = 0; n < planes.planes.size(); ++n) {
+    EXPECT_EQ(twice.planes[n].log10_nfa, planes.planes[n].log10_nfa);
   }
 }
 

@@ -91,6 +91,43 @@ TEST(RatioSweep, IsTheLeastOfADenseScan) {
   }
 }
 
+// Within the same tolerance, what the sweep finds from either end of the
+// triplet is the least at the ratio found from the other, too, also where many
+// candidates leave the best counts to a narrow segment.
+TEST(RatioSweep, FindsWhatIsFoundFromTheOtherEnd) {
+  constexpr int kTriplets = 300;
+  for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
+    Random random(seed);
+    SyntheticTripletOptions options;
+    options.num_points = static_cast<int>(random.Index(80));
+    options.num_lines = static_cast<int>(random.Index(50));
+    options.num_lines_ij = static_cast<int>(random.Index(60));
+    options.num_lines_jk = static_cast<int>(random.Index(60));
+    options.noise_px = random.Uniform(0.2, 2);
+    options.wrong_share = random.Uniform(0, 0.6);
+    const TripletView view = MakeSyntheticTriplet(options, 900 + seed).view;
+    const TripletView swapped = testing::SwapEnds(view);
+    const RatioSupport supports[2] = {Support(view), Support(swapped)};
+    if (supports[0].hypotheses().empty()) continue;
+    const RatioNfaCriterion criteria[2] = {
+        {supports[0], view, NfaForm::kCalibrated},
+        {supports[1], swapped, NfaForm::kCalibrated}};
+    for (const int end : {0, 1}) {
+      const RatioOptimum optimum = SweepRatios(supports[end], criteria[end]);
+      const double elsewhere =
+          -SweepRatios(supports[1 - end], criteria[1 - end]).log_ratio;
+      SupportWorkspace workspace;
+      const double there =
+          criteria[end]
+              .Evaluate(elsewhere, supports[end].Count(elsewhere, &workspace))
+              .log10_nfa;
+      EXPECT_LE(optimum.nfa.log10_nfa,
+                there + std::max(0.05, 0.01 * std::abs(there)))
+          << seed;
+    }
+  }
+}
+
 TEST(RatioSweep, OneHypothesisIsItsOwnOptimum) {
   SyntheticTripletOptions options;
   options.num_points = 1;

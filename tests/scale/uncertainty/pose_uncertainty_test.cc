@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -105,6 +106,42 @@ TEST(PoseVariance, AveragesWhatMovesAndWhatDoesNot) {
               0.01 * 0.01, 1e-15);
   EXPECT_EQ(PoseVariance(triplet, support, {}), 0);
   EXPECT_EQ(PoseVariance({}, support, {{0, 0, 1}}), 0);
+}
+
+// Its candidates move by their own ratio times the focal length of view i.
+class MovedByRatio : public testing::EvenEvidence {
+ public:
+  using EvenEvidence::EvenEvidence;
+  std::vector<RatioCandidate> RatiosIn(
+      const TripletView&, const TripletGeometry& geometry,
+      const std::vector<int>& candidates) const override {
+    std::vector<RatioCandidate> moved;
+    for (const int n : candidates) {
+      moved.push_back(ratios()[n]);
+      moved.back().log_ratio *= 1 + geometry.focal_i_px;
+    }
+    return moved;
+  }
+};
+
+TEST(PoseVariance, DoesNotDependOnTheOrderOfTheCandidates) {
+  TripletView triplet;
+  triplet.pose_perturbations.emplace_back().focal_i_px = 0.04;
+  std::vector<double> ratios;
+  std::vector<WeightedCandidate> candidates;
+  for (int n = 0; n < 60; ++n) {
+    ratios.push_back(std::fmod(0.618 * n, 1.0));
+    candidates.push_back({0, n, 1.0 + n % 7});
+  }
+  const RatioSupport support(
+      testing::EvidenceOf({std::make_shared<MovedByRatio>(ratios, 1)}));
+  const double variance = PoseVariance(triplet, support, candidates);
+  std::rotate(candidates.begin(), candidates.begin() + 1, candidates.end());
+  EXPECT_NEAR(PoseVariance(triplet, support, candidates), variance,
+              1e-12 * variance);
+  std::reverse(candidates.begin(), candidates.end());
+  EXPECT_NEAR(PoseVariance(triplet, support, candidates), variance,
+              1e-12 * variance);
 }
 
 }  // namespace

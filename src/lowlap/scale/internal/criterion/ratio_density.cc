@@ -26,13 +26,15 @@ std::vector<double> Kernel() {
 
 RatioDensity::RatioDensity(const std::vector<double>& sorted) {
   if (sorted.empty()) return;
-  const double median = sorted[sorted.size() / 2];
+  const double median =
+      0.5 * (sorted[sorted.size() / 2] + sorted[(sorted.size() - 1) / 2]);
   const double first = std::max(sorted.front(), median - kMaxRange / 2);
   const double last = std::min(sorted.back(), median + kMaxRange / 2);
-  low_ = first - kKernelRadius * kGridStep;
   const int num_nodes =
       static_cast<int>(std::ceil((last - first) / kGridStep)) +
       2 * kKernelRadius + 2;
+  // Around the middle, for the same grid whichever end is the first.
+  low_ = 0.5 * (first + last) - 0.5 * (num_nodes - 1) * kGridStep;
 
   // Every ratio is shared by the two nodes beside it.
   std::vector<double> mass(num_nodes, 0.0);

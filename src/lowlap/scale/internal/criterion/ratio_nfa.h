@@ -70,9 +70,10 @@ struct RatioNfaBound {
 ///  - Every probability, and the NFA of every kind, is at most 1: a kind with
 ///    nothing to say never outvotes the others.
 ///  - The number of tests is the number of ratios at which a candidate becomes
-///    an inlier (Evidence::NumTests), times 2 for every kind that may speak or
-///    be capped, times 2 as a margin for the background. It is the same for
-///    every search, so that their results can be compared.
+///    an inlier (Evidence::NumTests), times what the product of as many kinds
+///    gains by chance: 4, 8, 26 and 67 for one to four of them, with a margin
+///    for the background. It is the same for every search, so that their
+///    results can be compared.
 /// So built, at most one ratio in a hundred comes out below NFA 1 on triplets
 /// of unrelated features (tests/scale).
 /// Paper form: the product of the terms of the kinds (Evidence::PaperTerm).

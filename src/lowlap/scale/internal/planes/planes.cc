@@ -22,8 +22,15 @@ double ResidualPx(const DepthSample& sample, const Vec3& parameters) {
 }
 
 bool IsLeft(const DepthSample& a, const DepthSample& b) {
-  return std::tie(a.ray.x(), a.ray.y(), a.is_line, a.feature) <
-         std::tie(b.ray.x(), b.ray.y(), b.is_line, b.feature);
+  return std::tie(a.ray.x(), a.ray.y(), a.is_line, a.inverse_depth, a.feature) <
+         std::tie(b.ray.x(), b.ray.y(), b.is_line, b.inverse_depth, b.feature);
+}
+
+// What a detector finds twice at one place, as one blob with two orientations,
+// and matches twice: two features that err together.
+bool AreOneMatch(const DepthSample& a, const DepthSample& b) {
+  return a.ray == b.ray && a.inverse_depth == b.inverse_depth &&
+         a.is_line == b.is_line;
 }
 
 // The `count` nearest samples of a place, without one of them, the nearest
@@ -315,8 +322,11 @@ PairPlanes FindPlanes(std::vector<DepthSample> samples) {
     result.matched.emplace_back(sample.is_line, sample.feature);
   }
   std::sort(result.matched.begin(), result.matched.end());
+  // Sorted before they are thinned, so that their order does not matter.
+  std::sort(samples.begin(), samples.end(), IsLeft);
+  samples.erase(std::unique(samples.begin(), samples.end(), AreOneMatch),
+                samples.end());
   result.samples = Thinned(std::move(samples));
-  std::sort(result.samples.begin(), result.samples.end(), IsLeft);
   result.plane_of_sample.assign(result.samples.size(), PairPlanes::kNoPlane);
   if (static_cast<int>(result.samples.size()) > kPlaneSize) {
     PlaneSearch(&result).Run();

@@ -27,7 +27,7 @@ inline constexpr std::size_t kMaxPlaneSamples = 500;
 
 struct PairPlanes {
   /// At most kMaxPlaneSamples of those given (evenly spaced), from left to
-  /// right in the middle view.
+  /// right in the middle view; those of one place and depth once.
   std::vector<DepthSample> samples;
   std::vector<PairPlane> planes;
   std::vector<int> plane_of_sample;  // kNoPlane: on none

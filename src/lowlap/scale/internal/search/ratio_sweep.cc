@@ -190,9 +190,10 @@ class RatioSweeper {
     }
     SupportCounts counts(support_.num_counters());
     const auto score = [&](double log_ratio) {
-      if (CanBeat(criterion_.Evaluate(log_ratio, counts).log10_nfa)) {
-        Try(log_ratio);
-      }
+      const bool can_beat =
+          CanBeat(criterion_.Evaluate(log_ratio, counts).log10_nfa);
+      if (can_beat) Try(log_ratio);
+      return can_beat;
     };
     sweep_.Run(window.low, window.high,
                [&](double begin, double end, const std::vector<int>& counters) {
@@ -202,8 +203,11 @@ class RatioSweeper {
                    std::copy_n(from, kNumThresholds, ladder.begin());
                    from += kNumThresholds;
                  }
-                 score(begin + kInside * (end - begin));
-                 score(end - kInside * (end - begin));
+                 const bool near_begin = score(begin + kInside * (end - begin));
+                 const bool near_end = score(end - kInside * (end - begin));
+                 // Ends are as inexact as the errors: of a narrow segment what
+                 // was tried may lie beyond them.
+                 if (near_begin || near_end) score(0.5 * (begin + end));
                });
   }
 

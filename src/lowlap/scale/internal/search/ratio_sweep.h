@@ -14,7 +14,9 @@ namespace lowlap {
 /// several pairs is counted once, by the union of their intervals. Between two
 /// ends the NFA changes with the densities of the background alone
 /// (ratio_density.h), whose logs are linear on their grid, so that the ends of
-/// a segment are where it is least; both are tried, 0.1 % inside the segment.
+/// a segment are where it is least; both are tried, 0.1 % inside the segment,
+/// and its middle, since single precision errors tell the ends of narrow
+/// segments no better.
 ///
 /// Only windows that can hold the optimum are swept: over a window, every error
 /// has a least and a most possible value (Evidence::Bound), the
@@ -24,8 +26,9 @@ namespace lowlap {
 /// below the best NFA that was found. Every candidate is scored again with the
 /// exact counts at its ratio, which is what is returned.
 ///
-/// The ends of an interval are found by regula falsi to 1e-10 in log tau from
-/// the stationary points of the error, which is taken as monotone in between.
+/// The ends of an interval are found by regula falsi, to 1e-5 of the threshold,
+/// from the stationary points of the error, which is taken as monotone in
+/// between.
 /// Tolerance: the returned log10 NFA is never above that of any candidate's
 /// ratio, and within 1 % (0.05 near 0) of that of any ratio (tests/scale).
 ///

@@ -3,14 +3,15 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {
 
-// The candidates of one kind: at most 24, evenly spaced, with their weights
-// made up for.
+// The candidates of one kind: at most 24, evenly spaced by rank of their ratios
+// (whatever their order), with their weights made up for.
 struct Sample {
   std::vector<int> candidates;
   std::vector<double> weights;
@@ -27,6 +28,17 @@ std::vector<Sample> SampleKinds(
       if (candidate.kind == k) of_kind.push_back(candidate);
     }
     const std::size_t num = std::min(kMaxOfKind, of_kind.size());
+    if (num < of_kind.size()) {
+      const auto rank = [&](const WeightedCandidate& candidate) {
+        return std::make_pair(
+            support.kind(k).ratios()[candidate.index].log_ratio,
+            candidate.weight);
+      };
+      std::sort(of_kind.begin(), of_kind.end(),
+                [&](const WeightedCandidate& a, const WeightedCandidate& b) {
+                  return rank(a) < rank(b);
+                });
+    }
     for (std::size_t n = 0; n < num; ++n) {
       const WeightedCandidate& taken =
           of_kind[(2 * n + 1) * of_kind.size() / (2 * num)];

@@ -28,7 +28,7 @@ std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
 /// from the errors of the two relative poses: all candidates move together with
 /// them, so that it does not fall with their number. The sum over
 /// `triplet.pose_perturbations` of the squared change of the mean, which is
-/// taken over an even sample of at most 24 candidates of each kind.
+/// taken over a sample of at most 24 candidates of each kind, even by ratio.
 double PoseVariance(const TripletView& triplet, const RatioSupport& support,
                     const std::vector<WeightedCandidate>& candidates);
 
