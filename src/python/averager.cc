@@ -53,7 +53,11 @@ std::optional<TranslationSolution> ReadSolution(const py::object& returned,
   if (py::isinstance<py::tuple>(returned) && py::len(returned) == 2) {
     const auto both = returned.cast<py::tuple>();
     centers = both[0];
-    components = both[1].cast<std::vector<int>>();
+    try {
+      components = both[1].cast<std::vector<int>>();
+    } catch (const py::cast_error&) {
+      return std::nullopt;
+    }
   }
   using Array = py::array_t<double, py::array::c_style | py::array::forcecast>;
   const Array array = Array::ensure(centers);
@@ -77,15 +81,27 @@ std::optional<TranslationSolution> ReadSolution(const py::object& returned,
   return solution;
 }
 
+// What a method of a strategy returns; TypeError if it is of another type.
+template <class T>
+T Answer(const py::object& strategy, const char* method) {
+  const py::object returned = strategy.attr(method)();
+  try {
+    return returned.cast<T>();
+  } catch (const py::cast_error&) {
+    throw py::type_error(std::string(method) + "() of a strategy cannot be " +
+                         py::repr(returned).cast<std::string>());
+  }
+}
+
 // A strategy that is written in Python.
 class PythonAverager final : public TranslationAverager {
  public:
   PythonAverager(py::object strategy, Call* call)
       : strategy_(std::move(strategy)),
         call_(call),
-        name_(strategy_.attr("name")().cast<std::string>()),
-        needs_tracks_(strategy_.attr("needs_tracks")().cast<bool>()),
-        needs_(strategy_.attr("needs")().cast<std::string>()) {}
+        name_(Answer<std::string>(strategy_, "name")),
+        needs_tracks_(Answer<bool>(strategy_, "needs_tracks")),
+        needs_(Answer<std::string>(strategy_, "needs")) {}
 
   std::string Name() const override { return name_; }
   bool NeedsTracks() const override { return needs_tracks_; }

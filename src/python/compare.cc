@@ -82,14 +82,16 @@ void BindCompare(py::module_& module) {
       .def_readonly("num_points", &Consistency::num_points)
       .def_readonly("reprojection_rmse_px", &Consistency::reprojection_rmse_px);
 
-  py::class_<SolutionQuality>(module, "SolutionQuality")
+  py::class_<SolutionQuality>(module, "SolutionQuality",
+                              "How good the poses of a strategy are.")
       .def_readonly("consistency", &SolutionQuality::consistency)
       .def_readonly("errors", &SolutionQuality::errors,
                     "Against the true cameras, or None.")
       .def_readonly("difference", &SolutionQuality::difference,
                     "To the reference, in mean baselines, or None.");
 
-  py::class_<StrategyResult>(module, "StrategyResult")
+  py::class_<StrategyResult>(module, "StrategyResult",
+                             "What a strategy made of the common input.")
       .def_readonly("strategy", &StrategyResult::strategy)
       .def_property_readonly(
           "failure",

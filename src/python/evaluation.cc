@@ -5,7 +5,8 @@
 
 namespace lowlap::python {
 void BindEvaluation(py::module_& module) {
-  py::class_<ErrorStatistics>(module, "ErrorStatistics")
+  py::class_<ErrorStatistics>(module, "ErrorStatistics",
+                              "Of non-negative errors; all 0 for none.")
       .def_readonly("count", &ErrorStatistics::count)
       .def_readonly("mean", &ErrorStatistics::mean)
       .def_readonly("median", &ErrorStatistics::median)
@@ -18,7 +19,9 @@ void BindEvaluation(py::module_& module) {
             .format(errors.count, errors.mean, errors.median, errors.max);
       });
 
-  py::class_<ViewPoseError>(module, "ViewPoseError")
+  py::class_<ViewPoseError>(
+      module, "ViewPoseError",
+      "Of a camera that is solved; position in the unit of the true ones.")
       .def_readonly("view", &ViewPoseError::view)
       .def_readonly("name", &ViewPoseError::name)
       .def_readonly("position_error", &ViewPoseError::position_error)

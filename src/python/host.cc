@@ -4,6 +4,7 @@
 
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/pipeline/translation_scale_estimator.h"
+#include "python/averager.h"
 #include "python/keywords.h"
 
 namespace lowlap::python {
@@ -27,8 +28,13 @@ TranslationScaleEstimator MakeEstimator(const py::kwargs& kwargs) {
   options.scale_estimator = MakeScaleEstimator(TakeScaleOptions(&keywords));
   if (const py::object strategy = keywords.Take("strategy")) {
     // One that is written in Python lives only as long as a call.
-    options.poses.averager = ValueOf(
-        AveragerRegistry::WithBuiltIns().Make(strategy.cast<std::string>()));
+    const auto request = RequestOf(strategy);
+    if (!request) {
+      throw py::type_error("the strategy must be one of lowlap's, not " +
+                           py::repr(strategy).cast<std::string>());
+    }
+    options.poses.averager =
+        ValueOf(AveragerRegistry::WithBuiltIns().Make(*request));
   }
   keywords.Finish();
   return TranslationScaleEstimator(std::move(options));
@@ -37,7 +43,8 @@ TranslationScaleEstimator MakeEstimator(const py::kwargs& kwargs) {
 }  // namespace
 
 void BindHost(py::module_& module) {
-  py::class_<TranslationEstimate>(module, "TranslationEstimate")
+  py::class_<TranslationEstimate>(module, "TranslationEstimate",
+                                  "Ratios, and what they place.")
       .def_readonly("ratios", &TranslationEstimate::ratios)
       .def_readonly("poses", &TranslationEstimate::poses,
                     "Of the placed views, by id, all in one scale.")

@@ -44,9 +44,11 @@ class Keywords {
   void TakeChoice(const std::string& name,
                   std::initializer_list<std::pair<const char*, T>> choices,
                   T* value) {
-    std::string word, known;
-    Take(name, &word);
-    if (word.empty()) return;
+    const py::object given = Take(name);
+    if (!given) return;
+    if (!py::isinstance<py::str>(given)) FailType(name, given);
+    const std::string word = given.cast<std::string>();
+    std::string known;
     for (const auto& [choice, meaning] : choices) {
       if (word == choice) {
         *value = meaning;

@@ -47,12 +47,26 @@ Result<std::vector<PartialModel>> MatchModels(
   return models;
 }
 
+// Of what was measured already they would say nothing.
+void RefuseOptionsOfPhotographs(const py::kwargs& kwargs) {
+  for (const char* name : {"intrinsics", "focal", "pairs", "matcher",
+                           "two_view", "max_tilt", "refine_points", "cache"}) {
+    if (kwargs.contains(name) && !kwargs[name].is_none()) {
+      Raise({ErrorCode::kInvalidArgument,
+             std::string(name) + " goes with photographs, not with scene",
+             {},
+             {}});
+    }
+  }
+}
+
 Solution Merge(const py::object& given, const py::kwargs& kwargs) {
   Keywords keywords("merge", kwargs);
   const auto call = TakeCall(&keywords);
   const SolveArguments arguments = TakeSolveArguments(&keywords, call.get());
   const py::object scene = keywords.Take("scene");
   const SceneInput input = TakeSceneInput(&keywords);
+  if (scene) RefuseOptionsOfPhotographs(kwargs);
   Photographs photographs;
   photographs.measurement = TakeMeasurementOptions(&keywords, arguments.scale);
   photographs.folder = input.images;

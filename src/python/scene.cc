@@ -46,30 +46,34 @@ void BindMap(py::module_& module, const char* name) {
   const auto map_of = [](const py::object& self) -> const Map& {
     return *self.cast<const MapOf<Map>&>().map;
   };
+  // Empty if it is not there, as whatever is no id: an intrinsic_id of None.
+  const auto find = [map_of](const py::object& self, const py::object& key) {
+    py::detail::make_caster<Key> id;
+    if (!id.load(key, true)) return py::object();
+    const auto found = map_of(self).find(py::detail::cast_op<Key>(id));
+    return found == map_of(self).end() ? py::object()
+                                       : ElementOf(found->second, self);
+  };
   py::class_<MapOf<Map>> bound(module, name, "A read-only mapping, by id.");
   bound.def("__len__", [](const MapOf<Map>& self) { return self.map->size(); })
       .def("__contains__",
-           [](const MapOf<Map>& self, const py::object& key) {
-             py::detail::make_caster<Key> id;
-             return id.load(key, true) &&
-                    self.map->count(py::detail::cast_op<Key>(id)) > 0;
+           [find](const py::object& self, const py::object& key) {
+             return static_cast<bool>(find(self, key));
            })
       .def("__getitem__",
-           [map_of](const py::object& self, const Key& key) {
-             const auto found = map_of(self).find(key);
-             if (found == map_of(self).end()) {
-               throw py::key_error(
-                   py::repr(py::cast(key)).template cast<std::string>());
+           [find](const py::object& self, const py::object& key) {
+             const py::object found = find(self, key);
+             if (!found) {
+               throw py::key_error(py::repr(key).template cast<std::string>());
              }
-             return ElementOf(found->second, self);
+             return found;
            })
       .def(
           "get",
-          [map_of](const py::object& self, const Key& key,
-                   const py::object& otherwise) {
-            const auto found = map_of(self).find(key);
-            return found == map_of(self).end() ? otherwise
-                                               : ElementOf(found->second, self);
+          [find](const py::object& self, const py::object& key,
+                 const py::object& otherwise) {
+            const py::object found = find(self, key);
+            return found ? found : otherwise;
           },
           py::arg("key"), py::arg("default") = py::none())
       .def("__iter__",

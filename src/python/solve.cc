@@ -67,7 +67,7 @@ std::vector<std::string> CalibrationNotes(const Solution& solution) {
 }
 
 void BindSummaries(py::module_& module) {
-  py::class_<StageCost>(module, "StageCost")
+  py::class_<StageCost>(module, "StageCost", "What a stage took.")
       .def_readonly("name", &StageCost::name)
       .def_readonly("wall_s", &StageCost::wall_s)
       .def_readonly("cpu_s", &StageCost::cpu_s);
@@ -143,7 +143,8 @@ void BindSummaries(py::module_& module) {
       .def_readonly("stddev_px", &KindAdjustment::stddev_px)
       .def_readonly("threshold_px", &KindAdjustment::threshold_px);
 
-  py::class_<AdjustmentSummary>(module, "AdjustmentSummary")
+  py::class_<AdjustmentSummary>(module, "AdjustmentSummary",
+                                "What the bundle adjustment did.")
       .def_readonly("initial_cost", &AdjustmentSummary::initial_cost)
       .def_readonly("final_cost", &AdjustmentSummary::final_cost)
       .def_readonly("points", &AdjustmentSummary::points)

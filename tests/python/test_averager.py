@@ -113,13 +113,22 @@ class AveragerTest(unittest.TestCase):
             lowlap.solve(self.scene, strategy=strategies[0])
         self.assertEqual(caught.exception.code, "unsupported")
 
-        for wrong in (None, np.zeros((3, 3)), "centres", (np.zeros((8, 3)), [0])):
+        for wrong in (None, np.zeros((3, 3)), "centres", (np.zeros((8, 3)), [0]),
+                      (np.zeros((8, 3)), np.zeros(8)), (np.zeros((8, 3)), None)):
             with self.subTest(wrong), self.assertRaisesRegex(lowlap.Error, "a row for each"):
                 lowlap.solve(self.scene, strategy=Failing(wrong))
         for call in (lambda mine: lowlap.solve(self.scene, strategy=mine),
                      lambda mine: lowlap.compare(self.scene, None, [mine])):
             with self.assertRaisesRegex(IndexError, "mine"):
                 call(Failing(IndexError("mine")))
+
+    def test_names_are_texts(self):
+        class Numbered(LeastSquares):
+            def name(self):
+                return 7
+
+        with self.assertRaisesRegex(TypeError, "name.* cannot be 7"):
+            lowlap.solve(self.scene, strategy=Numbered())
 
     def test_problems_outlive_the_call(self):
         kept = []

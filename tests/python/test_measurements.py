@@ -5,6 +5,8 @@ from pathlib import Path
 import lowlap
 import numpy as np
 
+from support import LeastSquares
+
 
 class ScalesTest(unittest.TestCase):
     def test_ratios_of_simulated_lengths(self):
@@ -112,6 +114,13 @@ class HostTest(unittest.TestCase):
         estimate = estimator.estimate()
         np.testing.assert_allclose(estimate.poses[4].rotation,
                                    self.truth.find_pose(4).rotation, atol=1e-12)
+
+    def test_takes_strategies_of_lowlap(self):
+        chain = lowlap.TranslationScaleEstimator(strategy=lowlap.averager("chain"))
+        self.assertIsInstance(chain, lowlap.TranslationScaleEstimator)
+        for wrong in (3, LeastSquares()):
+            with self.assertRaisesRegex(TypeError, "one of lowlap's"):
+                lowlap.TranslationScaleEstimator(strategy=wrong)
 
     def test_names_what_is_wrong(self):
         estimator = self.fill()

@@ -145,6 +145,14 @@ class MergeTest(unittest.TestCase):
         with self.assertRaises(TypeError):
             lowlap.merge(5, scene=self.scene)
 
+    def test_refuses_options_of_photographs_for_what_was_measured(self):
+        for options in ({"focal": 900.0}, {"intrinsics": "K.txt"}, {"cache": "cache"},
+                        {"pairs": "all"}, {"matcher": "flann"}, {"max_tilt": 2.0},
+                        {"two_view": "points"}, {"refine_points": True}):
+            with self.subTest(options), self.assertRaisesRegex(
+                    lowlap.Error, next(iter(options))):
+                lowlap.merge(self.parts, scene=self.scene, **options)
+
     def test_photographs_are_measured(self):
         class Stop(Exception):
             pass

@@ -27,6 +27,12 @@ class SceneTest(unittest.TestCase):
         self.assertNotIn(6, views)
         self.assertNotIn("five", views)
         self.assertIsNone(views.get(6))
+        # Ids may be None, and whatever is no id is no key.
+        self.assertIsNone(self.scene.intrinsics.get(None))
+        self.assertEqual(views.get("five", 5), 5)
+        for key in ("five", None, -1, (0, 1)):
+            with self.assertRaises(KeyError):
+                views[key]
         with self.assertRaises(KeyError):
             views[6]
         self.assertEqual([view.filename for view in views.values()],

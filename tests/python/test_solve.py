@@ -90,7 +90,7 @@ class SolveTest(unittest.TestCase):
         self.assertEqual(len(refined.scene.given_intrinsics), 1)
 
     def test_options_that_make_no_sense(self):
-        for options in ({"criterion": "luck"}, {"strategy": "no_such"},
+        for options in ({"criterion": "luck"}, {"criterion": ""}, {"strategy": "no_such"},
                         {"features": "dots"}, {"threads": -1},
                         {"refine_intrinsics": "colour"},
                         {"refine_intrinsics": True, "no_adjust": True},
