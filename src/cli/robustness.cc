@@ -171,45 +171,51 @@ void AddRobustness(CLI::App* program, Action* action) {
                 "What gets worse, separated by commas; all if left out: " +
                     Joined(RobustnessScenarioNames(), ", "))
           .SeparatedBy(',');
-  AddStrategiesFlag(command, &o.strategies);
-  AddOption(command, "--seeds", o.num_seeds, "Simulations per value")
-      .ShowDefault();
-  AddOption(command, "--tolerance", o.tolerance,
-            "A centre is right within this share of the spread")
-      .ShowDefault();
-  AddOption(command, "--time-limit", o.time_limit_s,
-            "Seconds of processor time that a strategy has for one "
-            "problem; beyond, it is not asked for larger ones")
-      .ShowDefault();
+  const Option strategies = AddStrategiesFlag(command, &o.strategies);
+  const Option seeds =
+      AddOption(command, "--seeds", o.num_seeds, "Simulations per value")
+          .ShowDefault();
+  const Option tolerance =
+      AddOption(command, "--tolerance", o.tolerance,
+                "A centre is right within this share of the spread")
+          .ShowDefault();
+  const Option time_limit =
+      AddOption(command, "--time-limit", o.time_limit_s,
+                "Seconds of processor time that a strategy has for one "
+                "problem; beyond, it is not asked for larger ones")
+          .ShowDefault();
   const Option quick =
       AddFlag(command, "--quick", o.quick,
               "The room alone, few values, small graphs: seconds");
-  const Option trust =
+  Option trust =
       AddFlag(command, "--trust", flags->trust,
               "Another study: scenes of all kinds, with everything wrong that "
               "can be simulated, are solved as solve does; counted are the "
               "cameras graded firm or doubtful against their true errors, and "
               "what is made of features that have nothing to do with each "
-              "other")
-          .Excludes(scenario)
-          .Excludes(quick);
+              "other");
   AddOption(command, "--scenes", flags->num_scenes,
             "Simulations of each of its three families")
+      .Must(Check::Positive())
       .ShowDefault()
       .Needs(trust);
-  const Option look_alikes =
+  Option look_alikes =
       AddFlag(command, "--look-alikes", flags->look_alikes,
               "Another study: photographs are rendered of places that have "
               "tiles, windows or shelves in common and nothing else; counted "
               "are the pairs that a relative pose joins, and those of one "
               "place for comparison")
-          .Excludes(scenario)
-          .Excludes(quick)
           .Excludes(trust);
   AddOption(command, "--pairs", flags->num_pairs,
             "Pairs of different places, and of one, for each pattern")
+      .Must(Check::Positive())
       .ShowDefault()
       .Needs(look_alikes);
+  for (const Option& of_curves :
+       {scenario, strategies, seeds, tolerance, time_limit, quick}) {
+    trust.Excludes(of_curves);
+    look_alikes.Excludes(of_curves);
+  }
   AddCommonFlags(command, &flags->common);
   RunWhenChosen(command, flags, StudyAndWrite, action);
 }

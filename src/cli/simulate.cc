@@ -1,5 +1,7 @@
 #include <cstdio>
+#include <filesystem>
 #include <memory>
+#include <system_error>
 
 #include "cli/command.h"
 #include "lowlap/core/internal/atomic_file.h"
@@ -25,6 +27,14 @@ Result<int> RunSimulation(const Flags& flags) {
                      "unknown kind of scene '" + flags.kind +
                          "'; known: room, corridor, ring, cloud, planar, "
                          "collinear, pure_rotation, twins");
+  }
+  std::error_code ignored;
+  const auto place = [&](const std::string& path) {
+    return std::filesystem::weakly_canonical(path, ignored);
+  };
+  if (!flags.truth.empty() && place(flags.truth) == place(flags.output)) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "--truth and --output name one file", flags.truth);
   }
   SyntheticOptions options = flags.options;
   options.kind = *kind;

@@ -1,10 +1,12 @@
-// COLMAP's two forms of a model, side by side.
+// Scenes in COLMAP's forms: the two of a model side by side, and databases.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 #include <utility>
 
+#include "adapters/colmap_database.h"
 #include "adapters/temporary_folder.h"
 #include "scene/example_scenes.h"
 #include "support/matchers.h"
@@ -44,6 +46,44 @@ TEST_F(ColmapSceneFormat, OfTwoFormsTheNamedOneIsReadElseTheBinaryOne) {
   EXPECT_EQ(NameIn("colmap"), "text.jpg");
   EXPECT_EQ(NameIn("colmap-bin"), "binary.jpg");
   EXPECT_EQ(NameIn(""), "binary.jpg");
+}
+
+TEST_F(ColmapSceneFormat, AnIntrinsicThatIsRefusedHasTheIdOfTheScene) {
+  Scene scene = SceneWithName("a.jpg");  // ids from 0, in COLMAP from 1
+  Intrinsic& panorama = scene.intrinsics.begin()->second;
+  panorama = Intrinsic();
+  panorama.model = CameraModel::kSpherical;
+  panorama.width_px = 800;
+  panorama.height_px = 600;
+  const auto refused = WriteScene(scene, Path(), "colmap-bin");
+  ASSERT_THAT(refused, IsError(ErrorCode::kUnsupported, "panorama"));
+  EXPECT_EQ(refused.error().place, "intrinsic 0");
+}
+
+TEST_F(ColmapSceneFormat, APoseOfLinesAloneGoesIntoADatabaseAndComesOut) {
+  const std::string path = folder_.Path("database.db");
+  {
+    ColmapDatabase file(path, ColmapDatabase::Version::k3_8);
+    file.AddCamera(1, 1, 800, 600, {500, 510, 400, 300});
+    for (const int id : {1, 2, 3}) {
+      file.AddImage(id, std::to_string(id) + ".jpg", 1, {10.5F, 20.25F}, 2);
+    }
+    file.AddMatches(2, 3, {0, 0});
+  }
+  auto scene = ReadScene(path);
+  ASSERT_THAT(scene, IsOk());
+  RelativePose& pose = scene->relative_poses[{1, 2}];
+  pose.views = {1, 2};
+  pose.direction = Vec3::UnitX();
+  ASSERT_THAT(WriteScene(*scene, path, "colmap-db"), IsOk());
+  SceneNotes notes;
+  const auto back = ReadScene(path, &notes);
+  ASSERT_THAT(back, IsOk());
+  ASSERT_EQ(back->relative_poses.count({1, 2}), 1u);
+  EXPECT_LT((back->relative_poses.at({1, 2}).direction - Vec3::UnitX()).norm(),
+            1e-15);
+  EXPECT_THAT(notes, ::testing::ElementsAre(
+                         ::testing::HasSubstr("matches of 1 pairs without")));
 }
 
 TEST_F(ColmapSceneFormat, AFolderWithoutTheNamedFormIsAnErrorWithTheFile) {

@@ -160,6 +160,25 @@ TEST(SceneFormats, WhatAFormatCannotHoldIsCounted) {
   }
 }
 
+// Without names, who reads the file can only count.
+TEST(SceneFormats, BalWarnsWhereAPlaceIsNotTheIdOfItsView) {
+  const TemporaryFolder folder;
+  Scene scene = testing::RandomScene(1, 3, 5, 0);
+  for (auto& [id, intrinsic] : scene.intrinsics) {
+    intrinsic.model = CameraModel::kPinhole;
+    intrinsic.distortion.clear();
+    intrinsic.fy_px = intrinsic.fx_px;
+  }
+  const auto warning = HasSubstr("camera n of the file is the n-th");
+  auto notes = WriteScene(scene, folder.Path("whole.bal"));
+  ASSERT_THAT(notes, IsOk());
+  EXPECT_THAT(*notes, ::testing::Not(::testing::Contains(warning)));
+  scene.poses.erase(scene.views.at(1).pose_id);
+  notes = WriteScene(scene, folder.Path("part.bal"));
+  ASSERT_THAT(notes, IsOk());
+  EXPECT_THAT(*notes, ::testing::Contains(warning));
+}
+
 TEST(SceneFormats, DamagedTextGivesAValidSceneOrAnErrorWithItsFile) {
   const TemporaryFolder folder;
   Random random(9);

@@ -115,6 +115,21 @@ TEST(Tum, TimestampsAreIdsOtherwise) {
   }
 }
 
+TEST(Tum, TimestampsThatAreIdsAreTrueCamerasOfTheScene) {
+  const TemporaryFolder folder;
+  Scene scene = testing::RandomScene(1, 3, 5, 0);
+  for (auto& [id, view] : scene.views) {
+    view.filename = "kitchen" + std::to_string(7 - id.value()) + ".jpg";
+  }
+  const std::string path = folder.Path("scene.tum");
+  ASSERT_THAT(WriteScene(scene, path), IsOk());
+  const auto truth = ReadGroundTruth(path, scene);
+  ASSERT_THAT(truth, IsOk());
+  for (const auto& [id, pose] : *truth) {
+    EXPECT_EQ(pose.center, scene.FindPose(id)->center);
+  }
+}
+
 TEST(Kitti, MalformedFilesAreErrorsWithALine) {
   for (const auto& [text, message] :
        std::vector<std::pair<std::string, std::string>>{

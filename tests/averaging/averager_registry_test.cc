@@ -124,6 +124,13 @@ class LineAverager : public TranslationAverager {
   LineOptions options_;
 };
 
+TEST(AveragerRegistry, AllStandsForEveryNameOnce) {
+  const AveragerRegistry registry = AveragerRegistry::WithBuiltIns();
+  EXPECT_EQ(registry.Expand({"all", "chain"}), registry.Names());
+  EXPECT_THAT(registry.Expand({"magic", "lud", "magic"}),
+              ElementsAre("magic", "lud"));
+}
+
 TEST(AveragerRegistry, TakesStrategiesFromOutside) {
   AveragerRegistry registry = AveragerRegistry::WithBuiltIns();
   const auto make = [](const LineOptions& options) {

@@ -64,6 +64,22 @@ TEST_F(BadInput, OptionsThatWouldBeIgnored) {
   ExpectRefused(evaluate + " --expect 0-1", "requires --relative-poses");
   ExpectRefused(evaluate + " --relative-poses --gt-lines " + Path("file"),
                 "excludes");
+  ExpectRefused(
+      "simulate -o " + Path("out") + " --truth " + folder_.string() + "/./out",
+      "name one file");
+  // The other studies have their own strategies and simulations.
+  for (const char* study : {"--trust", "--look-alikes"}) {
+    for (const char* of_curves : {"--strategies lud", "--seeds 3",
+                                  "--tolerance 0.1", "--time-limit 1"}) {
+      ExpectRefused("robustness" + Out() + study + " " + of_curves, "excludes");
+    }
+  }
+}
+
+// A folder for another number of trials would refuse the right one.
+TEST_F(BadInput, NumbersOfTrialsLeaveNoFolder) {
+  ExpectRefused("robustness --trust --scenes 0" + Out(), "--scenes");
+  ExpectRefused("robustness --look-alikes --pairs -1" + Out(), "--pairs");
 }
 
 TEST_F(BadInput, ScenesThatCannotBeRead) {

@@ -171,6 +171,22 @@ TEST(GroundTruthFromScene, DoesNotGoByIdAgainstNames) {
   EXPECT_EQ(other.error().code, ErrorCode::kInsufficientData);
 }
 
+// Trajectories whose timestamps stand for ids.
+TEST(GroundTruthFromScene, GoesByIdWhereNamesAreBothNoMatchAndIds) {
+  const Scene scene = SceneOf({{"", "b.jpg"}, {"", "a.jpg"}, {"", "c.jpg"}});
+  Scene truth = SceneOf({{"", "0"}, {"", "1"}});
+  PoseEveryView(&truth);
+  const auto by_id = GroundTruthFromScene(truth, scene);
+  ASSERT_TRUE(by_id.has_value()) << by_id.error().ToString();
+  ASSERT_EQ(by_id->size(), 2u);
+  EXPECT_EQ(by_id->at(1).center.x(), 1);
+  // Names that match come first.
+  const auto by_name =
+      GroundTruthFromScene(truth, SceneOf({{"", "1.jpg"}, {"", "0.jpg"}}));
+  ASSERT_TRUE(by_name.has_value());
+  EXPECT_EQ(by_name->at(0).center.x(), 1);
+}
+
 TEST(Summarize, GivesMeanMedianMaxAndRmse) {
   EXPECT_EQ(Summarize({}).count, 0);
   EXPECT_EQ(Summarize({}).mean, 0);

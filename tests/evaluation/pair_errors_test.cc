@@ -140,5 +140,15 @@ TEST(PairEvaluation, IsPrintedAndWritten) {
   EXPECT_FALSE(json["pairs"][2].contains("rotation_error_deg"));
 }
 
+TEST(PairEvaluation, NoErrorsAreNoZeros) {
+  Scene scene = FiveViews();
+  scene.relative_poses.clear();
+  const auto result = EvaluatePairs(scene, GroundTruthFromScene(scene));
+  ASSERT_TRUE(result);
+  EXPECT_THAT(ToText(*result),
+              ::testing::HasSubstr("rotation  error (degrees): -\n"));
+  EXPECT_THAT(ToText(*result), ::testing::Not(::testing::HasSubstr("0.000")));
+}
+
 }  // namespace
 }  // namespace lowlap

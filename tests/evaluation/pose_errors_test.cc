@@ -166,6 +166,20 @@ TEST(EvaluatePoses, OnlyViewsWithTruthCount) {
   EXPECT_LT(result.position.max, 1e-11);
 }
 
+TEST(EvaluatePoses, FoldersTellImagesOfOneNameApart) {
+  const Scene truth = RandomScene(4, 11);
+  Scene solution = truth;
+  for (auto& [id, view] : solution.views) {
+    view.local_path = "cam" + std::to_string(id.value());
+    view.filename = "0001.jpg";
+  }
+  solution.poses.erase(106);
+  const PoseEvaluation result =
+      EvaluatePoses(solution, GroundTruthFromScene(truth));
+  EXPECT_EQ(result.views[1].name, "cam2/0001.jpg");
+  EXPECT_THAT(result.unsolved, ElementsAre("cam6/0001.jpg"));
+}
+
 TEST(EvaluatePoses, TextAndJsonSayTheSame) {
   const Scene truth = RandomScene(4, 10);
   Scene solution = truth;

@@ -222,6 +222,15 @@ TEST(Ablation, OptionsAndTruthAreChecked) {
   EXPECT_EQ(ablation.error().code, ErrorCode::kInsufficientData);
 }
 
+TEST(Ablation, ErrorsOfNoRatioAreAbsentNotZero) {
+  Ablation ablation;
+  ablation.features.resize(2);
+  ablation.features[1].abs_log_ratio.count = 1;
+  const auto json = nlohmann::json::parse(ToJson(ablation));
+  EXPECT_FALSE(json["features"][0]["ratios"].contains("abs_log_error_median"));
+  EXPECT_TRUE(json["features"][1]["ratios"].contains("abs_log_error_median"));
+}
+
 TEST(Ablation, FilesAreWrittenOrTheFolderIsNamed) {
   const fs::path folder = fs::temp_directory_path() /
                           ("lowlap_ablate_" + std::to_string(::getpid()));

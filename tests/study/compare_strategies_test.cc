@@ -273,6 +273,14 @@ TEST(ComparisonOutput, FailuresAreRowsWithTheirMessage) {
   EXPECT_TRUE(DrawComparison(comparison));
 }
 
+TEST(ComparisonOutput, WithoutAReferenceNoneIsNamed) {
+  Comparison comparison;
+  comparison.results.resize(1);
+  comparison.results.front().strategy = "lud";
+  EXPECT_THAT(ToText(comparison), HasSubstr("no strategy places any camera"));
+  EXPECT_THAT(ToText(comparison), Not(HasSubstr("''")));
+}
+
 TEST(ComparisonOutput, ThreadsChangeNothingButTimes) {
   const SyntheticScene room = RichRoom();
   CompareOptions options = WithTruth(room);

@@ -312,6 +312,15 @@ TEST(Robustness, OptionsAreChecked) {
   check([](Options* o) { o->time_limit_s = 0; }, "time limit");
 }
 
+TEST(Robustness, AllStandsForEveryStrategy) {
+  RobustnessOptions options = Small();
+  options.strategies = {"lud:loss_width=1", "all", "lud"};
+  const auto study = PlanRobustnessStudy(options);
+  ASSERT_TRUE(study) << study.error().ToString();
+  EXPECT_EQ(study->options.strategies.size(),
+            1 + options.registry.Names().size());
+}
+
 TEST(Robustness, EveryScenarioCanBeSimulated) {
   for (const std::string& name : RobustnessScenarioNames()) {
     const auto scenarios = MakeRobustnessScenarios(name, /*quick=*/false);

@@ -180,6 +180,20 @@ Status AveragerRegistry::Register(Filter filter) {
   return status;
 }
 
+std::vector<std::string> AveragerRegistry::Expand(
+    const std::vector<std::string>& requests) const {
+  std::vector<std::string> expanded;
+  for (const std::string& request : requests) {
+    for (const std::string& name :
+         request == "all" ? Names() : std::vector<std::string>{request}) {
+      if (std::find(expanded.begin(), expanded.end(), name) == expanded.end()) {
+        expanded.push_back(name);
+      }
+    }
+  }
+  return expanded;
+}
+
 std::vector<std::string> AveragerRegistry::Names() const {
   std::vector<std::string> names;
   for (const Strategy& strategy : strategies_) names.push_back(strategy.name);

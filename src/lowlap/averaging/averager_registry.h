@@ -62,6 +62,9 @@ class AveragerRegistry {
   const std::vector<Strategy>& strategies() const { return strategies_; }
   const std::vector<Filter>& filters() const { return filters_; }
   std::vector<std::string> Names() const;
+  /// Requests with every name in place of "all", each of them once.
+  std::vector<std::string> Expand(
+      const std::vector<std::string>& requests) const;
 
   /// kInvalidArgument, with what is known, for an unknown name or key, or a
   /// value that is not one of the option.

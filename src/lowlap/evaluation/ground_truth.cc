@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <optional>
 
+#include "lowlap/evaluation/internal/view_path.h"
 #include "lowlap/evaluation/pose_errors.h"
 
 namespace lowlap {
@@ -18,11 +19,6 @@ std::string WithoutExtension(const std::string& name) {
       dot + 1 < name.size() &&
       std::isalpha(static_cast<unsigned char>(name[dot + 1])) != 0;
   return has_extension ? name.substr(0, dot) : name;
-}
-
-std::string PathOf(const View& view) {
-  return view.local_path.empty() ? view.filename
-                                 : view.local_path + "/" + view.filename;
 }
 
 /// Path, file name, and both without extension.
@@ -107,11 +103,18 @@ Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
                                          const Scene& scene) {
   GroundTruth by_id = GroundTruthFromScene(truth);
   std::map<std::string, Pose> by_name;
+  bool names_are_ids = true;
   for (const auto& [id, pose] : by_id) {
-    by_name.emplace(PathOf(truth.views.at(id)), pose);
+    const std::string name = PathOf(truth.views.at(id));
+    names_are_ids = names_are_ids && name == std::to_string(id.value());
+    by_name.emplace(name, pose);
   }
   if (by_name.empty() || by_name.size() < by_id.size()) return by_id;
-  return GroundTruthByName(scene, by_name);
+  auto named = GroundTruthByName(scene, by_name);
+  const bool is_nothing_named =
+      !named && named.error().code == ErrorCode::kInsufficientData;
+  if (is_nothing_named && names_are_ids) return by_id;
+  return named;
 }
 
 }  // namespace lowlap

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "lowlap/evaluation/internal/view_path.h"
 #include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
@@ -59,10 +60,10 @@ PoseEvaluation EvaluatePoses(const std::map<ViewId, View>& views,
       cameras.push_back({&solved->second, &true_pose->second});
       ViewPoseError error;
       error.view = id;
-      error.name = view.filename;
+      error.name = PathOf(view);
       result.views.push_back(std::move(error));
     } else {
-      result.unsolved.push_back(view.filename);
+      result.unsolved.push_back(PathOf(view));
     }
   }
   result.num_solved = static_cast<int>(cameras.size());

@@ -29,7 +29,8 @@ Result<GroundTruth> GroundTruthByName(
 GroundTruth GroundTruthFromScene(const Scene& truth);
 
 /// The same for the views of another scene: by image name (GroundTruthByName),
-/// or by view id if two of its posed views share one, as those without names.
+/// or by view id if two of its posed views share one, as those without names,
+/// or if no name matches and all are but ids, as timestamps may be.
 Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
                                          const Scene& scene);
 
@@ -56,7 +57,7 @@ ErrorStatistics Summarize(std::vector<double> errors);
 
 struct ViewPoseError {
   ViewId view = kInvalidId;
-  std::string name;           // image name
+  std::string name;           // the path below the image folder
   double position_error = 0;  // in the truth's unit
   double rotation_error_deg = 0;
 };
@@ -84,7 +85,7 @@ struct PoseEvaluation {
   std::string note;    // why the scope is not kFull; else empty
   int num_total = 0;   // views of the scene that have a true pose
   int num_solved = 0;  // of these, with a solved pose
-  std::vector<std::string> unsolved;  // image names of the others
+  std::vector<std::string> unsolved;  // names of the others
   Similarity truth_from_solution;     // identity unless kFull
   double frame_disagreement_deg = 0;  // 0 unless kFull
   std::vector<ViewPoseError> views;   // the solved ones, by view id

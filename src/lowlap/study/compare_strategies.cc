@@ -20,19 +20,9 @@ struct NamedAverager {
 Result<std::vector<NamedAverager>> MakeAveragers(
     const CompareOptions& options) {
   std::vector<NamedAverager> averagers;
-  for (const std::string& request : options.strategies) {
-    const std::vector<std::string> meant =
-        request == "all" ? options.registry.Names()
-                         : std::vector<std::string>{request};
-    for (const std::string& name : meant) {
-      if (std::any_of(
-              averagers.begin(), averagers.end(),
-              [&](const NamedAverager& each) { return each.name == name; })) {
-        continue;
-      }
-      LOWLAP_ASSIGN_OR_RETURN(const auto averager, options.registry.Make(name));
-      averagers.push_back({name, averager});
-    }
+  for (const std::string& name : options.registry.Expand(options.strategies)) {
+    LOWLAP_ASSIGN_OR_RETURN(const auto averager, options.registry.Make(name));
+    averagers.push_back({name, averager});
   }
   if (averagers.empty()) {
     return MakeError(ErrorCode::kInvalidArgument,

@@ -1,5 +1,6 @@
 #include "third_party_adapters/bundler/internal/scene_format.h"
 
+#include <cstdint>
 #include <filesystem>
 #include <utility>
 
@@ -94,10 +95,28 @@ Result<Scene> ParseBalScene(std::string_view text, const std::string& file,
   return SceneFromModel(model, notes);
 }
 
+/// Whether the places of solved views, which are their ids when the file is
+/// read, are the ids that they have.
+bool PlacesAreIds(const Scene& scene) {
+  std::uint32_t place = 0;
+  for (const auto& entry : scene.views) {
+    const ViewId id = entry.first;
+    if (!scene.FindPose(id) || !scene.FindIntrinsic(id)) continue;
+    if (id != place) return false;
+    ++place;
+  }
+  return true;
+}
+
 Result<std::string> FormatBalScene(const Scene& scene, SceneNotes* notes) {
   LOWLAP_ASSIGN_OR_RETURN(
       const CenteredModel model,
       ModelFromScene(scene, RadialForm::kDistorts, Unsolved::kLeftOut, notes));
+  if (!PlacesAreIds(scene)) {
+    notes->push_back(
+        "the solved views' ids are not 0, 1, 2, ...: camera n of the file is "
+        "the n-th of them in the order of ids, from 0");
+  }
   return FormatBal(model);
 }
 

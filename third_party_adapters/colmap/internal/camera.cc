@@ -204,10 +204,8 @@ Result<Camera> FromIntrinsic(const Intrinsic& intrinsic, std::uint32_t id) {
     case CameraModel::kSpherical:
       if (!IsWholeSphere(intrinsic.width_px, intrinsic.height_px)) {
         return MakeError(ErrorCode::kUnsupported,
-                         "intrinsic " + std::to_string(id) +
-                             " is a panorama of " +
-                             std::to_string(intrinsic.width_px) + " x " +
-                             std::to_string(intrinsic.height_px) +
+                         "a panorama of " + std::to_string(intrinsic.width_px) +
+                             " x " + std::to_string(intrinsic.height_px) +
                              "; COLMAP's are twice as wide as high");
       }
       camera.model = *ModelFromName("EQUIRECTANGULAR");

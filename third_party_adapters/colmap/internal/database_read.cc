@@ -174,9 +174,10 @@ class DatabaseReader {
         continue;
       }
       auto matches = Matches(row, *views);
-      if (matches.empty() || config == kDegenerate) continue;
+      if (config == kDegenerate) continue;
+      // Also one of lines alone, which has no matches here.
       ReadPose(row, *views, matches);
-      database_.matches[*views] = std::move(matches);
+      if (!matches.empty()) database_.matches[*views] = std::move(matches);
     }
   }
 
@@ -269,8 +270,11 @@ Result<Scene> ReadDatabaseScene(const std::string& path, SceneNotes* notes) {
   scene.relative_poses = std::move(database->relative_poses);
   scene.point_tracks = BuildPointTracks(scene);
   notes->insert(notes->end(), database->notes.begin(), database->notes.end());
-  const std::size_t without =
-      database->matches.size() - scene.relative_poses.size();
+  const auto without =
+      std::count_if(database->matches.begin(), database->matches.end(),
+                    [&](const auto& entry) {
+                      return scene.relative_poses.count(entry.first) == 0;
+                    });
   if (without > 0) {
     notes->push_back("the matches of " + std::to_string(without) +
                      " pairs without a stored relative pose were left out; "

@@ -86,7 +86,11 @@ class Exporter {
       const std::uint32_t camera_id = view.intrinsic_id.value() + shift_;
       if (cameras_.count(camera_id) == 0) {
         auto camera = FromIntrinsic(*intrinsic, camera_id);
-        if (!camera) throw Failure{std::move(camera.error())};
+        if (!camera) {
+          camera.error().place =
+              "intrinsic " + std::to_string(view.intrinsic_id.value());
+          throw Failure{std::move(camera.error())};
+        }
         cameras_[camera_id] = *ToIntrinsic(*camera);
         model_.cameras.push_back(std::move(*camera));
       }

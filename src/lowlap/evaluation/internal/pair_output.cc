@@ -20,6 +20,10 @@ std::string GroupText(const char* name, const PairGroupErrors& group) {
              group.num_pairs, group.num_failed, group.num_without_pose);
   for (const auto& [what, q] : {std::pair("rotation ", &group.rotation_deg),
                                 std::pair("direction", &group.direction_deg)}) {
+    if (q->count == 0) {
+      text += Format("  %s error (degrees): -\n", what);
+      continue;
+    }
     text += Format("  %s error (degrees): median %.3f, 90%% %.3f, worst %.3f\n",
                    what, q->median, q->p90, q->worst);
   }

@@ -184,9 +184,11 @@ Json CasesJson(const std::vector<AblationCase>& cases) {
     json["placed"] = entry.num_placed;
     json["evaluation"] = Json::parse(ToJson(entry.errors));
     json["ratios"] = {{"triplets", entry.ratios.num_triplets},
-                      {"meaningful", entry.ratios.num_meaningful},
-                      {"abs_log_error_median", entry.abs_log_ratio.median},
-                      {"abs_log_error_max", entry.abs_log_ratio.max}};
+                      {"meaningful", entry.ratios.num_meaningful}};
+    if (entry.abs_log_ratio.count > 0) {
+      json["ratios"]["abs_log_error_median"] = entry.abs_log_ratio.median;
+      json["ratios"]["abs_log_error_max"] = entry.abs_log_ratio.max;
+    }
     if (const AdjustmentSummary* adjustment = AdjustmentOf(entry)) {
       json["held_by"] = {{"coplanar_pairs", NumPairs(*adjustment)},
                          {"planes", NumPlanes(*adjustment)},

@@ -99,6 +99,8 @@ std::string ToText(const Comparison& comparison) {
   text += comparison.has_truth
               ? "error: mean distance of the cameras placed to the true ones, "
                 "in the truth's unit\n"
+          : comparison.reference.empty()
+              ? "difference: none, as no strategy places any camera\n"
               : "difference: mean distance to the cameras of '" +
                     comparison.reference +
                     "', in its mean baseline; there are no true cameras to "

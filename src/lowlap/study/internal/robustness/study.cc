@@ -292,7 +292,7 @@ Status RobustnessOptions::Validate() const {
   for (const std::string& name : scenarios) {
     LOWLAP_RETURN_IF_ERROR(MakeRobustnessScenarios(name, quick));
   }
-  for (const std::string& name : strategies) {
+  for (const std::string& name : registry.Expand(strategies)) {
     LOWLAP_RETURN_IF_ERROR(registry.Make(name));
   }
   return {};
@@ -305,11 +305,10 @@ Result<RobustnessStudy> PlanRobustnessStudy(const RobustnessOptions& options) {
   if (options.scenarios.empty()) {
     study.options.scenarios = RobustnessScenarioNames();
   }
-  if (options.strategies.empty()) {
-    study.options.strategies = options.registry.Names();
-  }
+  study.options.strategies = options.strategies.empty()
+                                 ? options.registry.Names()
+                                 : options.registry.Expand(options.strategies);
   DropRepetitions(&study.options.scenarios);
-  DropRepetitions(&study.options.strategies);
   for (const std::string& name : study.options.scenarios) {
     LOWLAP_ASSIGN_OR_RETURN(auto scenarios,
                             MakeRobustnessScenarios(name, options.quick));

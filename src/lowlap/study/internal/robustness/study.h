@@ -19,7 +19,7 @@ struct RobustnessOptions {
   std::vector<std::string> scenarios;  // empty: all
   /// Where strategies come from; register your own there.
   AveragerRegistry registry = AveragerRegistry::WithBuiltIns();
-  std::vector<std::string> strategies;  // empty: all
+  std::vector<std::string> strategies;  // empty or "all": all
   int num_seeds = 2;                    // simulations per level
   bool quick = false;
   /// A centre is right within this share of the spread of the true centres.

@@ -8,6 +8,7 @@
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/report/internal/svg_plot.h"
+#include "lowlap/study/internal/trust/position_errors.h"
 #include "lowlap/study/internal/trust/table.h"
 
 namespace lowlap {
@@ -182,7 +183,7 @@ std::string SummaryText(const TrustStudy& study) {
          ".\nfirm off: graded firm, and off by more than " +
          percent(kGoodCamera) +
          " and five stated deviations; silent: graded firm, and wrong; "
-         "doubted: good, and not firm.\n\n" +
+         "doubted: good, and not firm; share: doubted of the good.\n\n" +
          ToAlignedText(TrustTable(study)) + "\nCameras that a reason names:\n" +
          ToAlignedText(ReasonTable(study)) + "\nSilent, by seed:\n" +
          SilentText(study) +
