@@ -59,9 +59,9 @@ struct KindAdjustment {
 
 /// One run of the solver.
 struct SolveReport {
-  std::string
-      stage;  // "fixed rotations", "everything", "round 1", ..., "final";
-              // "again: ..." with a wide gate
+  /// "fixed rotations", "everything", "round 1", ..., "final"; "again: ..."
+  /// with a wide gate.
+  std::string stage;
   std::size_t residuals = 0;
   std::size_t parameters = 0;
   double initial_cost = 0;  // in units of the noise, halved squares
