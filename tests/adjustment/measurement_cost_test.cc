@@ -22,7 +22,7 @@ double CostOf(const Scene& scene) {
   state.points = LoadPoints(scene, cameras);
   state.lines = LoadLines(scene, cameras, false);
   const Result<double> cost =
-      MeasurementCost(cameras, state, {kNoise, kNoise, kNoise}, {});
+      MeasurementCost(cameras, state, {kNoise, kNoise, kNoise}, 0, {});
   return cost ? *cost : std::numeric_limits<double>::quiet_NaN();
 }
 

@@ -68,14 +68,12 @@ TEST(OptimumSearchTest, BringsBackWhatDriftPutOutOfUse) {
   }
 }
 
-TEST(OptimumSearchTest, KeepsTheFirstOptimumIfNothingExplainsMore) {
+TEST(OptimumSearchTest, LeavesGoodScenesAsGood) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     TestScene test = ChainOfLines(seed);
-    const AdjustmentSummary summary =
-        test::BuildAndAdjust(&test.scene, Options());
+    test::BuildAndAdjust(&test.scene, Options());
     EXPECT_LT(ComparePoses(test.true_poses, test.scene).mean_center, 0.003)
         << "seed " << seed;
-    EXPECT_EQ(summary.final_cost, summary.solves.back().final_cost);
   }
 }
 

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <ctime>
 #include <string>
 
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
@@ -40,28 +39,6 @@ INSTANTIATE_TEST_SUITE_P(Shapes, BigGraphs,
                          ::testing::Values(GraphShape::kStreet,
                                            GraphShape::kTown,
                                            GraphShape::kRandom));
-
-// Views that directions place one after the other, and a street where every
-// pair is a part of its own.
-TEST(BigGraph, TwoThousandViewsWithoutRatiosTakeSeconds) {
-  for (const bool is_town : {true, false}) {
-    BigGraphOptions options;
-    options.shape = is_town ? GraphShape::kTown : GraphShape::kStreet;
-    options.num_views = 2000;
-    options.num_edges = is_town ? 10'000 : 1999;
-    options.num_ratios = 0;
-    options.direction_stddev_rad = 0.001;
-    const BigGraph graph = MakeBigGraph(options);
-    const std::clock_t start = std::clock();
-    const auto solution =
-        GraphScalesAverager().Solve(graph.made.problem, RunContext());
-    const double elapsed_s =
-        static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
-    ASSERT_TRUE(solution);
-    EXPECT_EQ(solution->NumPlaced(), is_town ? 2000 : 2);
-    EXPECT_LT(elapsed_s, 8);
-  }
-}
 
 }  // namespace
 }  // namespace lowlap

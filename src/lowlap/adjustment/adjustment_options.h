@@ -29,7 +29,7 @@ enum class CoplanarTies {
   /// that the whole scene shares.
   kPairs,
   /// Those at first; at the end the planes of the scene with all that is on
-  /// them, and the pairs with a line that is on none.
+  /// them, and the pairs only where there are no planes.
   kPlanes,
   kBoth,  // at the end both
 };

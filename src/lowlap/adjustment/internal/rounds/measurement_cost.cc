@@ -1,5 +1,6 @@
 #include "lowlap/adjustment/internal/rounds/measurement_cost.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -7,6 +8,15 @@
 
 namespace lowlap {
 namespace {
+
+template <class Track>
+std::vector<Track> SeenByMoreThanTwo(const std::vector<Track>& tracks) {
+  std::vector<Track> redundant;
+  for (const Track& track : tracks) {
+    if (track.candidates.size() > 2) redundant.push_back(track);
+  }
+  return redundant;
+}
 
 template <class Track>
 Result<double> KindCost(const CameraSet& cameras, const NoiseScale& noise,
@@ -17,22 +27,15 @@ Result<double> KindCost(const CameraSet& cameras, const NoiseScale& noise,
   limits.max_relative_depth_stddev = kInfinity;
   limits.min_two_view_overlap = 0;
   LOWLAP_RETURN_IF_ERROR(TriangulateAll(cameras, limits, context, &tracks));
+  const double outside = noise.threshold_px * noise.threshold_px;
   double squares = 0;
   for (const Track& track : tracks) {
-    if (track.candidates.size() <= 2) continue;
-    const bool known = track.IsLandmark();
-    std::size_t outside = 0;
     for (const auto& candidate : track.candidates) {
-      if (known && candidate.used) {
-        const double error_px = ErrorPx(cameras, track, candidate);
-        squares += error_px * error_px;
-      } else {
-        ++outside;
-      }
+      const double error_px =
+          candidate.used ? ErrorPx(cameras, track, candidate) : kInfinity;
+      squares += std::min(error_px * error_px, outside);
     }
-    if (!known && outside > 0) --outside;
-    squares +=
-        static_cast<double>(outside) * noise.threshold_px * noise.threshold_px;
+    if (!track.IsLandmark()) squares -= outside;
   }
   return squares / (noise.stddev_px * noise.stddev_px);
 }
@@ -42,12 +45,17 @@ Result<double> KindCost(const CameraSet& cameras, const NoiseScale& noise,
 Result<double> MeasurementCost(const CameraSet& cameras,
                                const StructureState& state,
                                const NoiseLevels& noise,
+                               double point_shape_exponent,
                                const RunContext& context) {
-  LOWLAP_ASSIGN_OR_RETURN(const double points, KindCost(cameras, noise.points,
-                                                        context, state.points));
-  LOWLAP_ASSIGN_OR_RETURN(const double lines,
-                          KindCost(cameras, noise.lines, context, state.lines));
-  return points + lines;
+  std::vector<PointTrackState> points = SeenByMoreThanTwo(state.points);
+  WhitenPoints(point_shape_exponent, &points);
+  LOWLAP_ASSIGN_OR_RETURN(
+      const double of_points,
+      KindCost(cameras, noise.points, context, std::move(points)));
+  LOWLAP_ASSIGN_OR_RETURN(
+      const double of_lines,
+      KindCost(cameras, noise.lines, context, SeenByMoreThanTwo(state.lines)));
+  return of_points + of_lines;
 }
 
 }  // namespace lowlap

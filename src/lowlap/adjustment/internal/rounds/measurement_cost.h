@@ -13,7 +13,8 @@ namespace lowlap {
 /// level s and the threshold t of its kind. Each track is triangulated anew,
 /// however well its landmark is determined; one without a landmark keeps one
 /// candidate that would fit any. Two sets of cameras can be compared by it at
-/// the same noise and the same whitening, whatever each had in use.
+/// the same noise and shapes of points (`point_shape_exponent`, WhitenPoints),
+/// whatever each had in use.
 ///
 /// Tracks of two views are not asked: they were chosen by a relative pose, and
 /// bear out its errors.
@@ -22,6 +23,7 @@ namespace lowlap {
 Result<double> MeasurementCost(const CameraSet& cameras,
                                const StructureState& state,
                                const NoiseLevels& noise,
+                               double point_shape_exponent,
                                const RunContext& context);
 
 }  // namespace lowlap

@@ -15,31 +15,19 @@
 namespace lowlap {
 namespace {
 
+// Before the observations are settled, a rough optimum will do.
+constexpr double kFirstTolerance = 1e-3;
 constexpr double kRoughTolerance = 1e-5;
+constexpr double kPlaneTolerance = 1e-4;
 // Pairs could be exchanged for one another for ever.
 constexpr int kRoundsWithNewPairs = 3;
 constexpr int kRoundsWithPlanes = 3;
 // The share of the observations that may still change when planes take over.
 constexpr double kToleranceBeforePlanes = 1e-2;
-constexpr double kPlaneTolerance = 1e-4;
-constexpr double kFirstTolerance = 1e-3;
 // A wide gate is reached step by step: what is far off because the cameras are
 // comes closer with what is let in first, and what is false does not.
 constexpr double kGateStep = 3;  // thresholds
 constexpr int kGateSteps = 3;
-
-// A plane says of both lines what their pair says.
-void ReleasePairsOnPlanes(StructureState* state) {
-  std::vector<char> on_plane(state->lines.size(), 0);
-  for (const PlaneState& plane : state->planes) {
-    for (const PlaneTie& tie : plane.lines) on_plane[tie.landmark] = 1;
-  }
-  for (PairState& pair : state->pairs) {
-    if (on_plane[pair.first] != 0 && on_plane[pair.second] != 0) {
-      pair.used = false;
-    }
-  }
-}
 
 NoiseLevels Widened(NoiseLevels noise, double gate) {
   noise.points.threshold_px *= gate;
@@ -66,13 +54,10 @@ Status OptimumSearch::Run() {
   } else {
     LOWLAP_RETURN_IF_ERROR(SearchAgain());
   }
-  return Solve("final", false, options_.function_tolerance);
+  return Solve("final", false, 0);
 }
 
 Status OptimumSearch::Begin() {
-  // Before the observations are settled, a rough optimum will do.
-  const double tolerance =
-      std::max(options_.function_tolerance, kFirstTolerance);
   EstimateNoise();
   LOWLAP_RETURN_IF_ERROR(FindDirections());
   if (options_.use_lines && options_.use_coplanar) {
@@ -85,17 +70,15 @@ Status OptimumSearch::Begin() {
   summary_->lines.initial_rmse_px = initial[1];
   summary_->coplanar.initial_rmse_px = initial[2];
   if (options_.fixed_rotations_first) {
-    LOWLAP_RETURN_IF_ERROR(Solve("fixed rotations", true, tolerance));
+    LOWLAP_RETURN_IF_ERROR(Solve("fixed rotations", true, kFirstTolerance));
   }
   // Without its plane a wall leaves a valley, along which the last digits of
   // the cost would lead far away.
-  return Solve("everything", false, tolerance);
+  return Solve("everything", false, kFirstTolerance);
 }
 
 // Ends with planes, where there are any, or with observations at rest.
 Status OptimumSearch::SettleObservations() {
-  const double tolerance =
-      std::max(options_.function_tolerance, kRoughTolerance);
   bool with_planes = options_.use_lines && options_.use_coplanar &&
                      options_.coplanar_ties != CoplanarTies::kPairs;
   now_->at_rest = options_.max_outlier_rounds == 0;
@@ -113,7 +96,7 @@ Status OptimumSearch::SettleObservations() {
     ++summary_->outlier_rounds;
     now_->state.directions = GroupDirections(sights_, now_->cameras);
     LOWLAP_RETURN_IF_ERROR(
-        Solve("round " + std::to_string(round), false, tolerance));
+        Solve("round " + std::to_string(round), false, kRoughTolerance));
   }
   if (with_planes) LOWLAP_RETURN_IF_ERROR(LinkPlanes());
   return {};
@@ -122,11 +105,11 @@ Status OptimumSearch::SettleObservations() {
 // Every round draws together what lies on a plane.
 Status OptimumSearch::TiePlanes() {
   const int rounds = now_->state.planes.empty() ? 0 : kRoundsWithPlanes;
+  if (rounds > 0 && options_.coplanar_ties == CoplanarTies::kPlanes) {
+    for (PairState& pair : now_->state.pairs) pair.used = false;
+  }
   for (int round = 1; round <= rounds; ++round) {
     if (round > 1) LOWLAP_RETURN_IF_ERROR(LinkPlanes());
-    if (options_.coplanar_ties == CoplanarTies::kPlanes) {
-      ReleasePairsOnPlanes(&now_->state);
-    }
     LOWLAP_RETURN_IF_ERROR(
         Solve("planes " + std::to_string(round), false, kPlaneTolerance));
     if (options_.max_outlier_rounds == 0) continue;
@@ -185,26 +168,24 @@ Status OptimumSearch::SearchAgain() {
 
 // By more than one observation says.
 Result<bool> OptimumSearch::ExplainsMoreThan(const Optimum& other) const {
-  StructureState state = now_->state;
-  WhitenPoints(other.point_shape_exponent, &state.points);
-  LOWLAP_ASSIGN_OR_RETURN(
-      const double cost,
-      MeasurementCost(now_->cameras, state, other.noise, context_));
-  LOWLAP_ASSIGN_OR_RETURN(
-      const double other_cost,
-      MeasurementCost(other.cameras, other.state, other.noise, context_));
+  const auto cost = [&](const Optimum& optimum) {
+    return MeasurementCost(optimum.cameras, optimum.state, other.noise,
+                           other.point_shape_exponent, context_);
+  };
+  LOWLAP_ASSIGN_OR_RETURN(const double here, cost(*now_));
+  LOWLAP_ASSIGN_OR_RETURN(const double there, cost(other));
   const auto say = [](const NoiseScale& noise) {
     return std::pow(noise.threshold_px / noise.stddev_px, 2);
   };
-  const double least =
-      std::min(say(other.noise.points), say(other.noise.lines));
-  return cost + least < other_cost;
+  return here + std::min(say(other.noise.points), say(other.noise.lines)) <
+         there;
 }
 
 Status OptimumSearch::Solve(const std::string& stage, bool fixed_rotations,
-                            double function_tolerance) {
-  const SolveRequest request{stage_prefix_ + stage, fixed_rotations,
-                             function_tolerance, now_->noise};
+                            double least_tolerance) {
+  const SolveRequest request{
+      stage_prefix_ + stage, fixed_rotations,
+      std::max(options_.function_tolerance, least_tolerance), now_->noise};
   LOWLAP_ASSIGN_OR_RETURN(now_->last, SolveOnce(options_, request, context_,
                                                 &now_->cameras, &now_->state));
   // Segments are undistorted with the intrinsics of the last solve.

@@ -52,8 +52,9 @@ class OptimumSearch {
   Result<bool> WidenGate();
   Result<bool> ExplainsMoreThan(const Optimum& other) const;
 
+  /// To the tolerance of the options, or to this one if that is greater.
   Status Solve(const std::string& stage, bool fixed_rotations,
-               double function_tolerance);
+               double least_tolerance);
   void EstimateNoise();
   Status FindDirections();
   Status LinkPlanes();
