@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "averaging/true_ratios.h"
+#include "averaging/well_measured_scene.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/averaging/scene_poses.h"
 
@@ -19,20 +19,6 @@ using ::testing::ElementsAre;
 using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-SyntheticScene WellMeasuredScene(const std::string& pairs) {
-  SyntheticOptions options;
-  options.num_views = 8;
-  options.pairs = pairs;
-  SyntheticScene synthetic = SceneWithTrueRatios(options);
-  for (ScaleRatio& ratio : synthetic.scene.scale_ratios) {
-    ratio.kinds = {{"lines", 20, 20}};
-  }
-  for (auto& entry : synthetic.scene.relative_poses) {
-    entry.second.log10_nfa = -100;
-  }
-  return synthetic;
-}
 
 std::vector<ReliabilityWarning> WarningsOf(Scene scene) {
   const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
@@ -47,13 +33,6 @@ std::vector<ReliabilityWarning> WarningsOf(const Scene& scene,
                                            FirmEvidence* firm) {
   return FindReliabilityWarnings(
       scene, FindAgreement(scene, problem, solution, {}, {}), {}, firm);
-}
-
-ScaleRatio* FindRatio(const ViewTriplet& views, Scene* scene) {
-  for (ScaleRatio& ratio : scene->scale_ratios) {
-    if (ratio.views == views) return &ratio;
-  }
-  return nullptr;
 }
 
 TEST(ReliabilityWarnings, NoneWhereAllIsWell) {
@@ -71,16 +50,9 @@ TEST(ReliabilityWarnings, NoneForOneWrongRelativePoseOfMany) {
 
 TEST(ReliabilityWarnings, AViewThatItsRelativePosesContradict) {
   const SyntheticScene synthetic = WellMeasuredScene("window:3");
-  std::map<ViewId, Mat3> rotations;
-  TranslationSolution solution;
-  for (const auto& [view, pose] : synthetic.true_poses) {
-    rotations[view] = pose.rotation;
-    solution.center_in_world.push_back(pose.center);
-    solution.component.push_back(0);
-  }
-  solution.num_components = 1;
+  TranslationSolution solution = TrueCenters(synthetic);
   const TranslationProblem problem =
-      MakeTranslationProblem(synthetic.scene, rotations, {});
+      MakeTranslationProblem(synthetic.scene, TrueRotations(synthetic), {});
   FirmEvidence firm;
   EXPECT_THAT(WarningsOf(synthetic.scene, problem, solution, &firm), IsEmpty());
   EXPECT_EQ(firm.edges.size(), problem.edges.size());
@@ -169,42 +141,6 @@ TEST(ReliabilityWarnings, ViewsThatHangOnAWeakRatio) {
   EXPECT_TRUE(summary->IsDoubtful());
   EXPECT_THAT(PoseWarnings(*summary, synthetic.scene),
               Contains(HasSubstr("only weak scale ratios join them")));
-}
-
-// The ratios of the scene times a factor, to 2 %.
-AdjustedEvidence Adjusted(const Scene& scene, double log_difference) {
-  AdjustedEvidence adjusted;
-  for (const ScaleRatio& ratio : scene.scale_ratios) {
-    adjusted.ratios[ratio.views] = {ratio.log_ratio + log_difference, 0.02};
-  }
-  return adjusted;
-}
-
-TEST(ReliabilityWarnings, AnAdjustmentSharpensTheRatiosThatItBearsOut) {
-  SyntheticScene synthetic = WellMeasuredScene("chain");
-  Scene& scene = synthetic.scene;
-  ScaleRatio& ratio = *FindRatio({3, 4, 5}, &scene);
-  ratio.log_ratio_stddev = 0.3;
-  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
-  ASSERT_TRUE(summary);
-  ASSERT_EQ(summary->reliability_warnings.size(), 1u);
-  EXPECT_EQ(summary->reliability_warnings[0].reason, WarningReason::kWeakScale);
-  FirmEvidence firm;
-  EXPECT_THAT(FindReliabilityWarnings(scene, *summary->agreement,
-                                      Adjusted(scene, 0.5), &firm),
-              IsEmpty());
-  EXPECT_EQ(firm.ratios.size(), scene.scale_ratios.size());
-  // What contradicts the ratio does not sharpen it, nor does precision make up
-  // for evidence.
-  EXPECT_EQ(FindReliabilityWarnings(scene, *summary->agreement,
-                                    Adjusted(scene, 1), &firm)
-                .size(),
-            1u);
-  ratio.log10_nfa = -1;
-  EXPECT_EQ(FindReliabilityWarnings(scene, *summary->agreement,
-                                    Adjusted(scene, 0), &firm)
-                .size(),
-            1u);
 }
 
 TEST(ReliabilityWarnings, AllViewsWhereNoPartIsMostOfThem) {
@@ -328,15 +264,6 @@ TEST(ReliabilityWarnings, WeakRatiosConfirmNoUntoldPose) {
   }
 }
 
-void MakeVague(const std::vector<ViewPair>& pairs, Scene* scene) {
-  using Mat5 = Eigen::Matrix<double, 5, 5>;
-  Mat5 covariance = 1e-8 * Mat5::Identity();
-  covariance.topLeftCorner<3, 3>() = 0.3 * Mat3::Identity();
-  for (const ViewPair& views : pairs) {
-    scene->relative_poses.at(views).covariance = covariance;
-  }
-}
-
 // Relative poses that fit anything do not confirm each other.
 TEST(ReliabilityWarnings, ViewsThatHangOnPosesThatAreHardlyDetermined) {
   for (const std::vector<ViewPair>& vague :
@@ -353,99 +280,6 @@ TEST(ReliabilityWarnings, ViewsThatHangOnPosesThatAreHardlyDetermined) {
     EXPECT_THAT(warnings[0].views, ElementsAre(7));
     EXPECT_THAT(warnings[0].untold, ElementsAreArray(vague));
   }
-}
-
-// Whatever a relative pose tells, the structure may determine the direction;
-// but not by chance, nor where it contradicts what the views share.
-TEST(ReliabilityWarnings, AnAdjustmentDeterminesWhatPosesDoNotTell) {
-  SyntheticScene synthetic = WellMeasuredScene("window:2");
-  Scene& scene = synthetic.scene;
-  MakeVague({{5, 7}, {6, 7}}, &scene);
-  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
-  ASSERT_TRUE(summary);
-  ASSERT_EQ(summary->reliability_warnings.size(), 1u);
-  AdjustedEvidence adjusted;
-  FirmEvidence firm;
-  const auto count_warnings = [&] {
-    return FindReliabilityWarnings(scene, *summary->agreement, adjusted, &firm)
-        .size();
-  };
-  adjusted.direction_stddevs_rad = {{{5, 7}, 0.02}, {{6, 7}, 0.02}};
-  EXPECT_EQ(count_warnings(), 1u);
-  adjusted.evidence_of_pairs = {{{5, 7}, -2}, {{6, 7}, -2}};
-  EXPECT_EQ(count_warnings(), 1u);
-  adjusted.evidence_of_pairs = {{{5, 7}, -4}, {{6, 7}, -4}};
-  EXPECT_EQ(count_warnings(), 0u);
-  adjusted.contradicted = {7};
-  EXPECT_EQ(count_warnings(), 1u);
-  adjusted.contradicted.clear();
-  adjusted.direction_stddevs_rad = {{{5, 7}, 0.2}, {{6, 7}, 0.2}};
-  EXPECT_EQ(count_warnings(), 1u);
-}
-
-TEST(ReliabilityWarnings, TheStructureMayHoldTheScaleThatARatioHardlyTells) {
-  SyntheticScene synthetic = WellMeasuredScene("chain");
-  Scene& scene = synthetic.scene;
-  const ViewTriplet last = {5, 6, 7};
-  const auto weak = std::find_if(
-      scene.scale_ratios.begin(), scene.scale_ratios.end(),
-      [&](const ScaleRatio& ratio) { return ratio.views == last; });
-  ASSERT_NE(weak, scene.scale_ratios.end());
-  const ScaleRatio strong = *weak;
-  weak->log10_nfa = -1;
-  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
-  ASSERT_TRUE(summary);
-  AdjustedEvidence adjusted;
-  const auto is_weak = [&] {
-    FirmEvidence firm;
-    const auto warnings =
-        FindReliabilityWarnings(scene, *summary->agreement, adjusted, &firm);
-    return warnings.size() == 1 &&
-           warnings[0].reason == WarningReason::kWeakScale;
-  };
-  adjusted.ratios[last] = {weak->log_ratio, 0.02};
-  EXPECT_TRUE(is_weak());
-  adjusted.evidence_of_triplets[last] = -2;
-  EXPECT_TRUE(is_weak());
-  adjusted.evidence_of_triplets[last] = -4;
-  EXPECT_FALSE(is_weak());
-  adjusted.contradicted = {6};
-  EXPECT_TRUE(is_weak());
-  adjusted.contradicted.clear();
-  adjusted.ratios[last].log_ratio_stddev = 0.2;
-  EXPECT_TRUE(is_weak());
-  adjusted.ratios[last].log_ratio_stddev = 0.02;
-  // Most of its candidates contradict it.
-  for (KindSupport& kind : weak->kinds) kind.candidates = 3 * kind.inliers;
-  EXPECT_TRUE(is_weak());
-  adjusted.measured_again[last] = strong;
-  EXPECT_FALSE(is_weak());
-  adjusted.measured_again[last].log_ratio += 0.15;
-  EXPECT_TRUE(is_weak());
-  adjusted.measured_again[last] = *weak;
-  EXPECT_TRUE(is_weak());
-}
-
-TEST(ReliabilityWarnings, AnAdjustmentDeterminesWhatMatchesDoNotTell) {
-  SyntheticScene synthetic = WellMeasuredScene("chain");
-  Scene& scene = synthetic.scene;
-  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
-  ASSERT_TRUE(summary);
-  SolutionAgreement agreement = *summary->agreement;
-  agreement.untold = {{6, 7}};
-  FirmEvidence firm;
-  const auto without = FindReliabilityWarnings(scene, agreement, {}, &firm);
-  ASSERT_EQ(without.size(), 1u);
-  EXPECT_EQ(without[0].reason, WarningReason::kUntoldPoses);
-  EXPECT_THAT(without[0].views, ElementsAre(7));
-  AdjustedEvidence adjusted;
-  adjusted.evidence_of_pairs = {{{6, 7}, -4}};
-  adjusted.direction_stddevs_rad = {{{6, 7}, 0.3}};
-  EXPECT_EQ(FindReliabilityWarnings(scene, agreement, adjusted, &firm).size(),
-            1u);
-  adjusted.direction_stddevs_rad = {{{6, 7}, 0.02}};
-  EXPECT_THAT(FindReliabilityWarnings(scene, agreement, adjusted, &firm),
-              IsEmpty());
 }
 
 // The first view hangs on a weak ratio, whatever its relative pose is worth.
@@ -519,21 +353,14 @@ TEST(ReliabilityWarnings, GroupsAtOneCameraWithoutARatioThatAgrees) {
   Scene& scene = synthetic.scene;
   scene.relative_poses.erase({3, 5});
   // Else the walk past view 2 is straight, as far as directions tell.
-  for (auto& entry : scene.relative_poses) {
-    entry.second.covariance = 1e-6 * Eigen::Matrix<double, 5, 5>::Identity();
+  StatePreciseDirections(&scene);
+  const auto rotations = TrueRotations(synthetic);
+  TranslationSolution solution = TrueCenters(synthetic);
+  // Twice the size beyond camera 4.
+  const Vec3 hinge = synthetic.true_poses.at(4).center;
+  for (std::size_t n = 5; n < solution.center_in_world.size(); ++n) {
+    solution.center_in_world[n] += solution.center_in_world[n] - hinge;
   }
-  std::map<ViewId, Mat3> rotations;
-  TranslationSolution solution;
-  for (const auto& [view, pose] : synthetic.true_poses) {
-    rotations[view] = pose.rotation;
-    // Twice the size beyond camera 4.
-    const Vec3& hinge = synthetic.true_poses.at(4).center;
-    solution.center_in_world.push_back(
-        view > ViewId(4) ? Vec3(hinge + 2 * (pose.center - hinge))
-                         : pose.center);
-    solution.component.push_back(0);
-  }
-  solution.num_components = 1;
   const TranslationProblem problem =
       MakeTranslationProblem(scene, rotations, {});
   EXPECT_FALSE(

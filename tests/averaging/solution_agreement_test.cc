@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "averaging/true_ratios.h"
+#include "averaging/well_measured_scene.h"
 #include "lowlap/averaging/internal/view_grades.h"
 
 namespace lowlap {
@@ -15,18 +15,10 @@ using ::testing::Not;
 
 SolutionAgreement AgreementWithTruth(const SyntheticScene& synthetic,
                                      const std::set<ViewTriplet>& weak) {
-  std::map<ViewId, Mat3> rotations;
-  TranslationSolution solution;
-  for (const auto& [view, pose] : synthetic.true_poses) {
-    rotations[view] = pose.rotation;
-    solution.center_in_world.push_back(pose.center);
-    solution.component.push_back(0);
-  }
-  solution.num_components = 1;
-  return FindAgreement(
-      synthetic.scene,
-      MakeTranslationProblem(synthetic.scene, rotations, {}, weak), solution,
-      {}, {});
+  return FindAgreement(synthetic.scene,
+                       MakeTranslationProblem(
+                           synthetic.scene, TrueRotations(synthetic), {}, weak),
+                       TrueCenters(synthetic), {}, {});
 }
 
 // A walk along a line, of which ratios alone tell the lengths.
@@ -90,9 +82,7 @@ TEST(SolutionAgreement, TrianglesOnALineAreFlat) {
   options.num_views = 8;
   options.pairs = "window:2";
   SyntheticScene room = SceneWithTrueRatios(options);
-  for (auto& entry : room.scene.relative_poses) {
-    entry.second.covariance = 1e-6 * Eigen::Matrix<double, 5, 5>::Identity();
-  }
+  StatePreciseDirections(&room.scene);
   EXPECT_THAT(AgreementWithTruth(room, {}).flat, IsEmpty());
 }
 

@@ -92,6 +92,35 @@ void CentersOfGraph(benchmark::State& state) {
   state.counters["oracle_error_m"] = MedianCenterError(graph.made, *oracle);
 }
 
+// Views that directions place one after the other (a town), and a street where
+// every pair is a part of its own.
+void CentersWithoutRatios(benchmark::State& state) {
+  const bool is_town = state.range(0) != 0;
+  BigGraphOptions options;
+  options.shape = is_town ? GraphShape::kTown : GraphShape::kStreet;
+  options.num_views = static_cast<std::size_t>(state.range(1));
+  options.num_edges = is_town ? 5 * options.num_views : options.num_views - 1;
+  options.num_ratios = 0;
+  options.direction_stddev_rad = 0.001;
+  const BigGraph graph = MakeBigGraph(options);
+  const GraphScalesAverager averager;
+  Result<TranslationSolution> solution;
+  double seconds = 0;
+  for (auto _ : state) {
+    seconds += testing::ProcessorSeconds(
+        [&] { solution = averager.Solve(graph.made.problem, RunContext()); });
+    if (!solution) return state.SkipWithError("the graph was not solved");
+  }
+  state.counters["factorizations"] = seconds /
+                                     static_cast<double>(state.iterations()) /
+                                     FactorizationSeconds(graph.made.problem);
+  state.counters["placed"] = solution->NumPlaced();
+}
+BENCHMARK(CentersWithoutRatios)
+    ->ArgNames({"town", "views"})
+    ->Unit(benchmark::kMillisecond)
+    ->ArgsProduct({{0, 1}, {500, 2000}});
+
 void Arguments(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgNames({"shape", "views", "wrong_percent"})
       ->Unit(benchmark::kMillisecond);

@@ -9,12 +9,12 @@
 namespace lowlap {
 namespace {
 
-using Edges = std::vector<ViewPair>;
+using ViewPairs = std::vector<ViewPair>;
 using Labels = std::vector<std::size_t>;
 
 // Labels of the edges after merging, where `joined` are one part from the
 // outset.
-Labels LabelsOf(const Edges& edges,
+Labels LabelsOf(const ViewPairs& edges,
                 const std::vector<std::vector<std::size_t>>& joined = {}) {
   UnionFind parts(edges.size());
   for (const std::vector<std::size_t>& part : joined) {
@@ -24,7 +24,7 @@ Labels LabelsOf(const Edges& edges,
   return parts.Labels();
 }
 
-std::size_t NumParts(const Edges& edges,
+std::size_t NumParts(const ViewPairs& edges,
                      const std::vector<std::vector<std::size_t>>& joined = {}) {
   const Labels labels = LabelsOf(edges, joined);
   return labels.empty() ? 0
@@ -32,8 +32,8 @@ std::size_t NumParts(const Edges& edges,
 }
 
 // Views 0, 1, ... each joined with the next two.
-Edges Strip(std::uint32_t num_views) {
-  Edges edges;
+ViewPairs Strip(std::uint32_t num_views) {
+  ViewPairs edges;
   for (std::uint32_t n = 0; n + 1 < num_views; ++n) {
     edges.push_back({n, n + 1});
     if (n + 2 < num_views) edges.push_back({n, n + 2});
@@ -52,7 +52,7 @@ TEST(MergeRigidParts, ATriangleIsOnePartAndAPathIsNot) {
 // are free.
 TEST(MergeRigidParts, LongerCyclesAreNotRigidInAPlane) {
   for (std::uint32_t length = 4; length < 8; ++length) {
-    Edges ring;
+    ViewPairs ring;
     for (std::uint32_t n = 0; n < length; ++n) {
       ring.push_back(OrderedPair(n, (n + 1) % length));
     }
@@ -62,7 +62,7 @@ TEST(MergeRigidParts, LongerCyclesAreNotRigidInAPlane) {
 
 TEST(MergeRigidParts, WhatHas2NMinus3EdgesEverywhereIsRigid) {
   // K(3,3) has nine edges and no triangle.
-  Edges bipartite;
+  ViewPairs bipartite;
   for (std::uint32_t a = 0; a < 3; ++a) {
     for (std::uint32_t b = 3; b < 6; ++b) bipartite.push_back({a, b});
   }
@@ -75,7 +75,7 @@ TEST(MergeRigidParts, WhatHas2NMinus3EdgesEverywhereIsRigid) {
 
 TEST(MergeRigidParts, PartsThatShareTwoViewsAreOne) {
   // Two paths of known lengths from 0 to 3.
-  const Edges edges = {{0, 1}, {1, 3}, {0, 2}, {2, 3}};
+  const ViewPairs edges = {{0, 1}, {1, 3}, {0, 2}, {2, 3}};
   EXPECT_EQ(NumParts(edges, {{0, 1}, {2, 3}}), 1u);
   // They share view 3 alone.
   EXPECT_EQ(NumParts({{0, 1}, {1, 3}, {4, 2}, {2, 3}}, {{0, 1}, {2, 3}}), 2u);
@@ -83,7 +83,7 @@ TEST(MergeRigidParts, PartsThatShareTwoViewsAreOne) {
 
 TEST(MergeRigidParts, ThreePartsInARingAreOneAndFourAreNot) {
   // Parts are paths of two edges, so that no edge closes the ring.
-  Edges edges;
+  ViewPairs edges;
   std::vector<std::vector<std::size_t>> parts;
   const auto ring = [&](std::uint32_t size) {
     edges.clear();
@@ -120,7 +120,7 @@ TEST(MergeRigidParts, NeverSplitsAPart) {
 }
 
 TEST(MergeRigidParts, DoesNotDependOnTheOrderOfTheEdges) {
-  Edges edges = Strip(7);
+  ViewPairs edges = Strip(7);
   edges.insert(edges.end(), {{6, 8}, {8, 9}, {9, 10}, {6, 10}});
   const std::size_t expected = 1 + 4;
   EXPECT_EQ(NumParts(edges), expected);
@@ -131,7 +131,7 @@ TEST(MergeRigidParts, DoesNotDependOnTheOrderOfTheEdges) {
 }
 
 TEST(MergeRigidParts, LeavesBlocksOfTooManyPartsAsTheyAre) {
-  const Edges edges = Strip(128);  // 253 edges
+  const ViewPairs edges = Strip(128);  // 253 edges
   EXPECT_EQ(NumParts(edges), 253u);
 }
 

@@ -11,7 +11,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-using Edges = std::vector<ViewPair>;
+using ViewPairs = std::vector<ViewPair>;
 
 ScaleRatio RatioOf(const ViewTriplet& views, double log10_nfa = -12) {
   ScaleRatio ratio;
@@ -23,7 +23,7 @@ ScaleRatio RatioOf(const ViewTriplet& views, double log10_nfa = -12) {
   return ratio;
 }
 
-std::vector<ScaleArticulation> Find(const Edges& edges,
+std::vector<ScaleArticulation> Find(const ViewPairs& edges,
                                     const std::vector<ScaleRatio>& ratios) {
   std::vector<ViewTriplet> triplets;
   for (const ScaleRatio& ratio : ratios) {
@@ -70,7 +70,7 @@ TEST(FindScaleArticulations, IsWeakUnlessAStrongRatioHoldsTheParts) {
 }
 
 TEST(FindScaleArticulations, OfAChainIsEveryInnerCamera) {
-  Edges chain;
+  ViewPairs chain;
   std::vector<ScaleRatio> ratios;
   for (std::uint32_t view = 0; view < 5; ++view) {
     chain.push_back({view, view + 1});
@@ -89,7 +89,7 @@ TEST(FindScaleArticulations, OfAChainIsEveryInnerCamera) {
 // A square with ratios across 0, 1 and 2: without any one of them, the other
 // two leave two paths of known lengths or a path and two edges.
 TEST(FindScaleArticulations, WhatDirectionsHoldWithoutTheRatioIsNone) {
-  const Edges square = {{0, 1}, {1, 2}, {2, 3}, {0, 3}};
+  const ViewPairs square = {{0, 1}, {1, 2}, {2, 3}, {0, 3}};
   const std::vector<ScaleRatio> ratios = {
       RatioOf({3, 0, 1}), RatioOf({0, 1, 2}), RatioOf({1, 2, 3})};
   // Without that across 1: {3-0, 0-1} and {1-2, 2-3} share views 1 and 3.
@@ -99,7 +99,7 @@ TEST(FindScaleArticulations, WhatDirectionsHoldWithoutTheRatioIsNone) {
 
 TEST(FindScaleArticulations, JudgesEveryGroupByItself) {
   // Two pairs of triangles that have nothing in common.
-  Edges edges = kTwoTriangles;
+  ViewPairs edges = kTwoTriangles;
   for (const ViewPair& edge : kTwoTriangles) {
     edges.push_back({edge.first.value() + 10, edge.second.value() + 10});
   }

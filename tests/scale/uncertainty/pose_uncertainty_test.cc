@@ -65,20 +65,27 @@ TEST(PerturbPose, SpansTheCovariance) {
   EXPECT_LT((sum - covariance).norm(), 1e-4 * covariance.norm());
 }
 
-// Its candidates move with the focal length of view i, of all geometries.
+// Its candidates move with the focal length of view i, of all geometries, or,
+// if `by_ratio`, by as many of their own ratios.
 class MovedByGeometry : public testing::EvenEvidence {
  public:
-  using EvenEvidence::EvenEvidence;
+  MovedByGeometry(std::vector<double> ratios, double num_tests,
+                  bool by_ratio = false)
+      : EvenEvidence(std::move(ratios), num_tests), by_ratio_(by_ratio) {}
   std::vector<RatioCandidate> RatiosIn(
       const TripletView&, const TripletGeometry& geometry,
       const std::vector<int>& candidates) const override {
     std::vector<RatioCandidate> moved;
     for (const int n : candidates) {
       moved.push_back(ratios()[n]);
-      moved.back().log_ratio += geometry.focal_i_px;
+      moved.back().log_ratio +=
+          geometry.focal_i_px * (by_ratio_ ? ratios()[n].log_ratio : 1);
     }
     return moved;
   }
+
+ private:
+  bool by_ratio_;
 };
 
 TEST(PoseVariance, DoesNotFallWithTheNumberOfCandidates) {
@@ -108,22 +115,6 @@ TEST(PoseVariance, AveragesWhatMovesAndWhatDoesNot) {
   EXPECT_EQ(PoseVariance({}, support, {{0, 0, 1}}), 0);
 }
 
-// Its candidates move by their own ratio times the focal length of view i.
-class MovedByRatio : public testing::EvenEvidence {
- public:
-  using EvenEvidence::EvenEvidence;
-  std::vector<RatioCandidate> RatiosIn(
-      const TripletView&, const TripletGeometry& geometry,
-      const std::vector<int>& candidates) const override {
-    std::vector<RatioCandidate> moved;
-    for (const int n : candidates) {
-      moved.push_back(ratios()[n]);
-      moved.back().log_ratio *= 1 + geometry.focal_i_px;
-    }
-    return moved;
-  }
-};
-
 TEST(PoseVariance, DoesNotDependOnTheOrderOfTheCandidates) {
   TripletView triplet;
   triplet.pose_perturbations.emplace_back().focal_i_px = 0.04;
@@ -133,8 +124,8 @@ TEST(PoseVariance, DoesNotDependOnTheOrderOfTheCandidates) {
     ratios.push_back(std::fmod(0.618 * n, 1.0));
     candidates.push_back({0, n, 1.0 + n % 7});
   }
-  const RatioSupport support(
-      testing::EvidenceOf({std::make_shared<MovedByRatio>(ratios, 1)}));
+  const RatioSupport support(testing::EvidenceOf(
+      {std::make_shared<MovedByGeometry>(ratios, 1, true)}));
   const double variance = PoseVariance(triplet, support, candidates);
   std::rotate(candidates.begin(), candidates.begin() + 1, candidates.end());
   EXPECT_NEAR(PoseVariance(triplet, support, candidates), variance,
