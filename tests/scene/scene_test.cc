@@ -14,6 +14,16 @@ using testing::FullScene;
 using testing::IsOk;
 using testing::RandomScene;
 
+TEST(View, PathBelowRootJoinsFolderAndName) {
+  View view;
+  view.filename = "a b.jpg";
+  EXPECT_EQ(view.PathBelowRoot(), "a b.jpg");
+  for (const char* folder : {"left/near", "left/near/"}) {
+    view.local_path = folder;
+    EXPECT_EQ(view.PathBelowRoot(), "left/near/a b.jpg");
+  }
+}
+
 TEST(WithoutViews, NothingExcludedChangesNothing) {
   const Scene scene = FullScene();
   EXPECT_EQ(WithoutViews(scene, {}), scene);

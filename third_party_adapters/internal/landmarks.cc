@@ -1,18 +1,12 @@
 #include "third_party_adapters/internal/landmarks.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <utility>
 
 namespace lowlap {
 
 void AddNote(std::size_t count, const std::string& what, SceneNotes* notes) {
   if (count > 0) notes->push_back(std::to_string(count) + " " + what);
-}
-
-std::string ImageName(const View& view) {
-  return (std::filesystem::path(view.local_path) / view.filename)
-      .generic_string();
 }
 
 std::map<PointTrackId, Landmark> SolvedLandmarks(const Scene& scene,

@@ -12,9 +12,6 @@ namespace lowlap {
 /// Adds "COUNT what" unless the count is 0.
 void AddNote(std::size_t count, const std::string& what, SceneNotes* notes);
 
-/// local_path/filename.
-std::string ImageName(const View& view);
-
 /// The points of a scene for programs that know observations by solved views
 /// only: those by views with a pose and an intrinsic, of points that have two
 /// or more of them. What is left out is noted.

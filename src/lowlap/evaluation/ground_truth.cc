@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <optional>
 
-#include "lowlap/evaluation/internal/view_path.h"
 #include "lowlap/evaluation/pose_errors.h"
 
 namespace lowlap {
@@ -59,7 +58,7 @@ Result<GroundTruth> GroundTruthByName(
     for (const auto& [id, view] : scene.views) {
       if (truth.count(id)) continue;
       const auto found =
-          truth_by_name.find(NamesOf(PathOf(view))[level.of_view]);
+          truth_by_name.find(NamesOf(view.PathBelowRoot())[level.of_view]);
       if (found == truth_by_name.end()) continue;
       if (!found->second) {
         if (shared_name.empty()) shared_name = found->first;
@@ -105,7 +104,7 @@ Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
   std::map<std::string, Pose> by_name;
   bool names_are_ids = true;
   for (const auto& [id, pose] : by_id) {
-    const std::string name = PathOf(truth.views.at(id));
+    const std::string name = truth.views.at(id).PathBelowRoot();
     names_are_ids = names_are_ids && name == std::to_string(id.value());
     by_name.emplace(name, pose);
   }

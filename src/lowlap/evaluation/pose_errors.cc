@@ -2,7 +2,6 @@
 
 #include <cstddef>
 
-#include "lowlap/evaluation/internal/view_path.h"
 #include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
@@ -60,10 +59,10 @@ PoseEvaluation EvaluatePoses(const std::map<ViewId, View>& views,
       cameras.push_back({&solved->second, &true_pose->second});
       ViewPoseError error;
       error.view = id;
-      error.name = PathOf(view);
+      error.name = view.PathBelowRoot();
       result.views.push_back(std::move(error));
     } else {
-      result.unsolved.push_back(PathOf(view));
+      result.unsolved.push_back(view.PathBelowRoot());
     }
   }
   result.num_solved = static_cast<int>(cameras.size());

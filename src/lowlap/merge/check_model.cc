@@ -25,9 +25,9 @@ Result<std::map<std::string, Pose>> PosesByImage(const Scene& model,
   for (const auto& [id, view] : model.views) {
     const Pose* pose = model.FindPose(id);
     if (pose == nullptr) continue;
-    const fs::path image = fs::path(view.local_path) / view.filename;
+    const std::string path = view.PathBelowRoot();
     const std::string name =
-        (with_folders ? image : image.filename()).generic_string();
+        with_folders ? path : fs::path(path).filename().generic_string();
     if (!poses.emplace(name, *pose).second) {
       return MakeError(ErrorCode::kInvalidScene,
                        "two cameras are called '" + name + "'");

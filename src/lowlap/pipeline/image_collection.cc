@@ -143,14 +143,14 @@ class IntrinsicsOfImages {
     const View* best = nullptr;
     int most = 0;
     for (const View* view : named->second) {
-      const int common = CommonNames(PathOf(*view), path);
+      const int common = CommonNames(view->PathBelowRoot(), path);
       if (common > most) {
         most = common;
         best = view;
       } else if (common == most && view->intrinsic_id != best->intrinsic_id) {
         return MakeError(ErrorCode::kInvalidArgument,
-                         "'" + PathOf(*best).generic_string() + "' and '" +
-                             PathOf(*view).generic_string() +
+                         "'" + best->PathBelowRoot() + "' and '" +
+                             view->PathBelowRoot() +
                              "' of the given scene have this file name, and "
                              "different intrinsics",
                          path);
@@ -163,10 +163,6 @@ class IntrinsicsOfImages {
   int num_unlisted() const { return num_unlisted_; }
 
  private:
-  static fs::path PathOf(const View& view) {
-    return fs::path(view.local_path) / view.filename;
-  }
-
   Result<IntrinsicId> TheOnlyOne(const std::string& path) {
     if (scene_.intrinsics.size() != 1) {
       return MakeError(ErrorCode::kInvalidArgument,

@@ -31,6 +31,10 @@ struct View {
   PoseId pose_id = kInvalidId;
   std::optional<CenterPrior> center_prior;
 
+  /// local_path / filename, with slashes: what tells photographs of one file
+  /// name apart.
+  std::string PathBelowRoot() const;
+
   friend bool operator==(const View& a, const View& b) {
     return a.local_path == b.local_path && a.filename == b.filename &&
            a.width_px == b.width_px && a.height_px == b.height_px &&

@@ -205,7 +205,7 @@ Result<CenteredModel> ModelFromScene(const Scene& scene, RadialForm form,
   for (const auto& [id, view] : scene.views) {
     const Pose* pose = scene.FindPose(id);
     CenteredCamera camera;
-    camera.name = ImageName(view);
+    camera.name = view.PathBelowRoot();
     if (pose != nullptr && scene.FindIntrinsic(id) != nullptr) {
       camera.pose = *pose;
       camera.camera = radial_cameras.at(view.intrinsic_id);

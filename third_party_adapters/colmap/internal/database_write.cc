@@ -82,9 +82,9 @@ class DatabaseWriter {
                   "image_id");
     while (row.Step()) by_name[row.Text(1)] = row.Unsigned(0);
     for (const auto& [id, view] : scene_.views) {
-      const auto found = by_name.find(ImageName(view));
+      const auto found = by_name.find(view.PathBelowRoot());
       if (found == by_name.end()) {
-        row.FailRow("there is no image '" + ImageName(view) + "'",
+        row.FailRow("there is no image '" + view.PathBelowRoot() + "'",
                     ErrorCode::kInvalidArgument);
       }
       image_of_[id] = found->second;

@@ -98,7 +98,7 @@ class Exporter {
       image.id = id.value() + shift_;
       image.cam_from_world = StablePose(*pose);
       image.camera_id = camera_id;
-      image.name = ImageName(view);
+      image.name = view.PathBelowRoot();
       // A text without a name could not be read.
       if (image.name.empty()) image.name = "image" + std::to_string(image.id);
       if (const auto features = scene_.features.find(id);

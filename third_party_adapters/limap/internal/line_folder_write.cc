@@ -111,7 +111,7 @@ class LineFolderWriter {
     std::string text =
         "number of images, " + std::to_string(scene_.views.size()) + "\n";
     for (const auto& [id, view] : scene_.views) {
-      const std::string name = ImageName(view);
+      const std::string name = view.PathBelowRoot();
       LOWLAP_RETURN_IF_ERROR(colmap::CheckImageName(
           FileId(id), name, {"\r\n\0", 3}, (folder_ / kImageList).string()));
       text += std::to_string(FileId(id)) + ", " + name + "\n";

@@ -24,8 +24,7 @@ ViewNames::ViewNames(const Scene& scene) {
   bool all_numbers = !scene.views.empty();
   for (const auto& [id, view] : scene.views) {
     const std::filesystem::path path(view.filename);
-    below_root[(std::filesystem::path(view.local_path) / path).generic_string()]
-        .push_back(id);
+    below_root[view.PathBelowRoot()].push_back(id);
     whole[view.filename].push_back(id);
     last_part[path.filename().string()].push_back(id);
     stem[path.stem().string()].push_back(id);
