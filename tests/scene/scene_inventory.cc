@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <map>
 
-#include "third_party_adapters/internal/landmarks.h"
-
 namespace lowlap::testing {
 namespace {
 
@@ -53,7 +51,7 @@ class Inventory {
   void AddViews() {
     for (const auto& [id, view] : scene_.views) {
       if (Holds(SceneContent::kNames)) {
-        items_.push_back({"view " + ImageName(view), {}});
+        items_.push_back({"view " + view.PathBelowRoot(), {}});
       }
       const Intrinsic* intrinsic = scene_.FindIntrinsic(id);
       if (Holds(SceneContent::kIntrinsics)) {
