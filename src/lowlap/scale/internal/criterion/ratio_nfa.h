@@ -107,10 +107,11 @@ class RatioNfaCriterion {
     std::array<LadderProbabilities, 2> log10_alpha{};
     RatioDensity density;
   };
-  // A tier by itself at every step.
+  // A tier by itself at every step: its log10 NFA, and what orders the steps
+  // where that says nothing.
   struct TierValues {
-    LadderValues unsampled{};
-    LadderValues sampled{};
+    PairLadderValues unsampled;
+    PairLadderValues sampled;
   };
   void MeasureBackground(int kind, const TripletView& triplet);
   RatioNfa EvaluatePaper(const SupportCounts& counts) const;
@@ -131,7 +132,7 @@ class RatioNfaCriterion {
   // The one that says most and loses less than `limit`.
   Choice LeastChoice(int kind, double limit) const;
   // A kind by itself at its best, silent.
-  KindNfa LeastUncapped(int kind, LadderValues TierValues::*values) const;
+  KindNfa LeastUncapped(int kind, PairLadderValues TierValues::*values) const;
   // All of them, the sample that is missed most taken away.
   RatioNfa LeastUncapped() const;
   RatioNfa LeastOverChoices() const;
