@@ -53,7 +53,9 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
       "version " LOWLAP_VERSION "\nscene " + ToHex(hash.value()) + "\nseed " +
       std::to_string(flags.common.seed) + "\nstrategy " + flags.solve.strategy +
       "\nscale " + flags.solve.scale.criterion + " " + flags.solve.scale.nfa +
-      " " + std::to_string(flags.solve.scale.threshold_px);
+      " " +
+      std::to_string(
+          flags.solve.scale.threshold_px.value_or(ScaleOptions{}.threshold_px));
   for (const std::string& kind : flags.solve.scale.features) {
     text += " " + kind;
   }

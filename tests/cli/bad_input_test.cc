@@ -57,7 +57,12 @@ TEST_F(BadInput, CommandsAndNumbers) {
 TEST_F(BadInput, OptionsThatWouldBeIgnored) {
   const std::string solve = "solve " + Room() + Out();
   ExpectRefused(solve + "-M matches.f.txt", "requires --matchdir");
-  ExpectRefused(solve + "--no-adjust --refine-intrinsics focal", "excludes");
+  for (const char* of_adjustment :
+       {"--refine-intrinsics focal", "--adjust-features points",
+        "--coplanar-ties both", "--no-directions"}) {
+    ExpectRefused(solve + "--no-adjust " + of_adjustment, "excludes");
+  }
+  ExpectRefused(solve + "--threshold 2", "needs --criterion ransac");
   ExpectRefused("compare " + Room() + Out() + "--reference guess",
                 "unknown strategy 'guess'");
   const std::string evaluate = "evaluate " + Room() + " " + Truth();

@@ -15,6 +15,7 @@
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
+#include "lowlap/report/internal/table_text.h"
 #include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {
@@ -104,7 +105,7 @@ void AddScaleFlags(CLI::App* command, ScaleFlags* flags) {
   AddOption(command, "--threshold", flags->threshold_px,
             "Inlier threshold of --criterion ransac, in pixels")
       .Must(Check::Positive())
-      .ShowDefault();
+      .ShowDefault(NumberText(ScaleOptions{}.threshold_px, 6));
 }
 
 Result<ScaleOptions> MakeScaleOptions(const ScaleFlags& flags) {
@@ -117,7 +118,12 @@ Result<ScaleOptions> MakeScaleOptions(const ScaleFlags& flags) {
                                               : ScaleCriterion::kFixedThreshold;
   options.nfa_form =
       flags.nfa == "paper" ? NfaForm::kPaper : NfaForm::kCalibrated;
-  options.threshold_px = flags.threshold_px;
+  if (flags.threshold_px && options.criterion == ScaleCriterion::kAContrario) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "--threshold needs --criterion ransac: a contrario there "
+                     "is none");
+  }
+  options.threshold_px = flags.threshold_px.value_or(options.threshold_px);
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   return options;
 }
@@ -172,8 +178,13 @@ void AddAdjustFlags(CLI::App* command, SolveFlags* flags) {
   AddCoplanarTiesFlag(command, &flags->coplanar_ties);
   AddDirectionsFlag(command, &flags->directions);
   AddPrincipalPointFlag(command, &flags->principal_point_stddev);
-  AddFlag(command, "--no-adjust", flags->no_adjust,
-          "Stop before the bundle adjustment");
+  Option no_adjust = AddFlag(command, "--no-adjust", flags->no_adjust,
+                             "Stop before the bundle adjustment");
+  for (const char* of_adjustment :
+       {"--adjust-features", "--coplanar-ties", "--directions",
+        "--principal-point-stddev"}) {
+    no_adjust.Excludes(FindOption(command, of_adjustment));
+  }
 }
 
 void AddCoplanarTiesFlag(CLI::App* command, std::string* ties) {

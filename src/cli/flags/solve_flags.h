@@ -22,7 +22,7 @@ struct ScaleFlags {
   std::map<std::string, bool> asked;
   std::string criterion = "ac";
   std::string nfa = "calibrated";
-  double threshold_px = 3.0;
+  std::optional<double> threshold_px;
 };
 
 void AddScaleFlags(CLI::App* command, ScaleFlags* flags);
