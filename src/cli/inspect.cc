@@ -21,8 +21,7 @@ struct Flags {
 };
 
 std::string Names(const Scene& scene, const std::vector<ViewId>& views) {
-  return Joined(views, " ",
-                [&](ViewId view) { return scene.views.at(view).filename; });
+  return Joined(views, " ", [&](ViewId view) { return scene.NameOf(view); });
 }
 
 void PrintContent(const Scene& scene) {
@@ -89,7 +88,7 @@ void PrintGroups(const RigidityReport& report, const Scene& scene) {
     std::printf(
         "  groups %s meet in %s: only scale ratios across it join "
         "them\n",
-        groups.c_str(), scene.views.at(hinge.view).filename.c_str());
+        groups.c_str(), scene.NameOf(hinge.view).c_str());
   }
 }
 

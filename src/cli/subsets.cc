@@ -75,21 +75,20 @@ Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
 // What no warning tells of.
 void PrintUnsaid(const std::vector<SubsetOutcome>& outcomes, const Scene& scene,
                  const SubsetBounds& bounds) {
-  const auto name = [&](ViewId view) {
-    return scene.views.at(view).filename.c_str();
-  };
   for (const SubsetOutcome& outcome : outcomes) {
     std::string dropped;
     for (const ViewId view : outcome.dropped) {
-      dropped += " " + scene.views.at(view).filename;
+      dropped += " " + scene.NameOf(view);
     }
     if (IsSilentFailure(outcome, bounds)) {
       std::printf("silent failure without%s: %s is off by %.3f\n",
-                  dropped.c_str(), name(outcome.worst_view), outcome.max_error);
+                  dropped.c_str(), scene.NameOf(outcome.worst_view).c_str(),
+                  outcome.max_error);
     }
     for (const ViewId view : WrongFirmViews(outcome, bounds)) {
       std::printf("named in no warning, without%s: %s is off by %.3f\n",
-                  dropped.c_str(), name(view), outcome.firm_errors.at(view));
+                  dropped.c_str(), scene.NameOf(view).c_str(),
+                  outcome.firm_errors.at(view));
     }
   }
 }

@@ -93,6 +93,17 @@ TEST(Scene, ImagePathJoinsItsParts) {
   EXPECT_EQ(scene.ImagePath(1), "sub/a.jpg");
 }
 
+TEST(Scene, NamesViewsSoThatTheyCanBeToldApart) {
+  Scene scene;
+  scene.views[1].filename = scene.views[2].filename = "0001.jpg";
+  scene.views[1].local_path = "left";
+  scene.views[2].local_path = scene.views[3].local_path = "right";
+  EXPECT_EQ(scene.NameOf(1), "left/0001.jpg");
+  EXPECT_EQ(scene.NameOf(2), "right/0001.jpg");
+  EXPECT_EQ(scene.NameOf(3), "3");
+  EXPECT_EQ(scene.NameOf(4), "4");
+}
+
 TEST(Scene, EqualityNoticesEveryMember) {
   const Scene scene = FullScene();
   const auto differs = [&](auto change) {

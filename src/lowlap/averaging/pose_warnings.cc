@@ -16,7 +16,7 @@ class Writer {
   std::string Names(const std::vector<ViewId>& views) const {
     std::string list;
     for (const ViewId view : views) {
-      list += (list.empty() ? "" : ", ") + Name(view);
+      list += (list.empty() ? "" : ", ") + scene_.NameOf(view);
     }
     return list;
   }
@@ -24,8 +24,8 @@ class Writer {
   std::string Pairs(const std::vector<ViewPair>& pairs) const {
     std::string list;
     for (const ViewPair& pair : pairs) {
-      list += (list.empty() ? "" : ", ") + Name(pair.first) + " - " +
-              Name(pair.second);
+      list += (list.empty() ? "" : ", ") + scene_.NameOf(pair.first) + " - " +
+              scene_.NameOf(pair.second);
     }
     return list;
   }
@@ -64,12 +64,6 @@ class Writer {
   }
 
  private:
-  std::string Name(ViewId view) const {
-    const auto found = scene_.views.find(view);
-    return found == scene_.views.end() ? std::to_string(view.value())
-                                       : found->second.filename;
-  }
-
   const Scene& scene_;
 };
 

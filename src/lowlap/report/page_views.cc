@@ -156,7 +156,7 @@ PageJson ViewsJson(const Scene& scene, const ReportContent& content,
   for (const auto& [id, view] : scene.views) {
     const Intrinsic* intrinsic = scene.FindIntrinsic(id);
     PageJson json = {{"id", id},
-                     {"name", view.filename},
+                     {"name", scene.NameOf(id)},
                      {"width", view.width_px},
                      {"height", view.height_px}};
     if (intrinsic != nullptr) {

@@ -47,6 +47,13 @@ std::string Scene::ImagePath(ViewId view) const {
   return (fs::path(root_path) / fs::path(v.local_path) / v.filename).string();
 }
 
+std::string Scene::NameOf(ViewId view) const {
+  const auto found = views.find(view);
+  return found == views.end() || found->second.filename.empty()
+             ? std::to_string(view.value())
+             : found->second.PathBelowRoot();
+}
+
 bool operator==(const Scene& a, const Scene& b) {
   return a.root_path == b.root_path && a.views == b.views &&
          a.intrinsics == b.intrinsics &&

@@ -68,6 +68,9 @@ struct Scene {
   const RelativePose* FindRelativePose(ViewId a, ViewId b) const;
   /// root_path / local_path / filename.
   std::string ImagePath(ViewId view) const;
+  /// What people call a view: View::PathBelowRoot; its id if the scene has no
+  /// such view, or the view no file name.
+  std::string NameOf(ViewId view) const;
 
   friend bool operator==(const Scene& a, const Scene& b);
 };

@@ -11,8 +11,7 @@ namespace lowlap {
 /// The image names of views, separated by commas.
 inline std::string NamesOf(const Scene& scene,
                            const std::vector<ViewId>& views) {
-  return Joined(views, ", ",
-                [&](ViewId view) { return scene.views.at(view).filename; });
+  return Joined(views, ", ", [&](ViewId view) { return scene.NameOf(view); });
 }
 
 }  // namespace lowlap

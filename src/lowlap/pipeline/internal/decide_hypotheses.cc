@@ -75,9 +75,8 @@ Result<double> CostOf(const Scene& scene, const Trial& trial,
 
 void LogDecision(const HypothesisDecision& decision, const Scene& scene,
                  const RunContext& context) {
-  const std::string pair = scene.views.at(decision.views.first).filename +
-                           " and " +
-                           scene.views.at(decision.views.second).filename;
+  const std::string pair = scene.NameOf(decision.views.first) + " and " +
+                           scene.NameOf(decision.views.second);
   if (decision.grounds == HypothesisGrounds::kNone) {
     context.Log(LogLevel::kWarning,
                 pair +

@@ -72,8 +72,8 @@ bool IsInvolved(const Candidate& candidate, const std::set<ViewPair>& pairs) {
 void LogReconsidered(const ReconsideredPose& pose, const Scene& scene,
                      const RunContext& context) {
   context.Log(LogLevel::kInfo,
-              scene.views.at(pose.views.first).filename + " and " +
-                  scene.views.at(pose.views.second).filename +
+              scene.NameOf(pose.views.first) + " and " +
+                  scene.NameOf(pose.views.second) +
                   Format(": turned by %.2f degrees; the rest of the scene asks "
                          "for it, and their few matches allow it",
                          pose.rotation_deg));

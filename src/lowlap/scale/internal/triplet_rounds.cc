@@ -65,7 +65,7 @@ void WarnOfFailures(const Scene& scene,
   const auto failed = [](const Error* error) { return error != nullptr; };
   const auto first = std::find_if(failures.begin(), failures.end(), failed);
   if (first == failures.end()) return;
-  const auto name = [&](ViewId view) { return scene.views.at(view).filename; };
+  const auto name = [&](ViewId view) { return scene.NameOf(view); };
   const ViewTriplet& views = triplets[first - failures.begin()];
   context.Log(LogLevel::kWarning,
               "the estimation of a scale ratio failed at " +

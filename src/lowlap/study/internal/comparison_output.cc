@@ -194,10 +194,7 @@ std::string ToJson(const Comparison& comparison, const Scene& scene) {
     entry["parts"] = result.num_components;
     Json unplaced = Json::array();
     for (const ViewId view : result.unplaced) {
-      const auto found = scene.views.find(view);
-      unplaced.push_back(
-          {{"view", view},
-           {"name", found == scene.views.end() ? "" : found->second.filename}});
+      unplaced.push_back({{"view", view}, {"name", scene.NameOf(view)}});
     }
     entry["unplaced"] = std::move(unplaced);
     entry["iterations"] = result.num_iterations;

@@ -160,16 +160,16 @@ std::string ToCsv(const std::vector<SubsetOutcome>& outcomes,
     const auto error = [&](double value) {
       return known ? Format("%.6f", value) : std::string();
     };
-    table.rows.push_back(
-        {dropped, std::to_string(outcome.num_views),
-         std::to_string(outcome.num_placed), error(outcome.mean_error),
-         error(outcome.max_error),
-         known ? scene.views.at(outcome.worst_view).filename : "",
-         error(outcome.mean_error_before_adjustment),
-         std::to_string(outcome.firm_errors.size()),
-         LargestText(outcome.firm_errors), outcome.doubts.empty() ? "0" : "1",
-         Joined(outcome.doubts, ";"), outcome.failure,
-         Format("%.2f", outcome.seconds)});
+    table.rows.push_back({dropped, std::to_string(outcome.num_views),
+                          std::to_string(outcome.num_placed),
+                          error(outcome.mean_error), error(outcome.max_error),
+                          known ? scene.NameOf(outcome.worst_view) : "",
+                          error(outcome.mean_error_before_adjustment),
+                          std::to_string(outcome.firm_errors.size()),
+                          LargestText(outcome.firm_errors),
+                          outcome.doubts.empty() ? "0" : "1",
+                          Joined(outcome.doubts, ";"), outcome.failure,
+                          Format("%.2f", outcome.seconds)});
   }
   return ToCsv(table);
 }

@@ -56,9 +56,9 @@ Result<ImageReport> MeasureAndRefine(Scene* scene,
   }
   report.unrelated = FindUnrelatedViews(report.pairs, measurements.failed);
   for (const UnrelatedView& view : report.unrelated) {
-    context.Log(LogLevel::kWarning,
-                scene->views.at(view.view).filename +
-                    " has no relative pose: " + view.reason);
+    context.Log(
+        LogLevel::kWarning,
+        scene->NameOf(view.view) + " has no relative pose: " + view.reason);
   }
   if (scene->relative_poses.empty()) {
     return MakeError(ErrorCode::kInsufficientData, ExplainNoPose(report.pairs));

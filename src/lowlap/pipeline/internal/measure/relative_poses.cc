@@ -80,8 +80,8 @@ void LogPairsWithoutParallax(const Scene& scene,
   for (const PairReport& report : reports) {
     if (!report.no_parallax || ++count > kMaxNamed) continue;
     const ViewPair& views = report.views;
-    names += (count > 1 ? ", " : "") + scene.views.at(views.first).filename +
-             " - " + scene.views.at(views.second).filename;
+    names += (count > 1 ? ", " : "") + scene.NameOf(views.first) + " - " +
+             scene.NameOf(views.second);
   }
   if (count == 0) return;
   context.Log(LogLevel::kWarning,

@@ -22,22 +22,17 @@ class DiagnosisWriter {
   DiagnosisWriter(const Diagnosis& diagnosis, const Scene& scene)
       : diagnosis_(diagnosis), scene_(scene) {}
 
-  std::string Name(ViewId view) const {
-    const auto found = scene_.views.find(view);
-    return found == scene_.views.end() || found->second.filename.empty()
-               ? std::to_string(view.value())
-               : found->second.filename;
-  }
-
   std::string Names(const std::vector<ViewId>& views) const {
-    return Joined(views, ", ", [this](ViewId view) { return Name(view); });
+    return Joined(views, ", ",
+                  [this](ViewId view) { return scene_.NameOf(view); });
   }
 
   std::string Ratio(std::size_t index) const {
     const ScaleRatio& ratio = scene_.scale_ratios[index];
     const int inliers = ratio.NumInliers();
-    return Name(ratio.views.first) + " - " + Name(ratio.views.middle) + " - " +
-           Name(ratio.views.last) + " (" + std::to_string(inliers) +
+    return scene_.NameOf(ratio.views.first) + " - " +
+           scene_.NameOf(ratio.views.middle) + " - " +
+           scene_.NameOf(ratio.views.last) + " (" + std::to_string(inliers) +
            (inliers == 1 ? " inlier" : " inliers") + ", +-" +
            Format("%.2g", 100 * ratio.log_ratio_stddev) + " %, log10 NFA " +
            Format("%.1f", ratio.log10_nfa) + ")";
@@ -65,7 +60,7 @@ class DiagnosisWriter {
       return text + "no relative pose joins " +
              (part.views.size() == 1 ? "it" : "them") + " to any other view";
     }
-    text += "joined to other views in " + Name(part.meets_in) +
+    text += "joined to other views in " + scene_.NameOf(part.meets_in) +
             ", and no ratio across it is meaningful";
     if (part.rejected_ratio) {
       text += "; the best: " + Ratio(*part.rejected_ratio);
@@ -74,7 +69,7 @@ class DiagnosisWriter {
   }
 
   std::string HingeText(const ScaleArticulation& hinge) const {
-    std::string text = "  on " + Name(hinge.view) + " hang ";
+    std::string text = "  on " + scene_.NameOf(hinge.view) + " hang ";
     for (std::size_t n = 1; n < hinge.parts.size(); ++n) {
       text += (n > 1 ? " | " : "") + Names(hinge.parts[n]);
     }
@@ -100,7 +95,7 @@ class DiagnosisWriter {
       text += "    " + Names(group.views) + "\n";
     }
     for (const ArticulationView& hinge : triplets.articulation_views) {
-      text += "    joined in " + Name(hinge.view) + "\n";
+      text += "    joined in " + scene_.NameOf(hinge.view) + "\n";
     }
     return text;
   }
@@ -113,8 +108,8 @@ class DiagnosisWriter {
       if (part.near_group == kInvalidId) continue;
       if (part.meets_in == kInvalidId) {
         advice.push_back(
-            "Two photographs between " + Name(part.near_group) + " and " +
-            Name(part.near_part) +
+            "Two photographs between " + scene_.NameOf(part.near_group) +
+            " and " + scene_.NameOf(part.near_part) +
             " (the nearest by number; any other place where the parts come "
             "close will do), each overlapping both by more than half; or one, "
             "if the walls or fronts it shares with either are the same.");
@@ -139,11 +134,12 @@ class DiagnosisWriter {
 
  private:
   std::string Across(ViewId a, ViewId middle, ViewId b) const {
-    return "At " + Name(middle) +
-           ": one photograph from nearby that overlaps " + Name(a) + ", " +
-           Name(middle) + " and " + Name(b) + "; or one that shows what " +
-           Name(a) + " - " + Name(middle) + " and " + Name(middle) + " - " +
-           Name(b) +
+    return "At " + scene_.NameOf(middle) +
+           ": one photograph from nearby that overlaps " + scene_.NameOf(a) +
+           ", " + scene_.NameOf(middle) + " and " + scene_.NameOf(b) +
+           "; or one that shows what " + scene_.NameOf(a) + " - " +
+           scene_.NameOf(middle) + " and " + scene_.NameOf(middle) + " - " +
+           scene_.NameOf(b) +
            " both see, since three views of a few points or lines, or lines of "
            "one wall matched in both pairs, fix the scale.";
   }

@@ -139,9 +139,9 @@ Result<ReportContent> MakeReport(const RunSummary& summary, const Scene& scene,
   ReportContent content;
   content.title = "lowlap " + summary.command;
   for (const UnrelatedView& view : summary.unrelated) {
-    content.warnings.push_back({scene.views.at(view.view).filename +
-                                    " has no relative pose: " + view.reason,
-                                {view.view}});
+    content.warnings.push_back(
+        {scene.NameOf(view.view) + " has no relative pose: " + view.reason,
+         {view.view}});
   }
   content.notes = summary.notes;
   if (summary.solve) AddSolve(*summary.solve, scene, &content);
