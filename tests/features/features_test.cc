@@ -72,6 +72,17 @@ TEST(DescribeLinesTest, NoSegmentsNoDescriptors) {
   EXPECT_TRUE(none->empty());
 }
 
+TEST(DescribeLinesTest, AVeryLongStripIsDescribed) {
+  for (const int width : {31000, 70000}) {
+    const GrayImage strip = Render(
+        width, 17, [](const Vec2& p) { return p.y() < 8 ? 60.0 : 200.0; });
+    const auto descriptors =
+        DescribeLines(strip, {Segment(width - 9000, 7.5, width - 1, 7.5)});
+    ASSERT_THAT(descriptors, IsOk()) << width;
+    EXPECT_EQ(descriptors->size(), 1u);
+  }
+}
+
 TEST(DetectFeaturesTest, KindsCanBeLeftOut) {
   const GrayImage image = Render(160, 120, BlobTexture(3, 120, 160));
   FeatureOptions options;

@@ -125,6 +125,36 @@ TEST_F(ImageTest, AJpegCutAnywhereIsNeverACrash) {
   }
 }
 
+TEST_F(ImageTest, AJpegMayEndWithAShortSegment) {
+  std::vector<std::uint8_t> jpeg;
+  cv::imencode(".jpg", cv::Mat(8, 8, CV_8UC1, cv::Scalar(77)), jpeg);
+  std::string bytes(jpeg.begin(), jpeg.end());
+  bytes.insert(bytes.size() - 2, std::string("\xff\xfe\0\3a", 5));
+  EXPECT_THAT(DecodeGrayImage(bytes, "a.jpg"), IsOk());
+}
+
+TEST_F(ImageTest, ATiffIsReadAsStoredWhateverItsOrientation) {
+  cv::Mat stored(3, 5, CV_8UC1);
+  for (int n = 0; n < 15; ++n) stored.data[n] = static_cast<uchar>(10 * n);
+  std::vector<std::uint8_t> tiff;
+  cv::imencode(".tif", stored, tiff, {cv::IMWRITE_TIFF_COMPRESSION, 1});
+  std::string bytes(tiff.begin(), tiff.end());
+  // The tag of the samples per pixel (one by default) becomes the orientation.
+  const std::size_t tag = bytes.find(std::string("\x15\x01\3\0\1\0\0\0", 8));
+  ASSERT_NE(tag, std::string::npos);
+  bytes[tag] = '\x12';
+  for (char orientation = 1; orientation <= 8; ++orientation) {
+    SCOPED_TRACE(static_cast<int>(orientation));
+    bytes[tag + 8] = orientation;
+    const Result<GrayImage> image = DecodeGrayImage(bytes, "a.tif");
+    ASSERT_THAT(image, IsOk());
+    EXPECT_EQ(image->width, 5);
+    EXPECT_EQ(image->height, 3);
+    EXPECT_EQ(image->pixels, std::vector<std::uint8_t>(stored.begin<uchar>(),
+                                                       stored.end<uchar>()));
+  }
+}
+
 TEST_F(ImageTest, AJpegIsWholeOnlyWithItsOwnEnd) {
   // Noise: coded data with every byte value in them. The end of a thumbnail
   // inside a segment is not that of the image.

@@ -123,6 +123,10 @@ TEST(DetectTiltedPointsTest, RefusesOptionsOutOfRange) {
   tilts.max_side_px = 8;
   EXPECT_THAT(Detect(Texture(), tilts),
               IsError(ErrorCode::kInvalidArgument, "max_side_px"));
+  tilts = {};
+  tilts.max_points = 0;
+  EXPECT_THAT(tilts.Validate(),
+              IsError(ErrorCode::kInvalidArgument, "max_points of tilts"));
 }
 
 }  // namespace

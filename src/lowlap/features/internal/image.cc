@@ -67,14 +67,8 @@ Result<GrayImage> DecodeGrayImage(const std::string& bytes,
   LOWLAP_RETURN_IF_ERROR(CheckedSize(bytes, path));
   return ReadWithOpenCv(path, [&]() -> Result<GrayImage> {
     GrayImage image;
-    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
-                          const_cast<char*>(bytes.data()));
-    const cv::Mat pixels = cv::imdecode(
-        encoded, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
-    if (pixels.empty()) {
-      return MakeError(ErrorCode::kParse, "not an image that can be read",
-                       path);
-    }
+    LOWLAP_ASSIGN_OR_RETURN(const cv::Mat pixels,
+                            DecodeAsStored(bytes, cv::IMREAD_GRAYSCALE, path));
     image.width = pixels.cols;
     image.height = pixels.rows;
     image.pixels.assign(pixels.begin<std::uint8_t>(),

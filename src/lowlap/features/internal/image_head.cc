@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <vector>
 
 namespace lowlap {
 namespace {
@@ -52,24 +53,43 @@ std::optional<ImageSize> BmpSize(const std::string& bytes) {
   return size;
 }
 
-// Tags of the first picture of a TIFF file.
-std::optional<ImageSize> TiffSize(const std::string& bytes) {
+// A tag whose value is one number.
+struct TiffTag {
+  std::uint32_t name;
+  std::size_t value_at;
+  int value_size;
+  ByteOrder order;
+};
+
+// Those of the first picture of a TIFF file.
+std::optional<std::vector<TiffTag>> TiffTags(const std::string& bytes) {
   const bool is_little = StartsWith(bytes, {"II*\0", 4});
   if (!is_little && !StartsWith(bytes, {"MM\0*", 4})) return std::nullopt;
   const ByteOrder order = is_little ? ByteOrder::kLittle : ByteOrder::kBig;
-  constexpr std::uint32_t kWidth = 256, kHeight = 257, kShort = 3, kLong = 4;
-  ImageSize size;
+  constexpr std::uint32_t kShort = 3, kLong = 4;
+  std::vector<TiffTag> tags;
   const std::size_t start = NumberAt(bytes, 4, 4, order);
   const std::size_t count = NumberAt(bytes, start, 2, order);
   for (std::size_t n = 0; n < count; ++n) {
     const std::size_t at = start + 2 + 12 * n;
-    const std::uint32_t tag = NumberAt(bytes, at, 2, order);
     const std::uint32_t type = NumberAt(bytes, at + 2, 2, order);
     if (type != kShort && type != kLong) continue;
+    tags.push_back(
+        {NumberAt(bytes, at, 2, order), at + 8, type == kShort ? 2 : 4, order});
+  }
+  return tags;
+}
+
+std::optional<ImageSize> TiffSize(const std::string& bytes) {
+  const auto tags = TiffTags(bytes);
+  if (!tags) return std::nullopt;
+  constexpr std::uint32_t kWidth = 256, kHeight = 257;
+  ImageSize size;
+  for (const TiffTag& tag : *tags) {
     const auto value = static_cast<int>(
-        NumberAt(bytes, at + 8, type == kShort ? 2 : 4, order));
-    if (tag == kWidth) size.width_px = value;
-    if (tag == kHeight) size.height_px = value;
+        NumberAt(bytes, tag.value_at, tag.value_size, tag.order));
+    if (tag.name == kWidth) size.width_px = value;
+    if (tag.name == kHeight) size.height_px = value;
   }
   return size;
 }
@@ -139,7 +159,7 @@ std::optional<ImageHead> JpegHead(const std::string& bytes) {
       head.is_cut_off = false;
       return head;
     }
-    if (at + 9 > bytes.size()) return head;
+    if (at + 4 > bytes.size()) return head;
     // C0..CF are frames, except for tables of Huffman codes (C4), arithmetic
     // conditioning (CC) and the reserved C8.
     if (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 &&
@@ -160,6 +180,22 @@ std::optional<ImageHead> JpegHead(const std::string& bytes) {
 }
 
 }  // namespace
+
+std::optional<std::string> WithoutTiffOrientation(const std::string& bytes) {
+  constexpr std::uint32_t kOrientation = 274;
+  std::optional<std::string> upright;
+  for (const TiffTag& tag : TiffTags(bytes).value_or(std::vector<TiffTag>{})) {
+    if (tag.name != kOrientation || tag.value_size != 2 ||
+        NumberAt(bytes, tag.value_at, 2, tag.order) <= 1) {
+      continue;
+    }
+    if (!upright) upright = bytes;
+    const bool is_big = tag.order == ByteOrder::kBig;
+    (*upright)[tag.value_at] = is_big ? 0 : 1;
+    (*upright)[tag.value_at + 1] = is_big ? 1 : 0;
+  }
+  return upright;
+}
 
 std::optional<ImageHead> ReadImageHead(const std::string& bytes) {
   std::optional<ImageHead> head = JpegHead(bytes);

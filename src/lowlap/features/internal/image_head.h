@@ -17,4 +17,8 @@ struct ImageHead {
 /// anything else.
 std::optional<ImageHead> ReadImageHead(const std::string& bytes);
 
+/// The bytes of a TIFF file that asks to be turned or mirrored, without that;
+/// nullopt for all other files.
+std::optional<std::string> WithoutTiffOrientation(const std::string& bytes);
+
 }  // namespace lowlap

@@ -18,6 +18,11 @@ inline cv::Mat AsMat(const GrayImage& image) {
                  const_cast<std::uint8_t*>(image.pixels.data()));
 }
 
+/// The pixels of an image file as stored, whatever orientation it asks for.
+/// `flags` are those of cv::imdecode; what OpenCV throws goes on.
+Result<cv::Mat> DecodeAsStored(const std::string& bytes, int flags,
+                               const std::string& path);
+
 /// Holds OpenCV to the calling thread while it lives. Images are processed in
 /// parallel by their caller, who was told how many threads it may use; OpenCV
 /// would start its own. The setting is global to the process: the last holder

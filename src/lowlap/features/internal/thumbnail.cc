@@ -16,11 +16,10 @@ namespace {
 // quicker the smaller it is.
 int DecodingFlags(int width_px, int max_width_px) {
   const int reduction = width_px / std::max(1, max_width_px);
-  const int size = reduction >= 8   ? cv::IMREAD_REDUCED_COLOR_8
-                   : reduction >= 4 ? cv::IMREAD_REDUCED_COLOR_4
-                   : reduction >= 2 ? cv::IMREAD_REDUCED_COLOR_2
-                                    : cv::IMREAD_COLOR;
-  return size | cv::IMREAD_IGNORE_ORIENTATION;
+  return reduction >= 8   ? cv::IMREAD_REDUCED_COLOR_8
+         : reduction >= 4 ? cv::IMREAD_REDUCED_COLOR_4
+         : reduction >= 2 ? cv::IMREAD_REDUCED_COLOR_2
+                          : cv::IMREAD_COLOR;
 }
 
 }  // namespace
@@ -30,14 +29,10 @@ Result<std::string> MakeThumbnail(const std::string& bytes, int max_width_px,
   LOWLAP_ASSIGN_OR_RETURN(const ImageSize size, DecodeImageSize(bytes, path));
   const auto make = [&]() -> Result<std::string> {
     const SingleThreadedOpenCv single_threaded;
-    const cv::Mat encoded(1, static_cast<int>(bytes.size()), CV_8UC1,
-                          const_cast<char*>(bytes.data()));
-    cv::Mat image =
-        cv::imdecode(encoded, DecodingFlags(size.width_px, max_width_px));
-    if (image.empty()) {
-      return MakeError(ErrorCode::kParse, "not an image that can be read",
-                       path);
-    }
+    LOWLAP_ASSIGN_OR_RETURN(
+        cv::Mat image,
+        DecodeAsStored(bytes, DecodingFlags(size.width_px, max_width_px),
+                       path));
     if (image.cols > max_width_px) {
       const int height = std::max<int>(
           1, static_cast<int>(std::lround(static_cast<double>(max_width_px) *

@@ -51,7 +51,9 @@ std::vector<LineDescriptor> Describe(const cv::Mat& image,
   const double factor = std::min(
       1.0, kMaxSidePx / static_cast<double>(std::max(image.cols, image.rows)));
   if (factor < 1) {
-    cv::resize(image, small, cv::Size(), factor, factor, cv::INTER_AREA);
+    // At least one pixel of a narrow strip is left.
+    cv::resize(image, small, cv::Size(), std::max(factor, 1.0 / image.cols),
+               std::max(factor, 1.0 / image.rows), cv::INTER_AREA);
   }
   const Vec2 scale(small.cols / static_cast<double>(image.cols),
                    small.rows / static_cast<double>(image.rows));
@@ -80,13 +82,6 @@ std::vector<LineDescriptor> Describe(const cv::Mat& image,
 Result<std::vector<LineDescriptor>> DescribeLines(
     const GrayImage& image, const std::vector<LineSegment>& segments) {
   LOWLAP_RETURN_IF_ERROR(image.Validate());
-  // OpenCV rounds coordinates to 16 bits.
-  constexpr int kMaxCoordinate = 30000;
-  if (std::max(image.width, image.height) > kMaxCoordinate) {
-    return MakeError(ErrorCode::kUnsupported,
-                     "line descriptors of an image of more than " +
-                         std::to_string(kMaxCoordinate) + " pixels a side");
-  }
   const Eigen::AlignedBox2d box(Vec2(-1, -1), Vec2(image.width, image.height));
   for (std::size_t i = 0; i < segments.size(); ++i) {
     if (!box.contains(segments[i].start_px) ||

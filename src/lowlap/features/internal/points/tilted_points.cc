@@ -134,7 +134,8 @@ Result<PointFeatures> DetectInLook(const GrayImage& image,
 Status TiltOptions::Validate() const {
   return Require(
       {{max_tilt >= 1 && max_tilt <= 16, "max_tilt must lie in [1, 16]"},
-       {max_side_px >= 16, "max_side_px must be at least 16"}});
+       {max_side_px >= 16, "max_side_px must be at least 16"},
+       {max_points >= 1, "max_points of tilts must be at least 1"}});
 }
 
 Result<TiltedPoints> DetectTiltedPoints(const GrayImage& image,
