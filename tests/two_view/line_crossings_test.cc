@@ -2,6 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "lowlap/core/internal/random.h"
 #include "two_view/line_scene.h"
 
 namespace lowlap {
@@ -59,6 +65,40 @@ TEST(FindLineCrossings, KeepsAFewPerLine) {
   }
   for (FeatureIndex n = 0; n <= 20; ++n) matches.push_back({n, n});
   EXPECT_EQ(FindLineCrossings(features, features, matches).size(), 4u);
+}
+
+// The places of the crossings in view 1, in some order.
+std::set<std::pair<double, double>> Places(
+    const NormalizedFeatures& features1, const NormalizedFeatures& features2,
+    const std::vector<FeatureMatch>& matches) {
+  std::set<std::pair<double, double>> places;
+  for (const LineCrossing& crossing :
+       FindLineCrossings(features1, features2, matches)) {
+    places.emplace(std::round(1e6 * crossing.x1.x()),
+                   std::round(1e6 * crossing.x1.y()));
+  }
+  return places;
+}
+
+TEST(FindLineCrossings, DoesNotDependOnTheOrderOfMatches) {
+  // A facade: all lines cross within their segments, none closer than others.
+  NormalizedFeatures features;
+  features.focal_px = kFocal;
+  std::vector<FeatureMatch> matches;
+  Random random(1);
+  for (FeatureIndex n = 0; n < 20; ++n) {
+    const double place = -0.4 + 0.04 * n;
+    const double low = random.Uniform(-0.8, -0.5);
+    const double high = random.Uniform(0.5, 0.8);
+    features.segments.push_back(
+        n % 2 == 0 ? MakeSegment({place, low, 1}, {place, high, 1})
+                   : MakeSegment({low, place, 1}, {high, place, 1}));
+    matches.push_back({n, n});
+  }
+  const auto places = Places(features, features, matches);
+  EXPECT_GT(places.size(), 10u);
+  std::reverse(matches.begin(), matches.end());
+  EXPECT_EQ(Places(features, features, matches), places);
 }
 
 TEST(FindLineCrossings, StatesTheErrorOfTheCrossing) {

@@ -72,6 +72,7 @@ std::vector<LineCrossing> FindLineCrossings(
     const std::vector<FeatureMatch>& line_matches) {
   struct Candidate {
     double gap;
+    double variance;  // of the crossing, in both views together
     std::size_t a, b;
     LineCrossing crossing;
   };
@@ -87,6 +88,7 @@ std::vector<LineCrossing> FindLineCrossings(
       if (!in2) continue;
       candidates.push_back({std::max(in1->gap * features1.focal_px,
                                      in2->gap * features2.focal_px),
+                            in1->covariance.trace() + in2->covariance.trace(),
                             a,
                             b,
                             {in1->point,
@@ -98,7 +100,8 @@ std::vector<LineCrossing> FindLineCrossings(
   }
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& p, const Candidate& q) {
-              return std::tie(p.gap, p.a, p.b) < std::tie(q.gap, q.a, q.b);
+              return std::tie(p.gap, p.variance, p.a, p.b) <
+                     std::tie(q.gap, q.variance, q.a, q.b);
             });
   std::vector<int> uses(line_matches.size(), 0);
   std::vector<Candidate> kept;

@@ -27,8 +27,9 @@ struct LineCrossing {
 /// precise than a blob; where they do not, it is an outlier. Candidates are
 /// couples of matches whose segments make an angle of at least 20 degrees and
 /// come closer to their crossing, in both views, than a twentieth of their
-/// length and `focal / 100`; every match joins at most four, the closest.
-/// Sorted by match.
+/// length and `focal / 100`; every match joins at most four, the closest,
+/// and of those within their segments the most precise, whatever the order of
+/// the matches. Sorted by match.
 std::vector<LineCrossing> FindLineCrossings(
     const NormalizedFeatures& features1, const NormalizedFeatures& features2,
     const std::vector<FeatureMatch>& line_matches);
