@@ -281,7 +281,8 @@ RatioNfa RatioNfaCriterion::LeastOverChoices() const {
         KindNfa& kind = nfa.kinds[k];
         kind.speaks = choice.unsampled < 0;
         kind.log10_nfa = k == sampled ? choice.sampled : choice.unsampled;
-        if (!kind.speaks) continue;
+        // How far the inliers of pairs reach, both sides tell.
+        if (!kind.speaks || support_.kind(k).units().num_sides > 1) continue;
         kind.tier = choice.tier;
         kind.step = choice.step;
       }

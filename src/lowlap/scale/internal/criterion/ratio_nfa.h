@@ -63,7 +63,9 @@ struct RatioNfaBound {
 ///    smoothed by the same logistic, over its mean.
 ///  - The least error of a member of pairs over its partners is measured as
 ///    such, so that the number of partners is paid for.
-///  - A pair has two members: see CalibratedPairValues.
+///  - A pair has two members: see CalibratedPairValues. The side that says less
+///    counts; the step of its kind (KindNfa::step) is that at which both say
+///    most, since inliers reach as far as they do for both.
 ///  - Of the tiers of a kind the best counts, which is paid for by their
 ///    number.
 ///  - One sample is taken from all kinds together: see Evaluate.
