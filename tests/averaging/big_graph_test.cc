@@ -40,5 +40,23 @@ INSTANTIATE_TEST_SUITE_P(Shapes, BigGraphs,
                                            GraphShape::kTown,
                                            GraphShape::kRandom));
 
+// Views that directions place one after the other, and a street where every
+// pair is a part of its own.
+TEST(BigGraph, WithoutRatiosIsPlacedAsFarAsDirectionsGo) {
+  for (const bool is_town : {true, false}) {
+    BigGraphOptions options;
+    options.shape = is_town ? GraphShape::kTown : GraphShape::kStreet;
+    options.num_views = 2000;
+    options.num_edges = is_town ? 10'000 : 1999;
+    options.num_ratios = 0;
+    options.direction_stddev_rad = 0.001;
+    const BigGraph graph = MakeBigGraph(options);
+    const auto solution =
+        GraphScalesAverager().Solve(graph.made.problem, RunContext());
+    ASSERT_TRUE(solution);
+    EXPECT_EQ(solution->NumPlaced(), is_town ? 2000 : 2);
+  }
+}
+
 }  // namespace
 }  // namespace lowlap

@@ -73,21 +73,31 @@ void EdgeScalesOfGraph(benchmark::State& state) {
   }
 }
 
-void CentersOfGraph(benchmark::State& state) {
-  const BigGraph graph = GraphOf(state);
-  const GraphScalesAverager averager;
+// Solves the graph once a round; counts its time in factorizations.
+Result<TranslationSolution> SolveTimed(const TranslationProblem& problem,
+                                       benchmark::State* state) {
   Result<TranslationSolution> solution;
   double seconds = 0;
-  for (auto _ : state) {
+  for (auto _ : *state) {
     seconds += testing::ProcessorSeconds(
-        [&] { solution = averager.Solve(graph.made.problem, RunContext()); });
-    if (!solution) return state.SkipWithError("the graph was not solved");
+        [&] { solution = GraphScalesAverager().Solve(problem, RunContext()); });
+    if (!solution) {
+      state->SkipWithError("the graph was not solved");
+      return solution;
+    }
   }
-  state.counters["factorizations"] = seconds /
-                                     static_cast<double>(state.iterations()) /
-                                     FactorizationSeconds(graph.made.problem);
+  state->counters["factorizations"] = seconds /
+                                      static_cast<double>(state->iterations()) /
+                                      FactorizationSeconds(problem);
+  return solution;
+}
+
+void CentersOfGraph(benchmark::State& state) {
+  const BigGraph graph = GraphOf(state);
+  const auto solution = SolveTimed(graph.made.problem, &state);
+  if (!solution) return;
   state.counters["error_m"] = MedianCenterError(graph.made, *solution);
-  const auto oracle = averager.Solve(graph.oracle, RunContext());
+  const auto oracle = GraphScalesAverager().Solve(graph.oracle, RunContext());
   if (!oracle) return state.SkipWithError("the graph was not solved");
   state.counters["oracle_error_m"] = MedianCenterError(graph.made, *oracle);
 }
@@ -103,17 +113,8 @@ void CentersWithoutRatios(benchmark::State& state) {
   options.num_ratios = 0;
   options.direction_stddev_rad = 0.001;
   const BigGraph graph = MakeBigGraph(options);
-  const GraphScalesAverager averager;
-  Result<TranslationSolution> solution;
-  double seconds = 0;
-  for (auto _ : state) {
-    seconds += testing::ProcessorSeconds(
-        [&] { solution = averager.Solve(graph.made.problem, RunContext()); });
-    if (!solution) return state.SkipWithError("the graph was not solved");
-  }
-  state.counters["factorizations"] = seconds /
-                                     static_cast<double>(state.iterations()) /
-                                     FactorizationSeconds(graph.made.problem);
+  const auto solution = SolveTimed(graph.made.problem, &state);
+  if (!solution) return;
   state.counters["placed"] = solution->NumPlaced();
 }
 BENCHMARK(CentersWithoutRatios)

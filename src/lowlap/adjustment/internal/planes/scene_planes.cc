@@ -143,12 +143,7 @@ class PlaneBuilder {
                                     DistanceBetween(landmarks_, *facet, plane));
       for (const int member : facet->members) add(member, off / thickest);
     }
-    if (tied.size() < kMinTies) {
-      for (const PlaneMember& member : tied) {
-        taken_[member.landmark - landmarks_.data()] = 0;
-      }
-      return false;
-    }
+    if (tied.size() < kMinTies) return false;
     const std::size_t part = PartOf(*facets.front(), parts_);
     for (std::size_t n = 0; n < landmarks_.size(); ++n) {
       if (parts_[n] != part) continue;
