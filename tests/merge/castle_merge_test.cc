@@ -23,6 +23,7 @@ namespace {
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
 using ::testing::HasSubstr;
 using ::testing::SizeIs;
 
@@ -131,6 +132,17 @@ TEST_F(CastleMerge, APartThatIsTurnedInsideIsNamed) {
   EXPECT_THAT(check->pieces, SizeIs(2));
   EXPECT_THAT(DescribeCheck(model, *check, measured_),
               Contains(HasSubstr("by 20.0 degrees of rotation")));
+}
+
+// Far baselines across the camera agree in direction and, to a tenth, in ratio.
+TEST_F(CastleMerge, APartOfAnotherScaleStaysWhole) {
+  const PartialModel model =
+      Glued(PartOf(solution_, Range(0, 11)), 6, 1.5, Mat3::Identity());
+  const auto check = CheckModel(measured_, model, SolveOptions(), RunContext());
+  ASSERT_THAT(check, testing::IsOk());
+  ASSERT_THAT(check->pieces, SizeIs(2));
+  EXPECT_THAT(check->pieces[0].views, ElementsAreArray(Range(5, 11)));
+  EXPECT_THAT(check->pieces[1].views, ElementsAreArray(Range(0, 5)));
 }
 
 // OpenMVG's result without three of the photographs: two parts that share one

@@ -77,5 +77,22 @@ TEST_F(RigidPiecesTest, APieceThatGrowsMayMeetAnother) {
   EXPECT_EQ(pieces[0].pairs.size(), pairs_.size());
 }
 
+// As far from where two parts were put together: the wrong scale of a part
+// changes a long distance by little, which agrees, but bears nothing out.
+TEST_F(RigidPiecesTest, WhatNearlyContradictsJoinsNothing) {
+  Add(AllOf(0, 3));
+  const std::size_t num_before = ratios_.size();
+  Add({{0, 4}, {1, 4}});
+  for (std::size_t r = num_before; r < ratios_.size(); ++r) {
+    ratios_[r].error = 0.95 * ratios_[r].limit;
+  }
+  for (const ViewId view : {0u, 1u}) {
+    ratios_.push_back({{ViewId(2), view, ViewId(4)}, 0.28, 0.299, -20});
+  }
+  const std::vector<RigidPiece> pieces = Find();
+  ASSERT_THAT(pieces, SizeIs(1));
+  EXPECT_THAT(pieces[0].views, SizeIs(4));
+}
+
 }  // namespace
 }  // namespace lowlap

@@ -4,12 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "lowlap/averaging/internal/sparse_solver.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/merge/internal/linked_pieces.h"
 #include "lowlap/merge/internal/signed_clusters.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -203,6 +203,16 @@ Agreeing Nearby(const Agreeing& agreeing, ViewId middle,
   return nearby;
 }
 
+// What a measured ratio says for or against one scale of its two baselines: as
+// much against it beyond its limit as for it where it agrees, and nothing
+// between. Far from where a model was put together a wrong scale changes ratios
+// by little.
+double EvidenceOf(const RatioAgreement& ratio) {
+  const double weight = 1 + std::log1p(std::max(0.0, -ratio.log10_nfa));
+  const double relative = ratio.error / ratio.limit;
+  return weight * std::max(-1.0, 1 - 2 * relative * relative);
+}
+
 // Those of the triplets, by their middle views, whose ratios are fixed to
 // `firm`. What its neighbours fix about a view is fixed; only of the rest, few
 // as a rule, all views are asked, at a cost that grows with their square.
@@ -243,107 +253,6 @@ Result<std::vector<ViewTriplet>> FirmTriplets(
   return fixed;
 }
 
-// A cluster of baselines, and the evidence between it and each other one.
-struct Cluster {
-  std::set<ViewPair> pairs;
-  std::set<ViewId> views;
-  std::vector<std::size_t> labels;
-  std::map<std::size_t, double> evidence;  // by label
-};
-
-std::map<std::size_t, Cluster> ClustersOf(
-    const ViewGraph& graph, const std::vector<std::size_t>& labels,
-    const std::vector<SignedLink>& links) {
-  std::map<std::size_t, Cluster> clusters;
-  for (std::size_t e = 0; e < labels.size(); ++e) {
-    const ViewPair& views = graph.pairs()[e];
-    Cluster& cluster = clusters[labels[e]];
-    cluster.pairs.insert(views);
-    cluster.views.insert({views.first, views.second});
-    cluster.labels = {labels[e]};
-  }
-  for (const SignedLink& link : links) {
-    const std::size_t a = labels[link.first], b = labels[link.second];
-    if (a == b) continue;
-    clusters[a].evidence[b] += link.evidence;
-    clusters[b].evidence[a] += link.evidence;
-  }
-  return clusters;
-}
-
-std::size_t CountShared(const std::set<ViewId>& a, const std::set<ViewId>& b) {
-  return static_cast<std::size_t>(std::count_if(
-      a.begin(), a.end(), [&](ViewId view) { return b.count(view) > 0; }));
-}
-
-double EvidenceBetween(const Cluster& a, const Cluster& b) {
-  double sum = 0;
-  for (const std::size_t label : b.labels) {
-    const auto found = a.evidence.find(label);
-    if (found != a.evidence.end()) sum += found->second;
-  }
-  return sum;
-}
-
-void Absorb(const Cluster& cluster, Cluster* larger) {
-  larger->pairs.insert(cluster.pairs.begin(), cluster.pairs.end());
-  larger->views.insert(cluster.views.begin(), cluster.views.end());
-  larger->labels.insert(larger->labels.end(), cluster.labels.begin(),
-                        cluster.labels.end());
-  for (const auto& [other, value] : cluster.evidence) {
-    larger->evidence[other] += value;
-  }
-}
-
-// Two pieces of one model that share two views have one scale, that of the
-// distance between these. So either they are one, or, if evidence says that
-// they are not, one of them is none: baselines that span the gap between
-// others, too straight to tell how wide it is, bear each other out and nothing
-// else.
-std::vector<RigidPiece> PiecesOf(std::map<std::size_t, Cluster> clusters) {
-  std::vector<std::size_t> labels;
-  for (const auto& [label, cluster] : clusters) {
-    if (cluster.views.size() >= 3) labels.push_back(label);
-  }
-  std::stable_sort(
-      labels.begin(), labels.end(), [&](std::size_t a, std::size_t b) {
-        return clusters.at(a).pairs.size() > clusters.at(b).pairs.size();
-      });
-  std::vector<Cluster*> accepted;
-  for (const std::size_t label : labels) {
-    Cluster* cluster = &clusters.at(label);
-    // One that has grown may share two views with others accepted before.
-    for (;;) {
-      const auto same = std::find_if(
-          accepted.begin(), accepted.end(), [&](const Cluster* larger) {
-            return CountShared(cluster->views, larger->views) >= 2;
-          });
-      if (same == accepted.end()) {
-        accepted.push_back(cluster);
-        break;
-      }
-      Cluster* larger = *same;
-      if (cluster->pairs.size() > larger->pairs.size()) {
-        std::swap(cluster, larger);
-      }
-      accepted.erase(same);
-      if (EvidenceBetween(*larger, *cluster) >= 0) Absorb(*cluster, larger);
-      cluster = larger;
-    }
-  }
-  std::vector<RigidPiece> pieces;
-  pieces.reserve(accepted.size());
-  for (const Cluster* cluster : accepted) {
-    pieces.push_back({{cluster->views.begin(), cluster->views.end()},
-                      {cluster->pairs.begin(), cluster->pairs.end()}});
-  }
-  std::stable_sort(pieces.begin(), pieces.end(),
-                   [](const RigidPiece& a, const RigidPiece& b) {
-                     return a.views.size() > b.views.size();
-                   });
-  return pieces;
-}
-
 }  // namespace
 
 Result<std::vector<RigidPiece>> FindRigidPieces(
@@ -362,33 +271,36 @@ Result<std::vector<RigidPiece>> FindRigidPieces(
   const double firm = DiagnosisOptions().max_stddev;
   std::vector<SignedLink> links;
   std::map<ViewId, std::vector<ViewTriplet>> asked;  // by middle view
-  const auto link = [&](const ViewTriplet& views, double sign) {
-    const auto found = measured.find(views);
-    const double evidence =
-        found == measured.end()
-            ? 1
-            : 1 + std::log1p(std::max(0.0, -found->second->log10_nfa));
+  const auto link = [&](const ViewTriplet& views, double evidence) {
     links.push_back({*graph.FindPair(views.first, views.middle),
-                     *graph.FindPair(views.middle, views.last),
-                     sign * evidence});
+                     *graph.FindPair(views.middle, views.last), evidence});
   };
   for (const ViewTriplet& views : FindTriplets(graph)) {
     const auto found = measured.find(views);
-    if (found != measured.end() && !found->second->Agrees()) {
-      link(views, -1);
-    } else if (found != measured.end() &&
-               found->second->limit <= reach * firm) {
-      link(views, 1);
+    if (found != measured.end() &&
+        (!found->second->Agrees() || found->second->limit <= reach * firm)) {
+      link(views, EvidenceOf(*found->second));
     } else {
       asked[views.middle].push_back(views);
     }
   }
   LOWLAP_ASSIGN_OR_RETURN(const auto fixed,
                           FirmTriplets(poses, agreeing, asked, firm, context));
-  for (const ViewTriplet& views : fixed) link(views, 1);
-  const std::vector<std::size_t> labels =
-      ClusterByLinks(graph.pairs().size(), links);
-  return PiecesOf(ClustersOf(graph, labels, links));
+  // What follows from directions about one baseline at one view is one
+  // statement, with however many others it shares the view.
+  std::map<std::pair<ViewId, ViewId>, int> num_fixed;  // middle, other end
+  for (const ViewTriplet& views : fixed) {
+    ++num_fixed[{views.middle, views.first}];
+    ++num_fixed[{views.middle, views.last}];
+  }
+  for (const ViewTriplet& views : fixed) {
+    const auto found = measured.find(views);
+    link(views, found != measured.end()
+                    ? EvidenceOf(*found->second)
+                    : 1.0 / std::max(num_fixed.at({views.middle, views.first}),
+                                     num_fixed.at({views.middle, views.last})));
+  }
+  return PiecesOfLinks(graph, std::move(links));
 }
 
 }  // namespace lowlap
