@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/scene/scene.h"
 #include "support/data_folder.h"
@@ -32,11 +33,13 @@ PoseSummary SolveWithout(const std::vector<ViewId>& views) {
   return solved->poses;
 }
 
-// Five of the eleven were 2.8 times too near to one another, by ratios across
-// 3; the relative pose 10 - 13, left out, says so.
+// Five of the eleven may be 2.8 times too near to one another: what tells the
+// scale across 3 is weak, or contested by the relative pose 10 - 13.
 TEST(CastleContests, TheScaleAcrossOneCamera) {
-  EXPECT_THAT(SolveWithout({0, 1, 2, 4, 8, 9, 11, 12}).contests,
-              Contains(Field(&Contest::views, ElementsAre(5, 6, 7, 10))));
+  const auto grades = GradeViews(SolveWithout({0, 1, 2, 4, 8, 9, 11, 12}));
+  for (const ViewId view : {5u, 6u, 7u, 10u}) {
+    EXPECT_NE(grades.at(view).grade, ViewGrade::kFirm) << view;
+  }
 }
 
 // A false relative pose won against four that are right.

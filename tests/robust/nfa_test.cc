@@ -90,7 +90,7 @@ TEST(CalibratedValues, IsCappedAtOneAndProbabilitiesToo) {
             0.0);
 }
 
-TEST(CalibratedPairValues, IsTheGeometricMeanOfTheSides) {
+TEST(CalibratedPairValues, IsThatOfTheSideThatSaysLess) {
   const LogFactorials factorials(30);
   LadderCounts counts{};
   counts.fill(10);
@@ -98,15 +98,39 @@ TEST(CalibratedPairValues, IsTheGeometricMeanOfTheSides) {
   log10_alpha.fill(-2);
   const NfaTerm one =
       LeastOverSteps(CalibratedValues(factorials, 30, counts, log10_alpha, 1));
-  const NfaTerm pair = LeastOverSteps(CalibratedPairValues(
-      factorials, 30, counts, log10_alpha, 30, counts, log10_alpha, 1));
+  const auto pair_of = [&](const LadderCounts& a, const LadderCounts& b) {
+    return CalibratedPairValues(factorials, 30, a, log10_alpha, 30, b,
+                                log10_alpha, 1);
+  };
+  const NfaTerm pair = LeastOverSteps(pair_of(counts, counts).log10_nfa);
   EXPECT_NEAR(pair.log10_nfa, one.log10_nfa, 1e-12);
   LadderCounts one_line{};
   one_line.fill(1);
-  // One line paired with a bundle: the other side has nothing to say.
-  const NfaTerm star = LeastOverSteps(CalibratedPairValues(
-      factorials, 30, one_line, log10_alpha, 30, counts, log10_alpha, 1));
-  EXPECT_NEAR(star.uncapped, 0.5 * (one.log10_nfa + std::log10(15.0)), 1e-12);
+  // One line paired with a bundle: it is the sample of all of them.
+  const PairLadderValues star = pair_of(one_line, counts);
+  EXPECT_NEAR(LeastOverSteps(star.log10_nfa).uncapped, std::log10(15.0), 1e-12);
+  EXPECT_EQ(LeastOverSteps(star.log10_nfa).log10_nfa, 0);
+  // Yet of ratios that chance explains it is before one line and another.
+  EXPECT_LT(star.order[0], pair_of(one_line, one_line).order[0]);
+}
+
+// As the least value over counts in an interval of ratios must.
+TEST(CalibratedPairValues, NeverRiseWithACountOnceTheySpeak) {
+  const int n = 40;
+  const LogFactorials factorials(n);
+  LadderProbabilities log10_alpha;
+  log10_alpha.fill(-1.2);
+  const auto speaks = [&](int num_a, int num_b) {
+    LadderCounts a{}, b{};
+    a.fill(num_a);
+    b.fill(num_b);
+    const PairLadderValues values = CalibratedPairValues(
+        factorials, n, a, log10_alpha, n, b, log10_alpha, 1);
+    return LeastOverSteps(values.log10_nfa).log10_nfa;
+  };
+  for (int a = 1; a <= n; ++a) {
+    for (int b = 1; b < n; ++b) EXPECT_LE(speaks(a, b + 1), speaks(a, b));
+  }
 }
 
 // Against the printed formulas with the k-th error at the threshold.

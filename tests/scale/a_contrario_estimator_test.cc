@@ -6,9 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/core/internal/random.h"
+#include "lowlap/scale/evidence/internal/line_in_middle.h"
 #include "lowlap/scale/scale_estimator.h"
 #include "scale/estimate.h"
 #include "scale/even_evidence.h"
+#include "scale/synthetic_room.h"
 #include "scale/synthetic_triplet.h"
 
 namespace lowlap {
@@ -158,8 +161,34 @@ INSTANTIATE_TEST_SUITE_P(
                       std::make_pair("Lines", std::vector<int>{0, 30, 0}),
                       std::make_pair("Pairs", std::vector<int>{0, 0, 40}),
                       std::make_pair("FewPairs", std::vector<int>{0, 0, 12}),
+                      std::make_pair("ManyPairs", std::vector<int>{0, 0, 80}),
                       std::make_pair("Mixed", std::vector<int>{20, 15, 30})),
     [](const auto& kind) { return kind.param.first; });
+
+// Lines of walls in one pair; in the other each at a depth of its own, parallel
+// to itself, as a match of the next of several edges puts it. All lines beside
+// it on the same wall agree with it on a ratio, which is no more than its own.
+TEST(AContrarioScaleEstimator, ABundleThatMeetsOneLineIsNotMeaningful) {
+  constexpr int kTriplets = 300;
+  int meaningful = 0;
+  for (std::uint64_t seed = 0; seed < kTriplets; ++seed) {
+    Random random(seed);
+    TripletView view =
+        MakeSyntheticTriplet(PairsOnly(80, 0.3, 0), 70000 + seed).view;
+    const RigidTransform& camk = view.geometry.camk_from_camj;
+    for (MatchedLine& line : view.lines_jk) {
+      const double factor = std::exp(random.Gaussian(0.5));
+      NormalizedSegment& in_k = line.in_neighbor.segment;
+      const auto image = [&](const Vec3& x) {
+        return camk * Vec3(factor * DepthOnPlane(camk, in_k.normal, x) * x);
+      };
+      const NormalizedSegment& in_j = line.in_middle.segment;
+      in_k = testing::MakeSegment(image(in_j.start), image(in_j.end));
+    }
+    meaningful += EstimateRatio(view).verdict == RatioVerdict::kMeaningful;
+  }
+  EXPECT_LE(meaningful, kTriplets / 100);
+}
 
 TEST(AContrarioScaleEstimator, ThePaperFormTakesNoiseForACertainty) {
   SyntheticTripletOptions options = PairsOnly(60, 1.0, 0);

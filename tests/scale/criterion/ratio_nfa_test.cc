@@ -66,6 +66,28 @@ TEST(RatioNfa, OfOneKindCountsAllInliersButTheSample) {
   EXPECT_TRUE(nfa.kinds[0].speaks);
 }
 
+// Pairs without a common member, all at ratio 1.
+class EvenPairs : public EvenEvidence {
+ public:
+  EvenPairs(int count, double width) : EvenEvidence({}, width) {
+    StartPairs(1);
+    for (int n = 0; n < count; ++n) {
+      AddPair({CandidateStatus::kValid, 0.0, width}, 0, {n, n});
+    }
+  }
+};
+
+TEST(RatioNfa, OfPairsTheSideThatSaysLessCountsAndBothTellHowFarInliersReach) {
+  constexpr int kFine = 1, kCoarse = 6, kPairs = 10;
+  const auto kind = std::make_shared<EvenPairs>(kPairs, 0.02);
+  SupportCounts counts = {From(kFine, 3), From(kFine, 3)};
+  std::fill(counts[1].begin() + kCoarse, counts[1].end(), kPairs);
+  const RatioNfa nfa = Evaluate({kind}, counts);
+  ASSERT_TRUE(nfa.kinds[0].speaks);
+  EXPECT_NEAR(nfa.kinds[0].log10_nfa, Term(*kind, kPairs - 1, 2, kFine), 1e-9);
+  EXPECT_EQ(nfa.kinds[0].step, kCoarse);
+}
+
 TEST(RatioNfa, OfOneUnitIsTheNumberOfTestsHoweverSureItIs) {
   EXPECT_NEAR(Evaluate({Units(1, 1e-12)}, {From(0, 1)}).log10_nfa,
               std::log10(1 * 4), 1e-9);

@@ -90,13 +90,13 @@ LadderValues CalibratedValues(const LogFactorials& factorials, int n,
   return values;
 }
 
-LadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
-                                  const LadderCounts& counts_a,
-                                  const LadderProbabilities& log10_alpha_a,
-                                  int n_b, const LadderCounts& counts_b,
-                                  const LadderProbabilities& log10_alpha_b,
-                                  int sampled) {
-  LadderValues values{};
+PairLadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
+                                      const LadderCounts& counts_a,
+                                      const LadderProbabilities& log10_alpha_a,
+                                      int n_b, const LadderCounts& counts_b,
+                                      const LadderProbabilities& log10_alpha_b,
+                                      int sampled) {
+  PairLadderValues values;
   if (n_a <= sampled && n_b <= sampled) return values;
   static const double kLog10Tests =
       std::log10(static_cast<double>(kNumThresholds));
@@ -107,7 +107,8 @@ LadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
     const double b =
         Log10ChanceOfSet(factorials, n_b - sampled, counts_b[step] - sampled,
                          log10_alpha_b[step]);
-    values[step] = kLog10Tests + 0.5 * (a + b);
+    values.log10_nfa[step] = kLog10Tests + std::max(a, b);
+    values.order[step] = kLog10Tests + 0.5 * (a + b);
   }
   return values;
 }

@@ -56,17 +56,27 @@ LadderValues CalibratedValues(const LogFactorials& factorials, int n,
                               const LadderProbabilities& log10_alpha,
                               int sampled);
 
+/// Two sides at every step.
+struct PairLadderValues {
+  LadderValues log10_nfa{};
+  /// The mean of the two sides: no NFA, but where there is none to tell ratios
+  /// apart it prefers those on which more agree.
+  LadderValues order{};
+};
+
 /// The same of pairs, whose members a (n_a of them) and b form two sides: an
 /// inlier pair makes one member of each side an inlier, so that members of both
-/// sides together would count every accident twice. Each side alone is a valid
-/// count given the other, and so is the geometric mean of the two
-/// (Cauchy-Schwarz): NFA = min(1, min over steps sqrt(NFA_a NFA_b)).
-LadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
-                                  const LadderCounts& counts_a,
-                                  const LadderProbabilities& log10_alpha_a,
-                                  int n_b, const LadderCounts& counts_b,
-                                  const LadderProbabilities& log10_alpha_b,
-                                  int sampled);
+/// sides together would count every accident twice. Nor does the side that says
+/// more count accidents: a bundle of lines of one plane agrees with a single
+/// line of the other side, wherever that is. By chance no more agree than pairs
+/// without a common member, hence the side that says less counts:
+///   NFA = min(1, min over steps max(NFA_a, NFA_b)).
+PairLadderValues CalibratedPairValues(const LogFactorials& factorials, int n_a,
+                                      const LadderCounts& counts_a,
+                                      const LadderProbabilities& log10_alpha_a,
+                                      int n_b, const LadderCounts& counts_b,
+                                      const LadderProbabilities& log10_alpha_b,
+                                      int sampled);
 
 /// The terms as printed in Salaün et al. 2017, section 6, with the thresholds
 /// of the ladder for the errors e_k. They are **not** calibrated: on unrelated

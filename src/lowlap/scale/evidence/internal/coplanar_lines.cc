@@ -50,6 +50,8 @@ class CoplanarLines : public ResidualEvidence<TransferResiduals> {
     }
   }
 
+  // An error vanishes at the pair's own ratio, which every interval surrounds.
+  double NumTests() const override { return size(); }
   NfaTerm PaperTerm(const LogFactorials& factorials,
                     const LadderCounts* counts) const override {
     LadderCounts both{};

@@ -183,14 +183,17 @@ void RatioNfaCriterion::FindValues(const SupportCounts& counts,
         law[side] = Scaled(backgrounds_[at].log10_alpha[side], density);
       }
       const auto values = [&](int sampled) {
-        LadderValues of_sample =
-            units.num_sides == 1
-                ? CalibratedValues(factorials_, tier.num_units[0], of_tier[0],
-                                   law[0], sampled)
-                : CalibratedPairValues(factorials_, tier.num_units[0],
-                                       of_tier[0], law[0], tier.num_units[1],
-                                       of_tier[1], law[1], sampled);
-        for (double& value : of_sample) value += log10_tiers;
+        PairLadderValues of_sample;
+        if (units.num_sides == 1) {
+          of_sample.log10_nfa = of_sample.order = CalibratedValues(
+              factorials_, tier.num_units[0], of_tier[0], law[0], sampled);
+        } else {
+          of_sample = CalibratedPairValues(
+              factorials_, tier.num_units[0], of_tier[0], law[0],
+              tier.num_units[1], of_tier[1], law[1], sampled);
+        }
+        for (double& value : of_sample.log10_nfa) value += log10_tiers;
+        for (double& value : of_sample.order) value += log10_tiers;
         return of_sample;
       };
       values_[at] = {values(0), values(1)};
@@ -206,8 +209,9 @@ RatioNfaCriterion::Choice RatioNfaCriterion::LeastChoice(int kind,
     if (units.tiers[t].num_candidates == 0) continue;
     const TierValues& values = values_[support_.FirstTier(kind) + t];
     for (int step = 0; step < kNumThresholds; ++step) {
-      const Choice choice = {values.unsampled[step],
-                             std::min(0.0, values.sampled[step]), t, step};
+      const Choice choice = {values.unsampled.log10_nfa[step],
+                             std::min(0.0, values.sampled.log10_nfa[step]), t,
+                             step};
       if (choice.unsampled < least.unsampled && choice.Loss() < limit) {
         least = choice;
       }
@@ -217,14 +221,14 @@ RatioNfaCriterion::Choice RatioNfaCriterion::LeastChoice(int kind,
 }
 
 KindNfa RatioNfaCriterion::LeastUncapped(
-    int kind, LadderValues TierValues::*values) const {
+    int kind, PairLadderValues TierValues::*values) const {
   const EvidenceUnits& units = support_.kind(kind).units();
   KindNfa best;
   best.uncapped = std::numeric_limits<double>::infinity();
   for (int t = 0; t < units.num_tiers(); ++t) {
     if (units.tiers[t].num_candidates == 0) continue;
     const NfaTerm term =
-        LeastOverSteps(values_[support_.FirstTier(kind) + t].*values);
+        LeastOverSteps((values_[support_.FirstTier(kind) + t].*values).order);
     if (term.uncapped < best.uncapped) best = {term, t, false};
   }
   best.log10_nfa = 0;
@@ -277,7 +281,8 @@ RatioNfa RatioNfaCriterion::LeastOverChoices() const {
         KindNfa& kind = nfa.kinds[k];
         kind.speaks = choice.unsampled < 0;
         kind.log10_nfa = k == sampled ? choice.sampled : choice.unsampled;
-        if (!kind.speaks) continue;
+        // How far the inliers of pairs reach, both sides tell.
+        if (!kind.speaks || support_.kind(k).units().num_sides > 1) continue;
         kind.tier = choice.tier;
         kind.step = choice.step;
       }
@@ -311,8 +316,9 @@ RatioNfaBound RatioNfaCriterion::Bound(double low, double high,
       for (int step = 0; step < kNumThresholds; ++step) {
         // The most that any kind loses is no less than what this one does.
         bound.tiers[at][step] =
-            values_[at].unsampled[step] < 0
-                ? all - best[k] + std::min(0.0, values_[at].sampled[step])
+            values_[at].unsampled.log10_nfa[step] < 0
+                ? all - best[k] +
+                      std::min(0.0, values_[at].sampled.log10_nfa[step])
                 : std::numeric_limits<double>::infinity();
       }
     }

@@ -63,7 +63,9 @@ struct RatioNfaBound {
 ///    smoothed by the same logistic, over its mean.
 ///  - The least error of a member of pairs over its partners is measured as
 ///    such, so that the number of partners is paid for.
-///  - A pair has two members: see CalibratedPairValues.
+///  - A pair has two members: see CalibratedPairValues. The side that says less
+///    counts; the step of its kind (KindNfa::step) is that at which both say
+///    most, since inliers reach as far as they do for both.
 ///  - Of the tiers of a kind the best counts, which is paid for by their
 ///    number.
 ///  - One sample is taken from all kinds together: see Evaluate.
@@ -107,10 +109,11 @@ class RatioNfaCriterion {
     std::array<LadderProbabilities, 2> log10_alpha{};
     RatioDensity density;
   };
-  // A tier by itself at every step.
+  // A tier by itself at every step: its log10 NFA, and what orders the steps
+  // where that says nothing.
   struct TierValues {
-    LadderValues unsampled{};
-    LadderValues sampled{};
+    PairLadderValues unsampled;
+    PairLadderValues sampled;
   };
   void MeasureBackground(int kind, const TripletView& triplet);
   RatioNfa EvaluatePaper(const SupportCounts& counts) const;
@@ -131,7 +134,7 @@ class RatioNfaCriterion {
   // The one that says most and loses less than `limit`.
   Choice LeastChoice(int kind, double limit) const;
   // A kind by itself at its best, silent.
-  KindNfa LeastUncapped(int kind, LadderValues TierValues::*values) const;
+  KindNfa LeastUncapped(int kind, PairLadderValues TierValues::*values) const;
   // All of them, the sample that is missed most taken away.
   RatioNfa LeastUncapped() const;
   RatioNfa LeastOverChoices() const;
