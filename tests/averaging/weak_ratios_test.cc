@@ -12,7 +12,7 @@ namespace {
 
 // A chain of eight views with true ratios, all meaningful but that of 3-4-5,
 // on which `agreeing` lines agree.
-SyntheticScene ChainWithAWeakRatio(int agreeing) {
+SyntheticScene ChainWithAWeakRatio(int agreeing, int min_agreeing = 2) {
   SyntheticOptions options;
   options.num_views = 8;
   options.pairs = "chain";
@@ -24,6 +24,7 @@ SyntheticScene ChainWithAWeakRatio(int agreeing) {
         weak ? RatioVerdict::kNotMeaningful : RatioVerdict::kMeaningful;
     ratio.log_ratio_stddev = 0.01;
     ratio.kinds = {{"lines", 10, weak ? agreeing : 10}};
+    ratio.kinds.front().min_agreeing = min_agreeing;
   }
   return synthetic;
 }
@@ -41,6 +42,17 @@ TEST(WeakRatios, PlaceWhatNothingElsePlacesAndAreNamed) {
   EXPECT_TRUE(std::any_of(warnings.begin(), warnings.end(), [](const auto& w) {
     return w.find("chance explains as well") != std::string::npos;
   }));
+}
+
+TEST(WeakRatios, PlaceByTwoInliersWhatMoreDoNot) {
+  SyntheticScene synthetic = ChainWithAWeakRatio(2, 3);
+  const auto summary =
+      SolveScenePoses(&synthetic.scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->num_placed, 8);
+  EXPECT_THAT(summary->weak_ratios,
+              ::testing::ElementsAre(ViewTriplet{3, 4, 5}));
+  EXPECT_TRUE(summary->IsDoubtful());
 }
 
 TEST(WeakRatios, AreNotUsedWhereNothingAgreesOnThem) {

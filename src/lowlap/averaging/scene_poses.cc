@@ -55,11 +55,13 @@ std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
   return outliers;
 }
 
-// Ratios that are not meaningful, but the only ones that something agrees on
-// for a view that has not been placed.
+// Ratios that are not meaningful, but the only ones on which candidates agree,
+// enough of them to bear each other out or any two, for a view that has not
+// been placed.
 std::set<ViewTriplet> WeakRatios(const Scene& scene,
                                  const TranslationProblem& problem,
-                                 const TranslationSolution& solution) {
+                                 const TranslationSolution& solution,
+                                 bool with_agreement) {
   std::set<ViewId> unplaced;
   for (std::size_t n = 0; n < problem.views.size(); ++n) {
     if (solution.component[n] != 0) unplaced.insert(problem.views[n]);
@@ -67,7 +69,9 @@ std::set<ViewTriplet> WeakRatios(const Scene& scene,
   std::set<ViewTriplet> weak;
   for (const ScaleRatio& ratio : scene.scale_ratios) {
     const ViewTriplet& views = ratio.views;
-    if (ratio.verdict == RatioVerdict::kNotMeaningful && ratio.HasAgreement() &&
+    if (ratio.verdict == RatioVerdict::kNotMeaningful &&
+        (ratio.HasAgreement() ||
+         (!with_agreement && ratio.NumInliers() >= 2)) &&
         unplaced.count(views.first) + unplaced.count(views.middle) +
                 unplaced.count(views.last) >
             0) {
@@ -183,17 +187,20 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
   auto solution = averager.Solve(problem, context);
   if (!solution) return tl::unexpected<Error>(solution.error());
 
-  std::set<ViewTriplet> weak = WeakRatios(*scene, problem, *solution);
-  if (!weak.empty()) {
+  std::set<ViewTriplet> weak;
+  for (const bool with_agreement : {true, false}) {
+    std::set<ViewTriplet> more =
+        WeakRatios(*scene, problem, *solution, with_agreement);
+    more.insert(weak.begin(), weak.end());
+    if (more.size() == weak.size()) continue;
     TranslationProblem wider = MakeTranslationProblem(
-        *scene, rotations.cam_from_world, PairsOf(outliers), weak, with_tracks);
+        *scene, rotations.cam_from_world, PairsOf(outliers), more, with_tracks);
     auto again = averager.Solve(wider, context);
     if (!again) return tl::unexpected<Error>(again.error());
     if (again->NumPlaced() > solution->NumPlaced()) {
       problem = std::move(wider);
       solution = std::move(again);
-    } else {
-      weak.clear();
+      weak = std::move(more);
     }
   }
 

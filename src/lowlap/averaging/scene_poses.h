@@ -145,7 +145,8 @@ void SetPoses(const TranslationProblem& problem,
 /// (SolveWithoutContradictedRatio; `left_out_ratios`); else the relative poses
 /// stay (`kept_outliers`). Views that no meaningful ratio joins are placed by
 /// ratios that are not, if at least two points or lines, or three coplanar
-/// pairs, agree on them; these are listed (`weak_ratios`). The poses of the
+/// pairs, agree on them, and failing that by those on which any two candidates
+/// agree; these are listed (`weak_ratios`). The poses of the
 /// largest component replace scene.poses; the others have no common scale with
 /// it and are listed. Gauge: that of SetPoses. Errors, with the scene
 /// unchanged: invalid options, those of the strategy.
