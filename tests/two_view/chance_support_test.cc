@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/two_view/two_view_scene.h"
@@ -68,6 +69,27 @@ TEST(ScoreAgainstChance, IsNoBetterThanTheUniformLaw) {
         ScoreAgainstChance(kernel, ladder, scene.cam2_from_cam1);
     EXPECT_GE(score.log10_nfa, ladder.Best(counts).log10_nfa);
     EXPECT_LT(score.log10_nfa, -50);
+  }
+}
+
+TEST(ScoreAgainstChance, DoesNotDependOnTheOrderOfAFewHundred) {
+  TwoViewSceneOptions options;
+  options.num_wrong = 200;
+  options.noise_px = 0.5;
+  const TwoViewScene scene = MakeTwoViewScene(options, 15);
+  PointPairs pairs = scene.Pairs();
+  const auto score = [&] {
+    const EssentialKernel kernel(pairs);
+    return ScoreAgainstChance(kernel, Ladder(kernel), scene.cam2_from_cam1);
+  };
+  const AContrarioScore first = score();
+  for (int turn = 0; turn < 3; ++turn) {
+    std::rotate(pairs.x1.begin(), pairs.x1.begin() + 50, pairs.x1.end());
+    std::rotate(pairs.x2.begin(), pairs.x2.begin() + 50, pairs.x2.end());
+    std::swap(pairs.x1[turn], pairs.x1[turn + 7]);
+    std::swap(pairs.x2[turn], pairs.x2[turn + 7]);
+    EXPECT_NEAR(score().log10_nfa, first.log10_nfa, 1e-9);
+    EXPECT_EQ(score().threshold, first.threshold);
   }
 }
 

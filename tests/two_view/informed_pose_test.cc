@@ -79,7 +79,7 @@ TEST(InformPose, ThePriorDecidesBetweenTheMotionsOfAPlane) {
 TEST(InformPose, TheCovarianceHoldsThePrior) {
   const PlaneUnderItsTwin twin(1);
   double before = 0;
-  for (const double stddev_deg : {0.2, 2.0}) {
+  for (const double stddev_deg : {0.02, 2.0}) {
     const RotationPrior prior{twin.scene.cam2_from_cam1.rotation,
                               RadFromDeg(stddev_deg)};
     const InformedPose informed =

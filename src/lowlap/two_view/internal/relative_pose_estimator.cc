@@ -222,7 +222,7 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   std::optional<PoseCandidate> other;
   if (plane) other = PlanarAlternative(search, pairs, *best, *plane);
   if (other) {
-    const double scale_px = search.RefinementOptions(*best).loss_scale_px;
+    const double scale_px = 0.5 * best->support.threshold;
     const double advantage =
         search.CoreScore(best->pose, scale_px) -
         search.CoreScore(other->pose, scale_px) +

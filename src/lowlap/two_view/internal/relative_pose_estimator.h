@@ -98,8 +98,9 @@ struct TwoViewResult {
 /// threshold that separates inliers is the one of least NFA; there is none to
 /// set. Of the poses that explain the inliers, the one with the sharpest core
 /// of small residuals is taken (see SharpenPose), and refined with a Cauchy
-/// loss whose scale follows the threshold. The sign of t and the choice of R
-/// come from the visibility (positive depths) of all inliers; matches behind a
+/// loss whose scale is that of all residuals within max_threshold_px (see
+/// PoseSearch::Finish). The sign of t and the choice of R come from the
+/// visibility (positive depths) of all inliers; matches behind a
 /// camera are no inliers. log10_nfa counts chance support as these very images
 /// give it (see ScoreAgainstChance), and of a pose only what does not repeat
 /// within its photograph (see FindEvidenceBeyondRepeats). Two different places

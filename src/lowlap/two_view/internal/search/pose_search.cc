@@ -8,6 +8,7 @@
 #include "lowlap/geometry/internal/epipolar.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/a_contrario_ransac.h"
+#include "lowlap/robust/internal/cauchy_scale.h"
 #include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/two_view/internal/kernels/five_point.h"
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
@@ -23,6 +24,12 @@ namespace {
 // Rotations from directions that are tried; the others contradict more of the
 // directions than these.
 constexpr std::size_t kMaxRotations = 8;
+// Rounds with a loss that is wider, each by a factor of two.
+constexpr int kNumWideRounds = 1;
+constexpr int kMaxRounds = 12;
+// The loss is this much wider than the Cauchy density of the residuals: errors
+// that are nearly normal would like it 3.5 times as wide, outliers narrower.
+constexpr double kLossWidth = 1.5;
 
 template <class Kernel>
 AContrarioLadder MakeLadder(const Kernel& kernel, int max_models,
@@ -125,27 +132,27 @@ RigidTransform PoseSearch::WithMostVisible(
   return best;
 }
 
-double PoseSearch::PointVariancePx2(const RigidTransform& cam2_from_cam1,
-                                    double threshold_px) const {
-  const PointPairs& pairs = kernel_.pairs();
-  const SampsonResidual residual(cam2_from_cam1, pairs);
+double PoseSearch::NoiseScalePx(const RigidTransform& cam2_from_cam1) const {
+  const SampsonResidual residual(cam2_from_cam1, kernel_.pairs());
   std::vector<double> errors_px;
-  for (const int i : kernel_.WithinThreshold(cam2_from_cam1, threshold_px)) {
+  for (const int i :
+       kernel_.VisibleWithinThreshold(cam2_from_cam1, max_threshold_px_)) {
     errors_px.push_back(std::abs(residual(i)));
   }
-  if (errors_px.empty()) return threshold_px * threshold_px;
-  const double stddev_px =
-      std::max(kMinThresholdPx, Median(errors_px) / kMedianOfNorm<1>);
-  return stddev_px * stddev_px;
+  if (errors_px.size() < EssentialKernel::kSampleSize) return core_scale_px_;
+  const double scale_px =
+      TruncatedCauchyScale(Median(std::move(errors_px)), max_threshold_px_);
+  return std::clamp(scale_px, 0.5 * kMinThresholdPx, 0.5 * max_threshold_px_);
 }
 
 PoseRefinementOptions PoseSearch::RefinementOptions(
     const PoseCandidate& candidate) const {
   PoseRefinementOptions options;
-  options.loss_scale_px = 0.5 * candidate.support.threshold;
+  options.loss_scale_px = candidate.loss_scale_px;
   options.directions = directions_;
-  options.point_variance_px2 =
-      PointVariancePx2(candidate.pose, candidate.support.threshold);
+  const double stddev_px = std::max(
+      kMinThresholdPx, candidate.loss_scale_px / kLossWidth / kMedianOfNorm<1>);
+  options.point_variance_px2 = stddev_px * stddev_px;
   return options;
 }
 
@@ -160,18 +167,18 @@ AContrarioScore PoseSearch::SupportOf(
 PoseCandidate PoseSearch::Finish(const RigidTransform& cam2_from_cam1) const {
   PoseCandidate candidate;
   candidate.pose = WithMostVisible(cam2_from_cam1);
-  for (int round = 0; round < 6; ++round) {
-    candidate.support = SupportOf(candidate.pose);
-    const RigidTransform refined =
-        RefineRelativePose(candidate.pose, kernel_.pairs(),
-                           kernel_.VisibleWithinThreshold(
-                               candidate.pose, 2 * candidate.support.threshold),
-                           RefinementOptions(candidate));
+  for (int round = 0; round < kMaxRounds; ++round) {
+    candidate.loss_scale_px = std::exp2(std::max(0, kNumWideRounds - round)) *
+                              kLossWidth * NoiseScalePx(candidate.pose);
+    const RigidTransform refined = RefineRelativePose(
+        candidate.pose, kernel_.pairs(),
+        kernel_.VisibleWithinThreshold(candidate.pose, max_threshold_px_),
+        RefinementOptions(candidate));
     const double change =
         RotationAngleBetween(refined.rotation, candidate.pose.rotation) +
         AngleBetween(refined.translation, candidate.pose.translation);
     candidate.pose = refined;
-    if (change < 1e-9) break;
+    if (round >= kNumWideRounds && change < 1e-9) break;
   }
   candidate.support = SupportOf(candidate.pose);
   candidate.inliers = kernel_.VisibleWithinThreshold(

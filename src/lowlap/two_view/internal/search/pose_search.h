@@ -19,6 +19,7 @@ struct PoseCandidate {
   AContrarioScore support;   // of the points, against chance
   std::vector<int> inliers;  // visible, within the threshold; ascending
   double direction_penalty = 0;
+  double loss_scale_px = 0;  // of the last refinement
   /// The plane to which alone it is due (PoseSearch::TieToPlane), if any.
   std::optional<ScenePlane> plane;
 
@@ -54,8 +55,13 @@ class PoseSearch {
   /// What the points say for a motion as it is, against chance.
   AContrarioScore SupportOf(const RigidTransform& cam2_from_cam1) const;
 
-  /// A motion brought to its optimum: the signs that see most inliers, then
-  /// threshold, inliers and refinement in turn until they agree.
+  /// A motion brought to its optimum: the signs that see most inliers, then the
+  /// scale of the residuals (TruncatedCauchyScale, within the greatest
+  /// threshold) and refinement in turn until they agree. The first loss is
+  /// twice as wide: of optima side by side that leads to the same one as a
+  /// rule, wherever the search began. The threshold of least NFA has no part in
+  /// it: it is a step of a ladder, and over several steps the NFA often is as
+  /// good as equal.
   PoseCandidate Finish(const RigidTransform& cam2_from_cam1) const;
 
   /// Takes the places of the inliers on a plane into account, in which all that
@@ -68,15 +74,14 @@ class PoseSearch {
   /// to compare motions at one scale s.
   double CoreScore(const RigidTransform& cam2_from_cam1, double scale_px) const;
 
-  /// The loss of the final refinement; its scale follows the threshold.
+  /// The loss of the final refinement.
   PoseRefinementOptions RefinementOptions(const PoseCandidate& candidate) const;
 
  private:
   std::vector<RigidTransform> FivePointMotions(Random& random,
                                                int& num_samples);
   RigidTransform WithMostVisible(const RigidTransform& cam2_from_cam1) const;
-  double PointVariancePx2(const RigidTransform& cam2_from_cam1,
-                          double threshold_px) const;
+  double NoiseScalePx(const RigidTransform& cam2_from_cam1) const;
 
   EssentialKernel kernel_;
   std::vector<DirectionPair> directions_;
