@@ -3,14 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <string>
-
 namespace lowlap {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
+using ::testing::ElementsAreArray;
+using ::testing::Field;
 using ::testing::IsEmpty;
-using ::testing::SizeIs;
 
 /// Baselines in parts, each of which says something about every other one that
 /// it meets in a view: that they belong together, or, of another part, that
@@ -22,7 +22,8 @@ class LinkedPiecesTest : public ::testing::Test {
     baselines_.insert(baselines_.end(), part.begin(), part.end());
   }
 
-  static std::vector<ViewPair> AllOf(const std::vector<std::uint32_t>& views) {
+  static std::vector<ViewPair> PairsAmong(
+      const std::vector<std::uint32_t>& views) {
     std::vector<ViewPair> pairs;
     for (std::size_t a = 0; a < views.size(); ++a) {
       for (std::size_t b = a + 1; b < views.size(); ++b) {
@@ -30,6 +31,12 @@ class LinkedPiecesTest : public ::testing::Test {
       }
     }
     return pairs;
+  }
+
+  // A piece of these views that all pairs among them bear out, and no other.
+  static auto Of(const std::vector<std::uint32_t>& views) {
+    return AllOf(Field(&RigidPiece::views, ElementsAreArray(views)),
+                 Field(&RigidPiece::pairs, PairsAmong(views)));
   }
 
   std::vector<RigidPiece> Find() const {
@@ -58,47 +65,34 @@ TEST_F(LinkedPiecesTest, WithoutBaselinesThereAreNone) {
 }
 
 TEST_F(LinkedPiecesTest, TwoMayMeetInOneView) {
-  Add(AllOf({0, 1, 2, 3}));
-  Add(AllOf({3, 4, 5}));
-  const std::vector<RigidPiece> pieces = Find();
-  ASSERT_THAT(pieces, SizeIs(2));
-  EXPECT_THAT(pieces[0].views, ElementsAre(0, 1, 2, 3));
-  EXPECT_THAT(pieces[1].views, ElementsAre(3, 4, 5));
+  Add(PairsAmong({0, 1, 2, 3}));
+  Add(PairsAmong({3, 4, 5}));
+  EXPECT_THAT(Find(), ElementsAre(Of({0, 1, 2, 3}), Of({3, 4, 5})));
 }
 
 // A baseline of the second, true in direction, that ends in the first.
 TEST_F(LinkedPiecesTest, ASmallerOneIsNotLostByABaselineTooFar) {
-  Add(AllOf({0, 1, 2, 3}));
-  std::vector<ViewPair> second = AllOf({3, 4, 5});
+  Add(PairsAmong({0, 1, 2, 3}));
+  std::vector<ViewPair> second = PairsAmong({3, 4, 5});
   second.push_back({ViewId(2), ViewId(5)});
   Add(second);
-  const std::vector<RigidPiece> pieces = Find();
-  ASSERT_THAT(pieces, SizeIs(2));
-  EXPECT_THAT(pieces[0].views, ElementsAre(0, 1, 2, 3));
-  EXPECT_THAT(pieces[1].views, ElementsAre(3, 4, 5));
-  EXPECT_FALSE(pieces[1].Holds(ViewId(2), ViewId(5)));
+  EXPECT_THAT(Find(), ElementsAre(Of({0, 1, 2, 3}), Of({3, 4, 5})));
 }
 
 TEST_F(LinkedPiecesTest, NorDoesTheLargerOneKeepOneThatIsTheOthers) {
-  std::vector<ViewPair> first = AllOf({0, 1, 2, 3});
+  std::vector<ViewPair> first = PairsAmong({0, 1, 2, 3});
   first.push_back({ViewId(0), ViewId(5)});
   Add(first);
-  Add(AllOf({3, 4, 5}));
-  const std::vector<RigidPiece> pieces = Find();
-  ASSERT_THAT(pieces, SizeIs(2));
-  EXPECT_THAT(pieces[0].views, ElementsAre(0, 1, 2, 3));
-  EXPECT_THAT(pieces[1].views, ElementsAre(3, 4, 5));
+  Add(PairsAmong({3, 4, 5}));
+  EXPECT_THAT(Find(), ElementsAre(Of({0, 1, 2, 3}), Of({3, 4, 5})));
 }
 
 // Each of its baselines leads to the same view, and no two other parts do.
 TEST_F(LinkedPiecesTest, BaselinesBetweenOthersAreNone) {
-  Add(AllOf({0, 1, 2, 3}));
-  Add(AllOf({3, 4, 5, 6}));
+  Add(PairsAmong({0, 1, 2, 3}));
+  Add(PairsAmong({3, 4, 5, 6}));
   Add({{ViewId(0), ViewId(4)}, {ViewId(1), ViewId(4)}, {ViewId(2), ViewId(4)}});
-  const std::vector<RigidPiece> pieces = Find();
-  ASSERT_THAT(pieces, SizeIs(2));
-  EXPECT_THAT(pieces[0].views, ElementsAre(0, 1, 2, 3));
-  EXPECT_THAT(pieces[1].views, ElementsAre(3, 4, 5, 6));
+  EXPECT_THAT(Find(), ElementsAre(Of({0, 1, 2, 3}), Of({3, 4, 5, 6})));
 }
 
 }  // namespace

@@ -146,10 +146,10 @@ void SetPoses(const TranslationProblem& problem,
 /// stay (`kept_outliers`). Views that no meaningful ratio joins are placed by
 /// ratios that are not, if at least two points or lines, or three coplanar
 /// pairs, agree on them, and failing that by those on which any two candidates
-/// agree; these are listed (`weak_ratios`). The poses of the
-/// largest component replace scene.poses; the others have no common scale with
-/// it and are listed. Gauge: that of SetPoses. Errors, with the scene
-/// unchanged: invalid options, those of the strategy.
+/// agree; these are listed (`weak_ratios`). The poses of the largest component
+/// replace scene.poses; the others have no common scale with it and are listed.
+/// Gauge: that of SetPoses. Errors, with the scene unchanged: invalid options,
+/// those of the strategy.
 Result<PoseSummary> SolveScenePoses(Scene* scene,
                                     const SceneRotations& rotations,
                                     const PoseOptions& options,

@@ -222,6 +222,7 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
   std::optional<PoseCandidate> other;
   if (plane) other = PlanarAlternative(search, pairs, *best, *plane);
   if (other) {
+    // Wider than the loss: what noise alone makes of it must stay small.
     const double scale_px = 0.5 * best->support.threshold;
     const double advantage =
         search.CoreScore(best->pose, scale_px) -

@@ -81,7 +81,9 @@ class PoseSearch {
   std::vector<RigidTransform> FivePointMotions(Random& random,
                                                int& num_samples);
   RigidTransform WithMostVisible(const RigidTransform& cam2_from_cam1) const;
-  double NoiseScalePx(const RigidTransform& cam2_from_cam1) const;
+  // Of the matches that are visible within the greatest threshold.
+  double NoiseScalePx(const RigidTransform& cam2_from_cam1,
+                      const std::vector<int>& visible) const;
 
   EssentialKernel kernel_;
   std::vector<DirectionPair> directions_;
