@@ -95,7 +95,7 @@ Result<int> Adjust(const Flags& flags) {
   std::printf("cost %.6g -> %.6g in %d iterations, %d outlier rounds\n",
               adjustment.initial_cost, adjustment.final_cost,
               adjustment.iterations, adjustment.outlier_rounds);
-  PrintCalibration(scene, options, adjustment);
+  PrintAdjustment(scene, options, adjustment);
   if (summary.evaluation) {
     std::printf("\n%s\n", ToText(*summary.evaluation).c_str());
   }

@@ -143,6 +143,11 @@ void BindSummaries(py::module_& module) {
       .def_readonly("stddev_px", &KindAdjustment::stddev_px)
       .def_readonly("threshold_px", &KindAdjustment::threshold_px);
 
+  py::class_<RivalOptimum>(module, "RivalOptimum",
+                           "Another end of the adjustment, as good.")
+      .def_readonly("start", &RivalOptimum::start)
+      .def_readonly("distances", &RivalOptimum::distances);
+
   py::class_<AdjustmentSummary>(module, "AdjustmentSummary",
                                 "What the bundle adjustment did.")
       .def_readonly("initial_cost", &AdjustmentSummary::initial_cost)
@@ -154,6 +159,7 @@ void BindSummaries(py::module_& module) {
       .def_readonly("landmarks_on_planes",
                     &AdjustmentSummary::landmarks_on_planes)
       .def_readonly("directions", &AdjustmentSummary::directions)
+      .def_readonly("rivals", &AdjustmentSummary::rivals)
       .def_readonly("iterations", &AdjustmentSummary::iterations)
       .def_readonly("outlier_rounds", &AdjustmentSummary::outlier_rounds)
       .def_readonly("converged", &AdjustmentSummary::converged);

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "test_scene.h"
 
 namespace lowlap {
@@ -47,11 +48,42 @@ AdjustmentOptions Options() {
   return options;
 }
 
-bool SearchedAgain(const AdjustmentSummary& summary) {
+// Turns what comes after a joint of the chain about the camera before it, and
+// the points that both cameras of the joint see with it: all bear the wrong
+// relative pose out.
+void TurnPointsAndCameras(const TestScene& test, double angle_rad,
+                          Scene* scene) {
+  const std::size_t middle = scene->poses.size() / 2;
+  const auto before = std::next(scene->views.begin(), middle - 1);
+  const auto after = std::next(before);
+  const Vec3 pivot = scene->FindPose(before->first)->center;
+  const Mat3 turn = RotationFromAngleAxis(angle_rad * Vec3(0.3, 0.8, 0.5));
+  for (auto it = after; it != scene->views.end(); ++it) {
+    Pose& pose = scene->poses.at(it->second.pose_id);
+    pose.rotation = pose.rotation * turn.transpose();
+    pose.center = pivot + turn * (pose.center - pivot);
+  }
+  const RigidTransform camera = scene->FindPose(after->first)->CamFromWorld();
+  for (const auto& [id, track] : scene->point_tracks) {
+    if (track.front().view != before->first ||
+        track.back().view != after->first) {
+      continue;
+    }
+    scene->features.at(after->first).points_px[track.back().feature] =
+        scene->FindIntrinsic(after->first)
+            ->Project(camera * test.true_points.at(id));
+  }
+}
+
+bool SearchedFrom(const std::string& name, const AdjustmentSummary& summary) {
   return std::any_of(summary.solves.begin(), summary.solves.end(),
-                     [](const SolveReport& report) {
-                       return report.stage.rfind("again: ", 0) == 0;
+                     [&](const SolveReport& report) {
+                       return report.stage.rfind(name + ": ", 0) == 0;
                      });
+}
+
+bool SearchedAgain(const AdjustmentSummary& summary) {
+  return SearchedFrom("again", summary);
 }
 
 // All lines over the joint are out of use, and hold nothing.
@@ -68,6 +100,19 @@ TEST(OptimumSearchTest, BringsBackWhatDriftPutOutOfUse) {
   }
 }
 
+TEST(OptimumSearchTest, LinesBringBackWhatPointsLeadAstray) {
+  for (const std::uint64_t seed : {1, 2, 3, 4, 5, 6}) {
+    TestScene test = ChainOfLines(seed);
+    TurnPointsAndCameras(test, 0.03, &test.scene);
+    const AdjustmentSummary summary =
+        test::BuildAndAdjust(&test.scene, Options());
+    EXPECT_TRUE(SearchedFrom("lines first", summary));
+    EXPECT_TRUE(SearchedFrom("points first", summary));
+    EXPECT_LT(ComparePoses(test.true_poses, test.scene).mean_center, 0.003)
+        << "seed " << seed;
+  }
+}
+
 TEST(OptimumSearchTest, LeavesGoodScenesAsGood) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     TestScene test = ChainOfLines(seed);
@@ -75,6 +120,15 @@ TEST(OptimumSearchTest, LeavesGoodScenesAsGood) {
     EXPECT_LT(ComparePoses(test.true_poses, test.scene).mean_center, 0.003)
         << "seed " << seed;
   }
+}
+
+// Points that many views see need no other start.
+TEST(OptimumSearchTest, StartsOnceWhereMostIsSeenByMoreThanTwo) {
+  TestScene test = MakeTestScene({});
+  const AdjustmentSummary summary =
+      test::BuildAndAdjust(&test.scene, Options());
+  EXPECT_FALSE(SearchedFrom("lines first", summary));
+  EXPECT_FALSE(SearchedFrom("points first", summary));
 }
 
 TEST(OptimumSearchTest, WithoutRoundsTheObservationsStay) {

@@ -8,6 +8,7 @@
 #include "cli/command.h"
 #include "cli/flags/truth.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/uncertainty/rival_optima.h"
 #include "lowlap/averaging/averager_registry.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/averaging/internal/view_grades.h"
@@ -239,8 +240,8 @@ Status SetRefinement(const std::string& parts, Scene* scene,
   return {};
 }
 
-void PrintCalibration(const Scene& scene, const AdjustmentOptions& options,
-                      const AdjustmentSummary& summary) {
+void PrintAdjustment(const Scene& scene, const AdjustmentOptions& options,
+                     const AdjustmentSummary& summary) {
   if (!options.refine_intrinsics.empty()) {
     IntrinsicRefinement refined = options.refine_intrinsics.begin()->second;
     refined.principal_point |= options.principal_point_stddev > 0;
@@ -253,6 +254,9 @@ void PrintCalibration(const Scene& scene, const AdjustmentOptions& options,
     std::printf("%s\n", line.c_str());
   }
   for (const std::string& line : DescribeCalibrationPreferences(summary)) {
+    std::printf("note: %s\n", line.c_str());
+  }
+  for (const std::string& line : DescribeRivals(scene, summary)) {
     std::printf("note: %s\n", line.c_str());
   }
 }
@@ -328,7 +332,7 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
 
   PrintPoses(summary.solve->poses, scene);
   if (summary.solve->adjustment) {
-    PrintCalibration(scene, options.adjustment, *summary.solve->adjustment);
+    PrintAdjustment(scene, options.adjustment, *summary.solve->adjustment);
   }
   if (summary.evaluation_before_adjustment &&
       summary.evaluation_before_adjustment->scope == EvaluationScope::kFull) {

@@ -68,9 +68,10 @@ Status SetRefinement(const std::string& parts, Scene* scene,
                      AdjustmentOptions* options);
 
 /// What was free and what became of it, and what the images would change of the
-/// rest; nothing where all is as given and the images agree.
-void PrintCalibration(const Scene& scene, const AdjustmentOptions& options,
-                      const AdjustmentSummary& summary);
+/// rest; nothing where all is as given and the images agree. Then the rivals of
+/// the optimum.
+void PrintAdjustment(const Scene& scene, const AdjustmentOptions& options,
+                     const AdjustmentSummary& summary);
 
 /// --strict, of the commands that SolveAndWrite.
 void AddStrictFlag(CLI::App* command, bool* strict);

@@ -60,7 +60,8 @@ struct KindAdjustment {
 /// One run of the solver.
 struct SolveReport {
   /// "fixed rotations", "everything", "round 1", ..., "final"; "again: ..."
-  /// with a wide gate.
+  /// with a wide gate, "lines first: ..." and "points first: ..." from the
+  /// start with one kind.
   std::string stage;
   std::size_t residuals = 0;
   std::size_t parameters = 0;
@@ -82,6 +83,15 @@ struct CalibrationPreference {
   Intrinsic preferred;
   /// How far the two are apart, in standard deviations of the estimate.
   double deviations = 0;
+};
+
+/// Where the adjustment ended from another start, and explains what more than
+/// two views show to within what one observation says.
+struct RivalOptimum {
+  std::string start;  // "lines first", "points first"; "" as usual
+  /// How far its centres are, after the least similarity, in world units: of
+  /// those that are outside the 95 % regions of the covariances.
+  std::map<PoseId, double> distances;
 };
 
 struct AdjustmentSummary {
@@ -114,6 +124,9 @@ struct AdjustmentSummary {
 
   /// Empty where noise explains what there is.
   std::vector<CalibrationPreference> calibration_preferences;
+
+  /// With AdjustmentOptions::estimate_uncertainty; the deviations hold them.
+  std::vector<RivalOptimum> rivals;
 
   std::vector<SolveReport> solves;
   int iterations = 0;  // over all solves

@@ -13,6 +13,7 @@
 #include "lowlap/adjustment/internal/rounds/outlier_round.h"
 #include "lowlap/adjustment/internal/uncertainty/calibration_shift.h"
 #include "lowlap/adjustment/internal/uncertainty/center_covariances.h"
+#include "lowlap/adjustment/internal/uncertainty/rival_optima.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/scene/validation.h"
 
@@ -73,8 +74,9 @@ class Adjuster {
 
   // The solves and rounds.
   Status Run() {
-    LOWLAP_RETURN_IF_ERROR(
-        OptimumSearch(options_, context_, scene_, &optimum_, &summary_).Run());
+    OptimumSearch search(options_, context_, scene_, &optimum_, &summary_);
+    LOWLAP_RETURN_IF_ERROR(search.Run());
+    rivals_ = search.rivals();
     LOWLAP_RETURN_IF_ERROR(FollowPoses(options_, optimum_.noise.lines, context_,
                                        optimum_.cameras, &optimum_.state));
     for (LineTrackState& line : optimum_.state.lines) {
@@ -176,6 +178,8 @@ class Adjuster {
     LOWLAP_RETURN_IF_ERROR(AddCalibrationShift(
         options_, optimum_.noise, summary_.calibration_preferences, scene_,
         context_, optimum_.cameras, optimum_.state, &uncertainty));
+    summary_.rivals = AddRivals(options_, rivals_, optimum_.cameras,
+                                optimum_.state, &uncertainty);
     summary_.log_ratio_stddevs = std::move(uncertainty.log_ratio_stddevs);
     summary_.direction_stddevs_rad =
         std::move(uncertainty.direction_stddevs_rad);
@@ -187,6 +191,7 @@ class Adjuster {
   const RunContext& context_;
   const Scene& scene_;
   Optimum optimum_;
+  std::vector<Rival> rivals_;
   AdjustmentSummary summary_;
   std::map<PoseId, Mat3> center_covariances_;
 };

@@ -276,6 +276,10 @@ class KindAdjustment:
     stddev_px: float
     threshold_px: float
 
+class RivalOptimum:
+    start: str
+    distances: Dict[int, float]
+
 class AdjustmentSummary:
     initial_cost: float
     final_cost: float
@@ -285,6 +289,7 @@ class AdjustmentSummary:
     planes: int
     landmarks_on_planes: int
     directions: int
+    rivals: List[RivalOptimum]
     iterations: int
     outlier_rounds: int
     converged: bool

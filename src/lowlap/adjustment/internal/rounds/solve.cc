@@ -55,6 +55,9 @@ ceres::Solver::Options SolverOptions(const AdjustmentOptions& options,
   solver.function_tolerance = request.function_tolerance;
   solver.parameter_tolerance = 1e-10;
   solver.gradient_tolerance = 1e-14;
+  // In a valley the reduced system can be factorised again only when the region
+  // is far smaller.
+  solver.max_num_consecutive_invalid_steps = 20;
   // More threads would add up the reduced system in an order of chance.
   solver.num_threads = 1;
   solver.logging_type = ceres::SILENT;

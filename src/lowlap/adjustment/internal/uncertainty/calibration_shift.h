@@ -13,11 +13,9 @@ namespace lowlap {
 
 /// A calibration that the images contradict moves the cameras all the same:
 /// adds to `uncertainty` how far. From the adjusted state the same observations
-/// are solved once with what the images prefer (CalibrationPreference), and the
-/// least similarity of each component is taken out. The step of a centre, d,
-/// tells how much is at stake rather than where to, since what is preferred is
-/// as uncertain: it adds |d|^2 / 3 in every direction. Changes of log ratios
-/// and directions add their squares.
+/// are solved once with what the images prefer (CalibrationPreference), and
+/// where that leads is added (CenterShift): it tells how much is at stake
+/// rather than where to, since what is preferred is as uncertain.
 ///
 /// Nothing is added where nothing is preferred, or the solve fails. Errors:
 /// kCancelled.

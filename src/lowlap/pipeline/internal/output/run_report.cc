@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/adjustment/internal/uncertainty/rival_optima.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/propagate.h"
@@ -38,6 +39,9 @@ void AddSolve(const SolveResult& solve, const Scene& scene,
           "line RMSE", Format("%.2f px", adjustment.lines.final_rmse_px));
     }
     for (std::string& note : DescribeCalibrationPreferences(adjustment)) {
+      content->notes.push_back(std::move(note));
+    }
+    for (std::string& note : DescribeRivals(scene, adjustment)) {
       content->notes.push_back(std::move(note));
     }
     content->before_adjustment = ReportStage{

@@ -86,6 +86,18 @@ Json PreferencesJson(const AdjustmentSummary& adjustment) {
   return preferences;
 }
 
+Json RivalsJson(const AdjustmentSummary& adjustment) {
+  Json rivals = Json::array();
+  for (const RivalOptimum& rival : adjustment.rivals) {
+    Json distances = Json::array();
+    for (const auto& [pose, distance] : rival.distances) {
+      distances.push_back({{"pose", pose}, {"distance", distance}});
+    }
+    rivals.push_back({{"start", rival.start}, {"distances", distances}});
+  }
+  return rivals;
+}
+
 Json OutliersJson(const std::vector<OutlierEdge>& edges) {
   Json json = Json::array();
   for (const OutlierEdge& edge : edges) {
@@ -225,7 +237,8 @@ Json SolveJson(const SolveResult& solve, const Scene& scene) {
         {"planes", a.planes},
         {"landmarks_on_planes", a.landmarks_on_planes},
         {"directions", a.directions},
-        {"calibration_preferences", PreferencesJson(a)}};
+        {"calibration_preferences", PreferencesJson(a)},
+        {"rivals", RivalsJson(a)}};
   }
   return json;
 }
