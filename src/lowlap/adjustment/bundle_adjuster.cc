@@ -9,7 +9,7 @@
 
 #include "lowlap/adjustment/internal/rounds/calibration_score.h"
 #include "lowlap/adjustment/internal/rounds/kind_statistics.h"
-#include "lowlap/adjustment/internal/rounds/optimum_search.h"
+#include "lowlap/adjustment/internal/rounds/optimum_starts.h"
 #include "lowlap/adjustment/internal/rounds/outlier_round.h"
 #include "lowlap/adjustment/internal/uncertainty/calibration_shift.h"
 #include "lowlap/adjustment/internal/uncertainty/center_covariances.h"
@@ -74,9 +74,8 @@ class Adjuster {
 
   // The solves and rounds.
   Status Run() {
-    OptimumSearch search(options_, context_, scene_, &optimum_, &summary_);
-    LOWLAP_RETURN_IF_ERROR(search.Run());
-    rivals_ = search.rivals();
+    LOWLAP_ASSIGN_OR_RETURN(
+        rivals_, FindOptimum(options_, context_, scene_, &optimum_, &summary_));
     LOWLAP_RETURN_IF_ERROR(FollowPoses(options_, optimum_.noise.lines, context_,
                                        optimum_.cameras, &optimum_.state));
     for (LineTrackState& line : optimum_.state.lines) {

@@ -52,7 +52,8 @@ Result<StructureSummary> BuildStructure(Scene* scene,
 /// anew; pairs are kept while their residual is small, and come back if the
 /// noise of the segments explains that their lines do not meet.
 /// Once all is at rest, what drift may have put out of use is let in again, and
-/// kept where that explains more of what was measured (OptimumSearch).
+/// kept where that explains more of what was measured (OptimumSearch). Where
+/// most is seen by two views, there are other starts (FindOptimum).
 ///
 /// Gauge, per component: one camera is held, and the length of its longest
 /// baseline. The result is equivariant to similarities of the input.

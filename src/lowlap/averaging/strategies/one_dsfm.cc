@@ -55,8 +55,9 @@ std::vector<std::size_t> EdgesOnNoCycle(const TranslationProblem& problem) {
                                 static_cast<ViewId>(edge.second)));
     edges_of_pair[pairs.back()].push_back(e);
   }
+  const ViewGraph graph(std::move(pairs));
   std::vector<std::size_t> edges;
-  for (const ViewPair& bridge : FindBridges(ViewGraph(std::move(pairs)))) {
+  for (const ViewPair& bridge : FindBridges(graph)) {
     const std::vector<std::size_t>& of_pair = edges_of_pair.at(bridge);
     // Two edges of one pair are a cycle.
     if (of_pair.size() == 1) edges.push_back(of_pair.front());

@@ -35,61 +35,28 @@ NoiseLevels Widened(NoiseLevels noise, double gate) {
   return noise;
 }
 
-template <class Track>
-void CountUsed(const std::vector<Track>& tracks, std::size_t* by_two,
-               std::size_t* by_more) {
-  for (const Track& track : tracks) {
-    if (!track.IsLandmark()) continue;
-    const std::size_t used = track.UsedCount();
-    *(used > 2 ? by_more : by_two) += used;
-  }
-}
-
-// Of the observations in use, those of landmarks that two views see.
-bool MostAreSeenTwice(const StructureState& state) {
-  std::size_t by_two = 0;
-  std::size_t by_more = 0;
-  CountUsed(state.points, &by_two, &by_more);
-  CountUsed(state.lines, &by_two, &by_more);
-  return by_two > by_more;
-}
-
-// What it costs to leave one out.
-double OneObservation(const NoiseLevels& noise) {
-  const auto cost = [](const NoiseScale& kind) {
-    return std::pow(kind.threshold_px / kind.stddev_px, 2);
-  };
-  return std::min(cost(noise.points), cost(noise.lines));
-}
-
 }  // namespace
+
+Result<double> CostOf(const Optimum& optimum, const Optimum& scale,
+                      const RunContext& context) {
+  return MeasurementCost(optimum.cameras, optimum.state, scale.noise,
+                         scale.point_shape_exponent, context);
+}
 
 OptimumSearch::OptimumSearch(const AdjustmentOptions& options,
                              const RunContext& context, const Scene& scene,
-                             Optimum* optimum, AdjustmentSummary* summary)
+                             Optimum* optimum, AdjustmentSummary* summary,
+                             const std::string& stage_prefix)
     : options_(options),
       context_(context),
       scene_(scene),
       now_(optimum),
-      summary_(summary) {}
+      summary_(summary),
+      stage_prefix_(stage_prefix) {}
 
-Status OptimumSearch::Run() {
-  LOWLAP_RETURN_IF_ERROR(Prepare());
-  const KindRmse initial =
-      ComputeRmse(now_->cameras, now_->state, options_.coplanar_residual);
-  summary_->points.initial_rmse_px = initial[0];
-  summary_->lines.initial_rmse_px = initial[1];
-  summary_->coplanar.initial_rmse_px = initial[2];
-  const Optimum start = *now_;
+Status OptimumSearch::Settle() {
   LOWLAP_RETURN_IF_ERROR(FirstSolves());
-  LOWLAP_RETURN_IF_ERROR(SettleObservations());
-  if (options_.max_outlier_rounds == 0) {
-    LOWLAP_RETURN_IF_ERROR(TiePlanes());
-  } else {
-    LOWLAP_RETURN_IF_ERROR(Complete());
-    LOWLAP_RETURN_IF_ERROR(TryOtherStarts(start));
-  }
-  return Solve("final", false, 0);
+  return SettleObservations();
 }
 
 Status OptimumSearch::Prepare() {
@@ -99,6 +66,11 @@ Status OptimumSearch::Prepare() {
     SelectPairs(options_, now_->cameras, now_->noise.coplanar.threshold_px,
                 true, &now_->state);
   }
+  const KindRmse initial =
+      ComputeRmse(now_->cameras, now_->state, options_.coplanar_residual);
+  summary_->points.initial_rmse_px = initial[0];
+  summary_->lines.initial_rmse_px = initial[1];
+  summary_->coplanar.initial_rmse_px = initial[2];
   return {};
 }
 
@@ -173,105 +145,55 @@ Result<bool> OptimumSearch::WidenGate() {
   return true;
 }
 
-Status OptimumSearch::Attempt(const std::string& name,
-                              const std::function<Status()>& search) {
+Status OptimumSearch::Complete() {
+  const Optimum settled = *now_;
+  LOWLAP_RETURN_IF_ERROR(TiePlanes());
+  if (options_.max_outlier_rounds == 0) return {};
+  Optimum best = *now_;
   const std::string prefix = stage_prefix_;
-  stage_prefix_ += name + ": ";
-  const Status status = search();
+  stage_prefix_ += "again: ";
+  const Status status = SearchAgain(settled, &best);
   stage_prefix_ = prefix;
+  *now_ = std::move(best);
   // A search that fails is none.
   if (!status && status.error().code == ErrorCode::kCancelled) return status;
   return {};
 }
 
-Status OptimumSearch::Complete() {
-  const Optimum settled = *now_;
+Status OptimumSearch::SearchAgain(const Optimum& settled, Optimum* best) {
+  LOWLAP_ASSIGN_OR_RETURN(bool better, WidenGate());
+  if (!better) return {};
+  LOWLAP_RETURN_IF_ERROR(SettleObservations());
+  // Planes cost most of the time: what is no better before them is left there.
+  LOWLAP_ASSIGN_OR_RETURN(better, ExplainsMoreThan(settled));
+  if (!better) return {};
   LOWLAP_RETURN_IF_ERROR(TiePlanes());
-  Optimum best = *now_;
-  LOWLAP_RETURN_IF_ERROR(Attempt("again", [&]() -> Status {
-    LOWLAP_ASSIGN_OR_RETURN(bool better, WidenGate());
-    if (!better) return {};
-    LOWLAP_RETURN_IF_ERROR(SettleObservations());
-    // Planes cost most of the time: what is no better before them is left.
-    LOWLAP_ASSIGN_OR_RETURN(better, ExplainsMoreThan(settled));
-    if (!better) return {};
-    LOWLAP_RETURN_IF_ERROR(TiePlanes());
-    LOWLAP_ASSIGN_OR_RETURN(better, ExplainsMoreThan(best));
-    if (better) best = *now_;
-    return {};
-  }));
-  *now_ = std::move(best);
+  LOWLAP_ASSIGN_OR_RETURN(better, ExplainsMoreThan(*best));
+  if (better) *best = *now_;
   return {};
 }
 
-Status OptimumSearch::StartWith(const AdjustmentOptions& kind) {
-  OptimumSearch alone(kind, context_, scene_, now_, summary_);
-  alone.stage_prefix_ = stage_prefix_ + "alone: ";
+Status OptimumSearch::CompleteFrom(const AdjustmentOptions& kind) {
+  OptimumSearch alone(kind, context_, scene_, now_, summary_,
+                      stage_prefix_ + "alone: ");
   LOWLAP_RETURN_IF_ERROR(alone.Prepare());
-  LOWLAP_RETURN_IF_ERROR(alone.FirstSolves());
-  LOWLAP_RETURN_IF_ERROR(alone.SettleObservations());
+  LOWLAP_RETURN_IF_ERROR(alone.Settle());
   LOWLAP_RETURN_IF_ERROR(alone.Complete());
   now_->state.planes.clear();
   if (const auto changes = Update({true}); !changes) {
     return tl::unexpected<Error>(changes.error());
   }
-  now_->state.directions = GroupDirections(sights_, now_->cameras);
+  LOWLAP_RETURN_IF_ERROR(FindDirections());
   LOWLAP_RETURN_IF_ERROR(Solve("everything", false, kFirstTolerance));
   LOWLAP_RETURN_IF_ERROR(SettleObservations());
   return Complete();
 }
 
-Status OptimumSearch::TryOtherStarts(const Optimum& start) {
-  if (!options_.use_points || !options_.use_lines) return {};
-  if (!MostAreSeenTwice(now_->state)) return {};
-  AdjustmentOptions lines = options_;
-  lines.use_points = false;
-  AdjustmentOptions points = options_;
-  points.use_lines = false;
-  points.use_coplanar = false;
-  std::vector<std::pair<std::string, Optimum>> reached = {
-      {"points and lines", *now_}};
-  for (const auto& [name, kind] :
-       {std::pair{"lines first", &lines}, {"points first", &points}}) {
-    LOWLAP_RETURN_IF_ERROR(Attempt(name, [&, name = name, kind = kind] {
-      *now_ = start;
-      const Status status = StartWith(*kind);
-      if (status) reached.emplace_back(name, *now_);
-      return status;
-    }));
-  }
-  return Choose(reached);
-}
-
-Status OptimumSearch::Choose(
-    const std::vector<std::pair<std::string, Optimum>>& reached) {
-  const Optimum& usual = reached.front().second;
-  std::vector<double> costs;
-  for (const auto& [name, optimum] : reached) {
-    LOWLAP_ASSIGN_OR_RETURN(const double cost, CostOf(optimum, usual));
-    costs.push_back(cost);
-  }
-  const auto best = std::min_element(costs.begin(), costs.end());
-  for (std::size_t n = 0; n < reached.size(); ++n) {
-    const auto& [name, optimum] = reached[n];
-    if (n == static_cast<std::size_t>(best - costs.begin())) {
-      *now_ = optimum;
-    } else if (costs[n] <= *best + OneObservation(usual.noise)) {
-      rivals_.push_back({name, optimum.cameras});
-    }
-  }
-  return {};
-}
-
-Result<double> OptimumSearch::CostOf(const Optimum& optimum,
-                                     const Optimum& scale) const {
-  return MeasurementCost(optimum.cameras, optimum.state, scale.noise,
-                         scale.point_shape_exponent, context_);
-}
+Status OptimumSearch::Finish() { return Solve("final", false, 0); }
 
 Result<bool> OptimumSearch::ExplainsMoreThan(const Optimum& other) const {
-  LOWLAP_ASSIGN_OR_RETURN(const double here, CostOf(*now_, other));
-  LOWLAP_ASSIGN_OR_RETURN(const double there, CostOf(other, other));
+  LOWLAP_ASSIGN_OR_RETURN(const double here, CostOf(*now_, other, context_));
+  LOWLAP_ASSIGN_OR_RETURN(const double there, CostOf(other, other, context_));
   return here < there;
 }
 

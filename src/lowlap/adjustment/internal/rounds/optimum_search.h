@@ -1,8 +1,6 @@
 #pragma once
 
-#include <functional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "lowlap/adjustment/adjustment_options.h"
@@ -27,56 +25,47 @@ struct Optimum {
   bool at_rest = false;  // a further round would change next to nothing
 };
 
-/// Where an adjustment ended from another start, explaining what was measured
-/// as well as the one that is taken, to within one observation.
-struct Rival {
-  std::string start;
-  CameraSet cameras;
-};
+/// MeasurementCost of an optimum, at the noise of `scale`.
+Result<double> CostOf(const Optimum& optimum, const Optimum& scale,
+                      const RunContext& context);
 
-/// The solves and rounds of AdjustScene.
+/// The solves and rounds of an adjustment from one start.
 ///
 /// What is out of use has no say: cameras that have drifted put the very
 /// observations out of use that would bring them back, of landmarks that three
-/// views see, and rest in an optimum of their own. So once there is one, others
-/// are looked for:
-///  - "again": the gate of such tracks is widened to three, six, and nine
-///    thresholds, and the search goes on from where that leads;
-///  - "lines first", "points first": from the start, with one kind alone, and
-///    then with both, so that what is false in one kind does not lead the other
-///    astray. Only where most observations are of landmarks that two views see:
-///    the relative poses that chose those have decided what they bear out.
-/// What explains most of what was measured is taken (MeasurementCost). Other
-/// starts that do so as well, to within one observation, are rivals.
+/// views see, and rest in an optimum of their own. So once there is one, the
+/// gate of such tracks is widened to three, six, and nine thresholds, and the
+/// search goes on from where that leads. Where it ends is taken if that
+/// explains more of what was measured (MeasurementCost).
+///
+/// What the solves were goes to the summary; their stages begin with a prefix.
+/// Errors of all steps: as SolveOnce.
 class OptimumSearch {
  public:
-  /// `scene` and all others must outlive this. `optimum` holds the start.
+  /// `scene` and all others must outlive this. `optimum` holds the start, and
+  /// then where the search is.
   OptimumSearch(const AdjustmentOptions& options, const RunContext& context,
                 const Scene& scene, Optimum* optimum,
-                AdjustmentSummary* summary);
+                AdjustmentSummary* summary,
+                const std::string& stage_prefix = {});
 
-  /// Writes to the summary what the solves were. Errors as SolveOnce.
-  Status Run();
-
-  const std::vector<Rival>& rivals() const { return rivals_; }
+  /// What the start says: noise, directions, and the pairs to begin with.
+  Status Prepare();
+  /// From there until the observations are at rest.
+  Status Settle();
+  /// From there to the best that is reached, with planes.
+  Status Complete();
+  /// All of it, first with the kinds of these options alone.
+  Status CompleteFrom(const AdjustmentOptions& kind);
+  /// To the tolerance of the options.
+  Status Finish();
 
  private:
-  Status Prepare();
   Status FirstSolves();
   Status SettleObservations();
   Status TiePlanes();
-  /// From settled observations to the best that is reached from there, with
-  /// planes.
-  Status Complete();
-  Status TryOtherStarts(const Optimum& start);
-  /// From the start, with the kinds of these options alone, then with all.
-  Status StartWith(const AdjustmentOptions& kind);
-  Status Attempt(const std::string& name,
-                 const std::function<Status()>& search);
+  Status SearchAgain(const Optimum& settled, Optimum* best);
   Result<bool> WidenGate();
-  Status Choose(const std::vector<std::pair<std::string, Optimum>>& reached);
-  /// At the noise of `scale`.
-  Result<double> CostOf(const Optimum& optimum, const Optimum& scale) const;
   Result<bool> ExplainsMoreThan(const Optimum& other) const;
 
   /// To the tolerance of the options, or to this one if that is greater.
@@ -94,7 +83,6 @@ class OptimumSearch {
   AdjustmentSummary* summary_;
   std::vector<DirectionSight> sights_;
   std::string stage_prefix_;
-  std::vector<Rival> rivals_;
 };
 
 }  // namespace lowlap

@@ -5,7 +5,7 @@
 
 #include "lowlap/adjustment/adjustment_options.h"
 #include "lowlap/adjustment/adjustment_summary.h"
-#include "lowlap/adjustment/internal/rounds/optimum_search.h"
+#include "lowlap/adjustment/internal/rounds/optimum_starts.h"
 #include "lowlap/adjustment/internal/uncertainty/center_covariances.h"
 #include "lowlap/scene/scene.h"
 

@@ -1,0 +1,160 @@
+#include "lowlap/adjustment/internal/rounds/optimum_starts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <mutex>
+#include <utility>
+
+#include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
+
+namespace lowlap {
+namespace {
+
+template <class Track>
+void CountUsed(const std::vector<Track>& tracks, std::size_t* by_two,
+               std::size_t* by_more) {
+  for (const Track& track : tracks) {
+    if (!track.IsLandmark()) continue;
+    const std::size_t used = track.UsedCount();
+    *(used > 2 ? by_more : by_two) += used;
+  }
+}
+
+// Of the observations in use, those of landmarks that two views see.
+bool MostAreSeenTwice(const StructureState& state) {
+  std::size_t by_two = 0;
+  std::size_t by_more = 0;
+  CountUsed(state.points, &by_two, &by_more);
+  CountUsed(state.lines, &by_two, &by_more);
+  return by_two > by_more;
+}
+
+// What it costs to leave one out.
+double OneObservation(const NoiseLevels& noise) {
+  const auto cost = [](const NoiseScale& kind) {
+    return std::pow(kind.threshold_px / kind.stddev_px, 2);
+  };
+  return std::min(cost(noise.points), cost(noise.lines));
+}
+
+// A start, and what became of it.
+struct Branch {
+  std::string name;
+  AdjustmentOptions kinds;  // those it begins with
+  Optimum optimum;
+  AdjustmentSummary summary;
+  std::vector<std::pair<LogLevel, std::string>> messages;
+  Status status;
+};
+
+std::vector<Branch> MakeBranches(const AdjustmentOptions& options,
+                                 const Optimum& start, const Optimum& settled) {
+  AdjustmentOptions lines = options;
+  lines.use_points = false;
+  AdjustmentOptions points = options;
+  points.use_lines = false;
+  points.use_coplanar = false;
+  return {{"points and lines", options, settled, {}, {}, {}},
+          {"lines first", lines, start, {}, {}, {}},
+          {"points first", points, start, {}, {}, {}}};
+}
+
+// Searches side by side: their messages wait, and they report progress one at a
+// time.
+Status SearchAll(const AdjustmentOptions& options, const RunContext& context,
+                 const Scene& scene, std::vector<Branch>* branches) {
+  std::mutex mutex;
+  RunContext shared = context;
+  shared.num_threads =
+      std::max(1, context.ThreadCount() / static_cast<int>(branches->size()));
+  shared.progress = [&](const std::string& stage, std::size_t done,
+                        std::size_t total) {
+    const std::lock_guard<std::mutex> lock(mutex);
+    return context.Progress(stage, done, total);
+  };
+  return ParallelFor(context, {}, branches->size(), [&](std::size_t n) {
+    Branch& branch = (*branches)[n];
+    RunContext own = shared;
+    own.log = [&](LogLevel level, const std::string& message) {
+      branch.messages.emplace_back(level, message);
+    };
+    OptimumSearch search(options, own, scene, &branch.optimum, &branch.summary,
+                         n == 0 ? std::string() : branch.name + ": ");
+    branch.status =
+        n == 0 ? search.Complete() : search.CompleteFrom(branch.kinds);
+  });
+}
+
+// A start that fails is none, but for the usual one.
+Status Gather(const RunContext& context, std::vector<Branch>* branches,
+              AdjustmentSummary* summary) {
+  for (const Branch& branch : *branches) {
+    for (const auto& [level, message] : branch.messages) {
+      context.Log(level, message);
+    }
+    summary->solves.insert(summary->solves.end(), branch.summary.solves.begin(),
+                           branch.summary.solves.end());
+    summary->iterations += branch.summary.iterations;
+    summary->outlier_rounds += branch.summary.outlier_rounds;
+    if (!branch.status &&
+        (&branch == &branches->front() ||
+         branch.status.error().code == ErrorCode::kCancelled)) {
+      return branch.status;
+    }
+  }
+  const auto failed = [](const Branch& branch) { return !branch.status; };
+  branches->erase(std::remove_if(branches->begin(), branches->end(), failed),
+                  branches->end());
+  return {};
+}
+
+Result<std::vector<Rival>> Choose(const RunContext& context,
+                                  const std::vector<Branch>& branches,
+                                  Optimum* optimum) {
+  const Optimum& usual = branches.front().optimum;
+  std::vector<double> costs;
+  for (const Branch& branch : branches) {
+    LOWLAP_ASSIGN_OR_RETURN(const double cost,
+                            CostOf(branch.optimum, usual, context));
+    costs.push_back(cost);
+  }
+  const auto best = std::min_element(costs.begin(), costs.end());
+  std::vector<Rival> rivals;
+  for (std::size_t n = 0; n < branches.size(); ++n) {
+    const Branch& branch = branches[n];
+    if (&costs[n] == &*best) {
+      *optimum = branch.optimum;
+    } else if (costs[n] <= *best + OneObservation(usual.noise)) {
+      rivals.push_back({branch.name, branch.optimum.cameras});
+    }
+  }
+  return rivals;
+}
+
+}  // namespace
+
+Result<std::vector<Rival>> FindOptimum(const AdjustmentOptions& options,
+                                       const RunContext& context,
+                                       const Scene& scene, Optimum* optimum,
+                                       AdjustmentSummary* summary) {
+  OptimumSearch search(options, context, scene, optimum, summary);
+  LOWLAP_RETURN_IF_ERROR(search.Prepare());
+  const Optimum start = *optimum;
+  LOWLAP_RETURN_IF_ERROR(search.Settle());
+  std::vector<Rival> rivals;
+  if (options.max_outlier_rounds > 0 && options.use_points &&
+      options.use_lines && MostAreSeenTwice(optimum->state)) {
+    std::vector<Branch> branches = MakeBranches(options, start, *optimum);
+    LOWLAP_RETURN_IF_ERROR(SearchAll(options, context, scene, &branches));
+    LOWLAP_RETURN_IF_ERROR(Gather(context, &branches, summary));
+    LOWLAP_ASSIGN_OR_RETURN(rivals, Choose(context, branches, optimum));
+  } else {
+    LOWLAP_RETURN_IF_ERROR(search.Complete());
+  }
+  LOWLAP_RETURN_IF_ERROR(search.Finish());
+  return rivals;
+}
+
+}  // namespace lowlap
