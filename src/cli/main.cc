@@ -21,7 +21,7 @@ bool HasCommand(const CLI::App& program, const std::string& name) {
 }
 
 std::atomic<bool> memory_ran_out{false};
-const std::terminate_handler terminate_before = std::get_terminate();
+const std::terminate_handler kTerminateBefore = std::get_terminate();
 
 void OnNoMemory() {
   memory_ran_out = true;
@@ -31,7 +31,7 @@ void OnNoMemory() {
 // Libraries that cannot do with an exception (Ceres) end up here.
 [[noreturn]] void OnTerminate() {
   if (!memory_ran_out) {
-    terminate_before();
+    kTerminateBefore();
     std::abort();
   }
   std::fputs("error: memory ran out\n", stderr);
@@ -63,6 +63,7 @@ int Run(const lowlap::cli::Action& action) {
 
 }  // namespace
 
+// OnTerminate has the last word. NOLINTNEXTLINE(bugprone-exception-escape)
 int main(int argc, char** argv) {
   CLI::App program{
       "lowlap calibrates photographs that hardly overlap: it finds the "

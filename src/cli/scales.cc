@@ -34,6 +34,7 @@ struct Flags {
 // One line per ratio of the grid, mode, second mode and end of the interval.
 std::string ProfileCsv(const std::vector<RatioProfile>& profiles) {
   std::vector<ScaleRatio> ratios;
+  ratios.reserve(profiles.size());
   for (const RatioProfile& profile : profiles) ratios.push_back(profile.ratio);
   const std::vector<std::string> kinds = KindNames(ratios);
   std::ostringstream out;

@@ -267,6 +267,7 @@ TEST(AdjustScene, DirectionsTakeTheDriftOutOfRotations) {
     Scene adjusted = scene;
     const auto summary = AdjustScene(&adjusted, options, {});
     EXPECT_TRUE(summary) << summary.error().ToString();
+    EXPECT_EQ(summary->directions > 0, directions);
     return EvaluatePoses(adjusted, room.true_poses).rotation_deg.mean;
   };
   EXPECT_LT(mean_error_deg(true), 0.6 * mean_error_deg(false));

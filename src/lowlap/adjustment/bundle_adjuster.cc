@@ -56,7 +56,7 @@ class Adjuster {
       : options_(options),
         context_(context),
         scene_(scene),
-        optimum_{CameraSet(scene), {}, {}, 0, {}, false} {
+        optimum_{CameraSet(scene), {}, {}, 0, {}, {}, false} {
     optimum_.state.points = LoadPoints(scene, optimum_.cameras);
     optimum_.state.lines =
         LoadLines(scene, optimum_.cameras, options.MovesIntrinsics());

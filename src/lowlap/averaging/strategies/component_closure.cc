@@ -33,7 +33,7 @@ UnitComponent Normalized(const RigidComponent& component, std::size_t index) {
   unit.size =
       std::sqrt(squares / static_cast<double>(component.centers.size()));
   for (const Vec3& center : component.centers) {
-    unit.centers.push_back((center - unit.mean) / unit.size);
+    unit.centers.emplace_back((center - unit.mean) / unit.size);
   }
   return unit;
 }
@@ -131,7 +131,7 @@ class Closure {
     const Eigen::VectorXd rest = rest_.solve(-coupling_ * scales);
     std::vector<Vec3> translations = {Vec3::Zero()};
     for (int b = 1; b < count_; ++b) {
-      translations.push_back(rest.segment<3>(3 * (b - 1)));
+      translations.emplace_back(rest.segment<3>(3 * (b - 1)));
     }
     return translations;
   }
@@ -147,7 +147,7 @@ class Closure {
       for (int axis = 0; axis < 3; ++axis) {
         std::vector<std::pair<int, double>> row = {{b, -x(axis)},
                                                    {column->second + axis, 1}};
-        if (b > 0) row.push_back({count_ + 3 * (b - 1) + axis, -1});
+        if (b > 0) row.emplace_back(count_ + 3 * (b - 1) + axis, -1);
         for (const auto& [i, value_i] : row) {
           for (const auto& [j, value_j] : row) {
             normal_(i, j) += value_i * value_j;

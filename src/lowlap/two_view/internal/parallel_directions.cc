@@ -235,6 +235,7 @@ std::vector<Mat3> RotationsFromDirections(
       found.begin(), found.end(),
       [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<Mat3> rotations;
+  rotations.reserve(found.size());
   for (const auto& entry : found) rotations.push_back(entry.second);
   return rotations;
 }

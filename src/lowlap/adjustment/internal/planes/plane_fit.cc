@@ -62,6 +62,7 @@ double PlaneThickness(const std::vector<const FreeLandmark*>& members,
   double low = 0.25 * Median(std::move(stddevs));
   const auto median_at = [&](double thickness) {
     std::vector<double> normalised;
+    normalised.reserve(across.size());
     for (const Across& one : across) {
       normalised.push_back(std::abs(one.distance) /
                            std::hypot(one.stddev, thickness));

@@ -35,6 +35,7 @@ std::vector<std::size_t> PartsOf(const std::vector<FreeLandmark>& landmarks) {
     }
   }
   std::vector<std::size_t> parts;
+  parts.reserve(landmarks.size());
   for (const FreeLandmark& landmark : landmarks) {
     parts.push_back(
         joined.Find(static_cast<std::size_t>(landmark.poses.front())));

@@ -234,8 +234,9 @@ LinearisedProblem::LinearisedProblem(ProblemBuilder* builder) {
   kept_diagonal = Eigen::VectorXd::Zero(kept_size);
 
   std::vector<LandmarkRow> rows;
+  rows.reserve(static_cast<std::size_t>(jacobian.rows.num_rows));
   for (int row = 0; row < jacobian.rows.num_rows; ++row) {
-    rows.push_back({jacobian.LandmarkOf(row), row});
+    rows.emplace_back(jacobian.LandmarkOf(row), row);
   }
   std::sort(rows.begin(), rows.end());
   std::vector<const LandmarkRow*> ends = {rows.data()};

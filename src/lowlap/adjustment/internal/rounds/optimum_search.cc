@@ -100,7 +100,8 @@ Status OptimumSearch::SettleObservations() {
     now_->at_rest = changed <= options_.outlier_round_tolerance;
     if (now_->at_rest) break;
     ++summary_->outlier_rounds;
-    now_->state.directions = GroupDirections(sights_, now_->cameras);
+    now_->state.directions =
+        GroupDirections(now_->direction_sights, now_->cameras);
     LOWLAP_RETURN_IF_ERROR(
         Solve("round " + std::to_string(round), false, kRoughTolerance));
   }
@@ -135,7 +136,8 @@ Result<bool> OptimumSearch::WidenGate() {
     LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes,
                             Update({false, gate}));
     if (step == 1 && changes.changed == 0) return false;
-    now_->state.directions = GroupDirections(sights_, now_->cameras);
+    now_->state.directions =
+        GroupDirections(now_->direction_sights, now_->cameras);
     const NoiseLevels noise = now_->noise;
     now_->noise = Widened(noise, gate);
     LOWLAP_RETURN_IF_ERROR(
@@ -229,14 +231,17 @@ void OptimumSearch::EstimateNoise() {
 
 // Seen through a calibration that moves they would be others.
 Status OptimumSearch::FindDirections() {
+  now_->direction_sights.clear();
+  now_->state.directions.clear();
   if (!options_.use_directions || !options_.use_lines ||
       options_.coplanar_ties == CoplanarTies::kPairs ||
       options_.MovesIntrinsics()) {
     return {};
   }
-  LOWLAP_ASSIGN_OR_RETURN(sights_,
+  LOWLAP_ASSIGN_OR_RETURN(now_->direction_sights,
                           FindDirectionSights(scene_, now_->cameras, context_));
-  now_->state.directions = GroupDirections(sights_, now_->cameras);
+  now_->state.directions =
+      GroupDirections(now_->direction_sights, now_->cameras);
   return {};
 }
 

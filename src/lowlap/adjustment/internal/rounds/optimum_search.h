@@ -21,6 +21,9 @@ struct Optimum {
   NoiseLevels noise;
   /// As in AdjustmentSummary::point_shape_exponent.
   double point_shape_exponent = 0;
+  /// Of which the directions of the state are made; none where they are not
+  /// used.
+  std::vector<DirectionSight> direction_sights;
   SolveOutcome last;
   bool at_rest = false;  // a further round would change next to nothing
 };
@@ -81,7 +84,6 @@ class OptimumSearch {
   const Scene& scene_;
   Optimum* now_;
   AdjustmentSummary* summary_;
-  std::vector<DirectionSight> sights_;
   std::string stage_prefix_;
 };
 

@@ -56,7 +56,7 @@ std::vector<Mat3> WithoutSimilarity(const JointCovariance& joint,
   for (Eigen::Index n = 0; 3 * n < motions.rows(); ++n) {
     const Eigen::Matrix<double, 3, 7> own = motions.middleRows<3>(3 * n);
     const Mat3 shared = crossed.middleRows<3>(3 * n) * own.transpose();
-    free.push_back(blocks.at({n, n}) - shared - shared.transpose() +
+    free.emplace_back(blocks.at({n, n}) - shared - shared.transpose() +
                    own * inner * own.transpose());
   }
   return free;

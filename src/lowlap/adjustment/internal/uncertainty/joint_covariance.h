@@ -24,9 +24,9 @@ class JointCovariance {
   using Factor = Eigen::SimplicialLDLT<SparseMat>;
 
   /// `scatter` null: S.
-  JointCovariance(SparseMat centers_from_kept, const Factor& factor,
+  JointCovariance(const SparseMat& centers_from_kept, const Factor& factor,
                   const SparseMat* scatter)
-      : centers_from_kept_(std::move(centers_from_kept)),
+      : centers_from_kept_(centers_from_kept),
         factor_(factor),
         scatter_(scatter) {}
 
