@@ -57,7 +57,7 @@ std::vector<Mat3> WithoutSimilarity(const JointCovariance& joint,
     const Eigen::Matrix<double, 3, 7> own = motions.middleRows<3>(3 * n);
     const Mat3 shared = crossed.middleRows<3>(3 * n) * own.transpose();
     free.emplace_back(blocks.at({n, n}) - shared - shared.transpose() +
-                   own * inner * own.transpose());
+                      own * inner * own.transpose());
   }
   return free;
 }
