@@ -229,10 +229,9 @@ void OptimumSearch::EstimateNoise() {
   now_->noise = EstimateAllNoise(now_->cameras, now_->state, options_);
 }
 
-// Seen through a calibration that moves they would be others.
+// Seen through a calibration that moves they would be others. Those of the
+// start stay: no relative pose had a part in them.
 Status OptimumSearch::FindDirections() {
-  now_->direction_sights.clear();
-  now_->state.directions.clear();
   if (!options_.use_directions || !options_.use_lines ||
       options_.coplanar_ties == CoplanarTies::kPairs ||
       options_.MovesIntrinsics()) {
