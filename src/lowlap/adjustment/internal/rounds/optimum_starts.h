@@ -25,8 +25,9 @@ struct Rival {
 /// Where most observations in use are of such landmarks, three starts are
 /// searched, at the same time: with points and lines, with the lines alone at
 /// first, and with the points alone at first, so that what is false in one kind
-/// does not lead the other astray. The end that explains most of what was
-/// measured is taken (MeasurementCost); those that do so as well are returned.
+/// does not lead the other astray. The directions of the scene hold all three.
+/// The end that explains most of what was measured is taken (MeasurementCost);
+/// those that do so as well are returned.
 ///
 /// `optimum` holds the start, and then the result; the summary gets what the
 /// solves were. Errors: as SolveOnce.
