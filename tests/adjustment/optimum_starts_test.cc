@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <iterator>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "line_chain.h"
@@ -93,6 +95,7 @@ TEST(OptimumStartsTest, ThreadsChangeNothing) {
     std::atomic<int> inside{0};
     context.progress = [&](const std::string&, std::size_t, std::size_t) {
       EXPECT_EQ(inside.fetch_add(1), 0) << "two threads report at a time";
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
       inside.fetch_sub(1);
       return true;
     };

@@ -88,7 +88,7 @@ struct CalibrationPreference {
 /// Where the adjustment ended from another start, and explains what more than
 /// two views show to within what one observation says.
 struct RivalOptimum {
-  std::string start;  // "lines first", "points first"; "" as usual
+  std::string start;  // "points and lines", "lines first", "points first"
   /// How far its centres are, after the least similarity, in world units: of
   /// those that are outside the 95 % regions of the covariances.
   std::map<PoseId, double> distances;

@@ -1,7 +1,6 @@
 #include "lowlap/adjustment/internal/rounds/optimum_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 #include <utility>
 
@@ -100,8 +99,7 @@ Status OptimumSearch::SettleObservations() {
     now_->at_rest = changed <= options_.outlier_round_tolerance;
     if (now_->at_rest) break;
     ++summary_->outlier_rounds;
-    now_->state.directions =
-        GroupDirections(now_->direction_sights, now_->cameras);
+    RegroupDirections();
     LOWLAP_RETURN_IF_ERROR(
         Solve("round " + std::to_string(round), false, kRoughTolerance));
   }
@@ -136,8 +134,7 @@ Result<bool> OptimumSearch::WidenGate() {
     LOWLAP_ASSIGN_OR_RETURN(const ObservationChanges changes,
                             Update({false, gate}));
     if (step == 1 && changes.changed == 0) return false;
-    now_->state.directions =
-        GroupDirections(now_->direction_sights, now_->cameras);
+    RegroupDirections();
     const NoiseLevels noise = now_->noise;
     now_->noise = Widened(noise, gate);
     LOWLAP_RETURN_IF_ERROR(
@@ -185,7 +182,7 @@ Status OptimumSearch::CompleteFrom(const AdjustmentOptions& kind) {
   if (const auto changes = Update({true}); !changes) {
     return tl::unexpected<Error>(changes.error());
   }
-  LOWLAP_RETURN_IF_ERROR(FindDirections());
+  RegroupDirections();
   LOWLAP_RETURN_IF_ERROR(Solve("everything", false, kFirstTolerance));
   LOWLAP_RETURN_IF_ERROR(SettleObservations());
   return Complete();
@@ -237,11 +234,18 @@ Status OptimumSearch::FindDirections() {
       options_.MovesIntrinsics()) {
     return {};
   }
-  LOWLAP_ASSIGN_OR_RETURN(now_->direction_sights,
-                          FindDirectionSights(scene_, now_->cameras, context_));
+  if (now_->direction_sights.empty()) {
+    LOWLAP_ASSIGN_OR_RETURN(
+        now_->direction_sights,
+        FindDirectionSights(scene_, now_->cameras, context_));
+  }
+  RegroupDirections();
+  return {};
+}
+
+void OptimumSearch::RegroupDirections() {
   now_->state.directions =
       GroupDirections(now_->direction_sights, now_->cameras);
-  return {};
 }
 
 // The planes of the structure as it is; those before, should there be none.

@@ -76,6 +76,7 @@ class OptimumSearch {
                double least_tolerance);
   void EstimateNoise();
   Status FindDirections();
+  void RegroupDirections();
   Status LinkPlanes();
   Result<ObservationChanges> Update(const ObservationUpdate& update);
 

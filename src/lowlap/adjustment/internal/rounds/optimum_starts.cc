@@ -113,6 +113,7 @@ Status Gather(const RunContext& context, std::vector<Branch>* branches,
 Result<std::vector<Rival>> Choose(const RunContext& context,
                                   const std::vector<Branch>& branches,
                                   Optimum* optimum) {
+  // One noise level for all, or their costs could not be compared.
   const Optimum& usual = branches.front().optimum;
   std::vector<double> costs;
   for (const Branch& branch : branches) {

@@ -1,29 +1,22 @@
 #include "lowlap/adjustment/internal/uncertainty/rival_optima.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <cmath>
 #include <map>
+#include <utility>
 
 #include "lowlap/adjustment/internal/rounds/problem_selection.h"
 #include "lowlap/adjustment/internal/uncertainty/center_shift.h"
+#include "lowlap/core/internal/format.h"
+#include "lowlap/core/internal/joined.h"
+#include "lowlap/robust/internal/chi_square.h"
 
 namespace lowlap {
 namespace {
 
-// Chi-square, three degrees of freedom.
-constexpr double kRegion95 = 7.815;
-
-bool IsOutside(const Vec3& step, const Mat3& covariance) {
-  return step.dot(covariance.ldlt().solve(step)) > kRegion95;
-}
-
-std::string ViewsAt(const Scene& scene, PoseId pose) {
-  std::string names;
-  for (const auto& [id, view] : scene.views) {
-    if (view.pose_id != pose) continue;
-    names += (names.empty() ? "" : ", ") + scene.NameOf(id);
-  }
-  return names;
+bool IsOutside95(const Vec3& step, const Mat3& covariance) {
+  return LogChiSquareTail(step.dot(covariance.ldlt().solve(step)), 3) <
+         std::log(0.05);
 }
 
 }  // namespace
@@ -43,7 +36,7 @@ std::vector<RivalOptimum> AddRivals(const AdjustmentOptions& options,
     RivalOptimum found{rival.start, {}};
     for (const auto& [pose, step] : shift.steps()) {
       const auto covariance = stated.find(pose);
-      if (covariance != stated.end() && IsOutside(step, covariance->second)) {
+      if (covariance != stated.end() && IsOutside95(step, covariance->second)) {
         found.distances[pose] = step.norm();
       }
     }
@@ -59,17 +52,19 @@ std::vector<std::string> DescribeRivals(const Scene& scene,
   std::vector<std::string> sentences;
   for (const RivalOptimum& rival : summary.rivals) {
     double farthest = 0;
-    std::string names;
-    for (const auto& [pose, distance] : rival.distances) {
-      farthest = std::max(farthest, distance);
-      names += (names.empty() ? "" : ", ") + ViewsAt(scene, pose);
+    std::vector<std::string> names;
+    for (const auto& [id, view] : scene.views) {
+      const auto found = rival.distances.find(view.pose_id);
+      if (found == rival.distances.end()) continue;
+      farthest = std::max(farthest, found->second);
+      names.push_back(scene.NameOf(id));
     }
-    char distance[32];
-    std::snprintf(distance, sizeof distance, "%.3g", farthest);
-    sentences.push_back("from another start (" + rival.start +
-                        ") the adjustment ends elsewhere and explains the "
-                        "measurements as well; by up to " +
-                        distance + " world units these differ: " + names);
+    sentences.push_back(
+        "from another start (" + rival.start +
+        ") the adjustment ends elsewhere and explains the measurements as "
+        "well; by up to " +
+        Format("%.3g", farthest) +
+        " world units these differ: " + Joined(names, ", "));
   }
   return sentences;
 }
