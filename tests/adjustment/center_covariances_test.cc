@@ -9,14 +9,13 @@
 #include <vector>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
-#include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
-#include "support/random_vectors.h"
 #include "test_scene.h"
 
 namespace lowlap {
 namespace {
 
+using test::AddCommonErrors;
 using test::BuildAndAdjust;
 using test::MakeTestScene;
 using test::TestScene;
@@ -112,21 +111,6 @@ TEST(CenterCovariances, HoldTheErrorsOfCentresRatiosAndDirections) {
   // Two axes, of which the worse is stated.
   EXPECT_GT(mean.directions, 0.5);
   EXPECT_LT(mean.directions, 2.5);
-}
-
-// Moves all points of a part of an image alike.
-void AddCommonErrors(double stddev_px, std::uint64_t seed, Scene* scene) {
-  constexpr double kPartPx = 80;
-  Random random(seed);
-  for (auto& [view, features] : scene->features) {
-    std::map<std::pair<double, double>, Vec2> errors;
-    for (Vec2& point : features.points_px) {
-      const std::pair<double, double> part(std::floor(point.x() / kPartPx),
-                                           std::floor(point.y() / kPartPx));
-      const Vec2 drawn = testing::GaussianVec2(random, stddev_px);
-      point += errors.emplace(part, drawn).first->second;
-    }
-  }
 }
 
 // In part: what they share in later images is not told from what they do not.

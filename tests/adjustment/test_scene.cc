@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
@@ -276,6 +278,20 @@ void PerturbScales(double log_stddev, std::uint64_t seed, Scene* scene) {
     first = false;
     old_previous = old_center;
     new_previous = pose.center;
+  }
+}
+
+void AddCommonErrors(double stddev_px, std::uint64_t seed, Scene* scene) {
+  constexpr double kPartPx = 80;
+  Random random(seed);
+  for (auto& [view, features] : scene->features) {
+    std::map<std::pair<double, double>, Vec2> errors;
+    for (Vec2& point : features.points_px) {
+      const std::pair<double, double> part(std::floor(point.x() / kPartPx),
+                                           std::floor(point.y() / kPartPx));
+      const Vec2 drawn = testing::GaussianVec2(random, stddev_px);
+      point += errors.emplace(part, drawn).first->second;
+    }
   }
 }
 

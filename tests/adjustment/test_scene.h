@@ -54,6 +54,9 @@ void PerturbPoses(double angle_rad, double distance, std::uint64_t seed,
 /// exp(N(0, log_stddev)): what errors of scale ratios do to a chain.
 void PerturbScales(double log_stddev, std::uint64_t seed, Scene* scene);
 
+/// Moves all points of a part of an image alike.
+void AddCommonErrors(double stddev_px, std::uint64_t seed, Scene* scene);
+
 struct PoseErrors {
   double mean_center = 0;  // after a similarity alignment, world units
   double max_center = 0;

@@ -13,6 +13,7 @@
 #include "lowlap/adjustment/internal/rounds/outlier_round.h"
 #include "lowlap/adjustment/internal/uncertainty/calibration_shift.h"
 #include "lowlap/adjustment/internal/uncertainty/center_covariances.h"
+#include "lowlap/adjustment/internal/uncertainty/jackknife.h"
 #include "lowlap/adjustment/internal/uncertainty/rival_optima.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/scene/validation.h"
@@ -174,6 +175,9 @@ class Adjuster {
     CenterUncertainty uncertainty =
         EstimateCenterUncertainty(options_, optimum_.noise, triplets, pairs,
                                   optimum_.cameras, optimum_.state);
+    LOWLAP_RETURN_IF_ERROR(AddJackknife(options_, optimum_.noise, context_,
+                                        optimum_.cameras, optimum_.state,
+                                        &uncertainty));
     LOWLAP_RETURN_IF_ERROR(AddCalibrationShift(
         options_, optimum_.noise, summary_.calibration_preferences, scene_,
         context_, optimum_.cameras, optimum_.state, &uncertainty));

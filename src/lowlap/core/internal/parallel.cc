@@ -59,4 +59,18 @@ Status ParallelFor(const RunContext& context, const std::string& stage,
   return {};
 }
 
+RunContext ContextOfItem(const RunContext& context, std::size_t count,
+                         std::mutex* mutex) {
+  RunContext own = context;
+  own.num_threads =
+      std::max(1, context.ThreadCount() /
+                      static_cast<int>(std::max<std::size_t>(1, count)));
+  own.progress = [&context, mutex](const std::string& stage, std::size_t done,
+                                   std::size_t total) {
+    const std::lock_guard<std::mutex> lock(*mutex);
+    return context.Progress(stage, done, total);
+  };
+  return own;
+}
+
 }  // namespace lowlap

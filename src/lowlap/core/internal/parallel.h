@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <mutex>
 #include <string>
 
 #include "lowlap/core/result.h"
@@ -19,5 +20,11 @@ namespace lowlap {
 Status ParallelFor(const RunContext& context, const std::string& stage,
                    std::size_t count,
                    const std::function<void(std::size_t)>& body);
+
+/// For what bodies of a ParallelFor over `count` items call: reports progress
+/// from one thread at a time, and has an item's share of the threads. Context
+/// and mutex must outlive it.
+RunContext ContextOfItem(const RunContext& context, std::size_t count,
+                         std::mutex* mutex);
 
 }  // namespace lowlap

@@ -28,14 +28,14 @@ SceneReach::SceneReach(const std::vector<FreeLandmark>& landmarks) {
 double SceneReach::Along(const Vec3& direction) const {
   if (centers_.rows() == 0) return 0;
   Eigen::VectorXd along = centers_ * direction;
-  const auto at = [&](Eigen::Index n) {
-    std::nth_element(along.data(), along.data() + n,
-                     along.data() + along.size());
-    return along[n];
-  };
+  double* const begin = along.data();
+  double* const end = begin + along.size();
   const Eigen::Index tail = along.size() / 20;
-  const double low = at(tail);
-  return (at(along.size() - 1 - tail) - low) / 0.9;
+  double* const low = begin + tail;
+  double* const high = end - 1 - tail;
+  std::nth_element(begin, low, end);
+  std::nth_element(low, high, end);  // what is before is no greater
+  return (*high - *low) / 0.9;
 }
 
 }  // namespace lowlap

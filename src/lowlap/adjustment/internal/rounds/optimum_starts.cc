@@ -12,25 +12,6 @@
 namespace lowlap {
 namespace {
 
-template <class Track>
-void CountUsed(const std::vector<Track>& tracks, std::size_t* by_two,
-               std::size_t* by_more) {
-  for (const Track& track : tracks) {
-    if (!track.IsLandmark()) continue;
-    const std::size_t used = track.UsedCount();
-    *(used > 2 ? by_more : by_two) += used;
-  }
-}
-
-// Of the observations in use, those of landmarks that two views see.
-bool MostAreSeenTwice(const StructureState& state) {
-  std::size_t by_two = 0;
-  std::size_t by_more = 0;
-  CountUsed(state.points, &by_two, &by_more);
-  CountUsed(state.lines, &by_two, &by_more);
-  return by_two > by_more;
-}
-
 // What it costs to leave one out.
 double OneObservation(const NoiseLevels& noise) {
   const auto cost = [](const NoiseScale& kind) {
@@ -61,19 +42,11 @@ std::vector<Branch> MakeBranches(const AdjustmentOptions& options,
           {"points first", points, start, {}, {}, {}}};
 }
 
-// Searches side by side: their messages wait, and they report progress one at a
-// time.
+// Searches side by side: their messages wait.
 Status SearchAll(const AdjustmentOptions& options, const RunContext& context,
                  const Scene& scene, std::vector<Branch>* branches) {
   std::mutex mutex;
-  RunContext shared = context;
-  shared.num_threads =
-      std::max(1, context.ThreadCount() / static_cast<int>(branches->size()));
-  shared.progress = [&](const std::string& stage, std::size_t done,
-                        std::size_t total) {
-    const std::lock_guard<std::mutex> lock(mutex);
-    return context.Progress(stage, done, total);
-  };
+  const RunContext shared = ContextOfItem(context, branches->size(), &mutex);
   return ParallelFor(context, {}, branches->size(), [&](std::size_t n) {
     Branch& branch = (*branches)[n];
     RunContext own = shared;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <map>
 #include <set>
 #include <utility>
@@ -147,6 +148,16 @@ auto AllIds(const Tracks& tracks, const Landmarks& landmarks) {
   return ids;
 }
 
+template <class Track>
+void CountUsed(const std::vector<Track>& tracks, std::size_t* by_two,
+               std::size_t* by_more) {
+  for (const Track& track : tracks) {
+    if (!track.IsLandmark()) continue;
+    const std::size_t used = track.UsedCount();
+    *(used > 2 ? by_more : by_two) += used;
+  }
+}
+
 }  // namespace
 
 std::vector<PointTrackState> LoadPoints(const Scene& scene,
@@ -197,6 +208,14 @@ void RefreshRays(const Scene& scene, const CameraSet& cameras,
       if (rays) candidate.rays = *rays;
     }
   }
+}
+
+bool MostAreSeenTwice(const StructureState& state) {
+  std::size_t by_two = 0;
+  std::size_t by_more = 0;
+  CountUsed(state.points, &by_two, &by_more);
+  CountUsed(state.lines, &by_two, &by_more);
+  return by_two > by_more;
 }
 
 Landmark ToLandmark(const CameraSet& cameras, const PointTrackState& track) {

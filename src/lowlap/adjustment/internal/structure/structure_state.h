@@ -88,6 +88,10 @@ std::vector<PairState> LoadPairs(const Scene& scene,
 void RefreshRays(const Scene& scene, const CameraSet& cameras,
                  StructureState* state);
 
+/// Of the observations in use, whether most are of landmarks that two views
+/// see.
+bool MostAreSeenTwice(const StructureState& state);
+
 Landmark ToLandmark(const CameraSet& cameras, const PointTrackState& track);
 LineLandmark ToLandmark(const CameraSet& cameras, const LineTrackState& track);
 

@@ -39,12 +39,28 @@ void CenterShift::AddTo(CenterUncertainty* uncertainty) const {
     if (step == steps_.end()) continue;
     covariance += step->second.squaredNorm() / 3 * Mat3::Identity();
   }
+  AddChanges(1, uncertainty);
+}
+
+void CenterShift::AddDrawn(double weight,
+                           CenterUncertainty* uncertainty) const {
+  for (auto& [pose, covariance] : uncertainty->covariances) {
+    const auto step = steps_.find(pose);
+    if (step == steps_.end()) continue;
+    covariance += weight * step->second * step->second.transpose();
+  }
+  AddChanges(weight, uncertainty);
+}
+
+void CenterShift::AddChanges(double weight,
+                             CenterUncertainty* uncertainty) const {
+  const double factor = std::sqrt(weight);
   for (auto& [views, stddev] : uncertainty->log_ratio_stddevs) {
     if (!Has(views.first) || !Has(views.middle) || !Has(views.last)) continue;
     const double change =
         LogRatio(After(views.first), After(views.middle), After(views.last)) -
         LogRatio(Before(views.first), Before(views.middle), Before(views.last));
-    if (std::isfinite(change)) stddev = std::hypot(stddev, change);
+    if (std::isfinite(change)) stddev = std::hypot(stddev, factor * change);
   }
   for (auto& [views, stddev_rad] : uncertainty->direction_stddevs_rad) {
     if (!Has(views.first) || !Has(views.second)) continue;
@@ -52,7 +68,7 @@ void CenterShift::AddTo(CenterUncertainty* uncertainty) const {
         AngleBetween(After(views.second) - After(views.first),
                      Before(views.second) - Before(views.first));
     if (std::isfinite(change_rad)) {
-      stddev_rad = std::hypot(stddev_rad, change_rad);
+      stddev_rad = std::hypot(stddev_rad, factor * change_rad);
     }
   }
 }

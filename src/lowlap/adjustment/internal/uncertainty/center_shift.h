@@ -21,8 +21,12 @@ class CenterShift {
   /// As much as is at stake, wherever to: |d|^2 / 3 in every direction of a
   /// centre; changes of log ratios and directions add their squares.
   void AddTo(CenterUncertainty* uncertainty) const;
+  /// As one of several that are drawn: `weight` d d^T, and `weight` times the
+  /// squares of the changes.
+  void AddDrawn(double weight, CenterUncertainty* uncertainty) const;
 
  private:
+  void AddChanges(double weight, CenterUncertainty* uncertainty) const;
   const PoseState& PoseOf(ViewId view) const;
   bool Has(ViewId view) const;
   Vec3 Before(ViewId view) const;
