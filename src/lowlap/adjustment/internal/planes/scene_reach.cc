@@ -31,11 +31,11 @@ double SceneReach::Along(const Vec3& direction) const {
   double* const begin = along.data();
   double* const end = begin + along.size();
   const Eigen::Index tail = along.size() / 20;
-  double* const low = begin + tail;
+  std::nth_element(begin, begin + tail, end);
+  const double low = begin[tail];
   double* const high = end - 1 - tail;
-  std::nth_element(begin, low, end);
-  std::nth_element(low, high, end);  // what is before is no greater
-  return (*high - *low) / 0.9;
+  std::nth_element(begin + tail, high, end);  // what is before is no greater
+  return (*high - low) / 0.9;
 }
 
 }  // namespace lowlap
