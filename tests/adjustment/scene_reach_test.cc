@@ -24,6 +24,16 @@ TEST(SceneReach, IsTheMiddleNineTenthsMadeUpToAll) {
   EXPECT_EQ(reach.Along(Vec3::UnitY()), 0);
 }
 
+TEST(SceneReach, IsNotThatOfTheFarthest) {
+  for (const double far : {1e6, 1.7e308}) {
+    std::vector<FreeLandmark> row = Row();
+    row[3].places[0].point.x() = far;   // was at 11
+    row[4].places[0].point.x() = -far;  // was at 48
+    const SceneReach reach(row);
+    EXPECT_DOUBLE_EQ(reach.Along(Vec3::UnitX()), (95 - 4) / 0.9) << far;
+  }
+}
+
 TEST(SceneReach, OneLandmarkReachesNowhere) {
   const std::vector<FreeLandmark> row = Row();
   EXPECT_EQ(SceneReach({row.front()}).Along(Vec3::UnitX()), 0);

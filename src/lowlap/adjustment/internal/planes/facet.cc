@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <iterator>
 #include <map>
 #include <utility>
@@ -71,6 +73,20 @@ class PlaceTable {
   std::array<Eigen::Matrix<double, Eigen::Dynamic, 3>, 2> points_;
   std::array<Eigen::Matrix<double, Eigen::Dynamic, 6>, 2> covariances_;
 };
+
+// How many of the thicknesses, each half of the one before it, have a square of
+// at least `square`; that of the first is given. The bits of positive numbers
+// are ordered as these are, and a factor of two is one in the exponent.
+int TimesWithin(double square, double thickest_square) {
+  constexpr int kMantissaBits = 52;
+  square = std::max(0.0, square);  // a variance may be rounded to less
+  std::int64_t bits, thickest_bits;
+  std::memcpy(&bits, &square, sizeof(bits));
+  std::memcpy(&thickest_bits, &thickest_square, sizeof(thickest_bits));
+  const std::int64_t last = (thickest_bits - bits) >> (kMantissaBits + 1);
+  return static_cast<int>(
+      std::clamp<std::int64_t>(last + 1, 0, kNumThicknesses));
+}
 
 class FacetFinder {
  public:
@@ -142,18 +158,12 @@ class FacetFinder {
       if (taken_[n] != 0) return best;
     }
     table_.Across(hypothesis.plane, &squared_distance_, &variance_);
+    double thickness = kThickest * hypothesis.reach;
+    const Counts counts = Count(thickness * thickness);
     const double log10_tests =
         std::log10(static_cast<double>(kNumHypotheses * kNumThicknesses));
-    double thickness = kThickest * hypothesis.reach;
     for (int step = 0; step < kNumThicknesses; ++step, thickness *= 0.5) {
-      const double square = thickness * thickness;
-      int n = 0, k = 0;
-      for (std::size_t l = 0; l < taken_.size(); ++l) {
-        const auto index = static_cast<Eigen::Index>(l);
-        const bool known = taken_[l] == 0 && variance_[index] <= square;
-        n += known ? 1 : 0;
-        k += known && squared_distance_[index] <= 4 * square ? 1 : 0;
-      }
+      const int n = counts.known[step], k = counts.near[step];
       if (k <= 3) continue;
       const double log10_nfa =
           log10_tests +
@@ -162,6 +172,33 @@ class FacetFinder {
       if (log10_nfa < best.log10_nfa) best = {log10_nfa, thickness};
     }
     return best;
+  }
+
+  // Of those left, whose deviations across the plane are within each
+  // thickness, and of these, who are within two of it.
+  struct Counts {
+    std::array<int, kNumThicknesses> known{}, near{};
+  };
+
+  Counts Count(double thickest_square) const {
+    // By how many thicknesses they are within.
+    std::array<int, kNumThicknesses + 1> last_known{}, last_near{};
+    for (std::size_t l = 0; l < taken_.size(); ++l) {
+      if (taken_[l] != 0) continue;
+      const auto index = static_cast<Eigen::Index>(l);
+      const int known = TimesWithin(variance_[index], thickest_square);
+      const int near =
+          TimesWithin(squared_distance_[index], 4 * thickest_square);
+      ++last_known[known];
+      ++last_near[std::min(known, near)];
+    }
+    Counts counts;
+    int known = 0, near = 0;
+    for (int step = kNumThicknesses - 1; step >= 0; --step) {
+      counts.known[step] = known += last_known[step + 1];
+      counts.near[step] = near += last_near[step + 1];
+    }
+    return counts;
   }
 
   // Fits the plane to its members and takes them; false if too few are left.

@@ -1,7 +1,11 @@
 #include "lowlap/adjustment/internal/planes/scene_reach.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "lowlap/core/internal/random.h"
 
@@ -9,6 +13,42 @@ namespace lowlap {
 namespace {
 
 constexpr std::size_t kMaxCenters = 400;
+
+// Values for order statistics: only those of one bin have to be put in order.
+class BinnedValues {
+ public:
+  explicit BinnedValues(Eigen::VectorXd values)
+      : values_(std::move(values)),
+        bins_(Eigen::ArrayXi::Zero(values_.size())) {
+    const double least = values_.minCoeff();
+    const double bins_per_unit = (kNumBins - 1) / (values_.maxCoeff() - least);
+    // Else they are the same, or too far apart for a difference.
+    if (std::isfinite(bins_per_unit) && bins_per_unit > 0) {
+      bins_ = ((values_.array() - least) * bins_per_unit).cast<int>();
+    }
+    for (const int bin : bins_) ++counts_[bin];
+  }
+
+  // The value with `rank` smaller ones before it.
+  double Ranked(Eigen::Index rank) const {
+    int bin = 0;
+    for (; rank >= counts_[bin]; ++bin) rank -= counts_[bin];
+    std::vector<double> members;
+    members.reserve(static_cast<std::size_t>(counts_[bin]));
+    for (Eigen::Index n = 0; n < values_.size(); ++n) {
+      if (bins_[n] == bin) members.push_back(values_[n]);
+    }
+    std::nth_element(members.begin(), members.begin() + rank, members.end());
+    return members[rank];
+  }
+
+ private:
+  static constexpr int kNumBins = 64;
+
+  Eigen::VectorXd values_;
+  Eigen::ArrayXi bins_;
+  std::array<Eigen::Index, kNumBins> counts_{};
+};
 
 }  // namespace
 
@@ -27,15 +67,9 @@ SceneReach::SceneReach(const std::vector<FreeLandmark>& landmarks) {
 
 double SceneReach::Along(const Vec3& direction) const {
   if (centers_.rows() == 0) return 0;
-  Eigen::VectorXd along = centers_ * direction;
-  double* const begin = along.data();
-  double* const end = begin + along.size();
-  const Eigen::Index tail = along.size() / 20;
-  std::nth_element(begin, begin + tail, end);
-  const double low = begin[tail];
-  double* const high = end - 1 - tail;
-  std::nth_element(begin + tail, high, end);  // what is before is no greater
-  return (*high - low) / 0.9;
+  const BinnedValues along(centers_ * direction);
+  const Eigen::Index tail = centers_.rows() / 20;
+  return (along.Ranked(centers_.rows() - 1 - tail) - along.Ranked(tail)) / 0.9;
 }
 
 }  // namespace lowlap
