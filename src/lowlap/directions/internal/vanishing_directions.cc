@@ -2,7 +2,9 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -17,8 +19,11 @@ namespace {
 
 // Pairs of this many long segments propose directions.
 constexpr std::size_t kProposers = 80;
-constexpr double kThresholdsPx[] = {0.5, 1.0, 2.0};
+constexpr std::size_t kNumThresholds = 3;
+constexpr std::array<double, kNumThresholds> kThresholdsPx = {0.5, 1.0, 2.0};
 constexpr std::size_t kMinSegments = 3;
+// The midpoint of a segment is no vanishing point of it.
+constexpr double kLeastSine = 1e-9;
 
 struct Segment {
   int index;
@@ -37,7 +42,7 @@ Segment MakeSegment(int index, const NormalizedSegment& s, double focal_px) {
 // point.
 double Gain(const Segment& s, const Vec3& direction, double focal_px) {
   const double norm = s.middle.cross(direction).head<2>().norm();
-  return norm > 1e-9 ? 0.5 * focal_px / norm : 0;
+  return norm > kLeastSine ? 0.5 * focal_px / norm : 0;
 }
 
 // +infinity for a segment whose midpoint is the vanishing point.
@@ -99,6 +104,41 @@ class DirectionFit {
   double scatter_ = 1;
 };
 
+// Segments side by side, each with the greatest errors that are parallel.
+struct SegmentTable {
+  Eigen::Matrix<double, Eigen::Dynamic, 3> moments, middles;
+  std::array<Eigen::ArrayXd, kNumThresholds> squared_limits;
+
+  explicit SegmentTable(Eigen::Index count)
+      : moments(count, 3), middles(count, 3) {
+    for (Eigen::ArrayXd& limits : squared_limits) limits.resize(count);
+  }
+
+  // How many segments are parallel to a direction, at each threshold: ErrorPx
+  // without roots and quotients.
+  std::array<std::int64_t, kNumThresholds> CountParallel(
+      const Vec3& direction) const {
+    const Vec3& d = direction;
+    const Eigen::ArrayXd squared_moment = (moments * d).array().square();
+    const Eigen::ArrayXd squared_norm =
+        (middles.col(1) * d.z() - middles.col(2) * d.y()).array().square() +
+        (middles.col(2) * d.x() - middles.col(0) * d.z()).array().square();
+    std::array<std::int64_t, kNumThresholds> counts{};
+    for (std::size_t t = 0; t < kNumThresholds; ++t) {
+      std::int64_t count = 0;
+      for (Eigen::Index n = 0; n < squared_norm.size(); ++n) {
+        const double norm = squared_norm[n];
+        const bool is_parallel =
+            squared_moment[n] <= squared_limits[t][n] * norm &&
+            norm > kLeastSine * kLeastSine;
+        count += is_parallel ? 1 : 0;
+      }
+      counts[t] = count;
+    }
+    return counts;
+  }
+};
+
 class Finder {
  public:
   Finder(const NormalizedFeatures& features, const VanishingOptions& options)
@@ -125,18 +165,22 @@ class Finder {
     if (count < kMinSegments) return std::nullopt;
     const double log10_tests =
         std::log10(0.5 * static_cast<double>(proposers * (proposers - 1)) *
-                   std::size(kThresholdsPx));
+                   kNumThresholds);
     // Mean chance of the segments at each threshold.
-    double alpha[std::size(kThresholdsPx)] = {};
-    for (std::size_t t = 0; t < std::size(kThresholdsPx); ++t) {
+    double alpha[kNumThresholds] = {};
+    for (std::size_t t = 0; t < kNumThresholds; ++t) {
       for (std::size_t n = 0; n < count; ++n) {
         alpha[t] += 2 / kPi *
                     std::asin(MaxSine(segments_[free_[n]], kThresholdsPx[t])) /
                     static_cast<double>(count);
       }
     }
+    const SegmentTable table = MakeTable(count);
     double best_nfa = 0;
     Vec3 best = Vec3::Zero();
+    // The more, the less likely by chance.
+    std::array<std::int64_t, kNumThresholds> most;
+    most.fill(kMinSegments - 1);
     for (std::size_t i = 0; i < proposers; ++i) {
       for (std::size_t j = i + 1; j < proposers; ++j) {
         const Vec3 crossing =
@@ -144,23 +188,15 @@ class Finder {
         const double norm = crossing.norm();
         if (norm < 1e-3) continue;  // collinear: any direction fits both
         const Vec3 direction = crossing / norm;
-        std::size_t inliers[std::size(kThresholdsPx)] = {};
-        for (std::size_t n = 0; n < count; ++n) {
-          const double error_px =
-              std::abs(ErrorPx(segments_[free_[n]], direction, focal_px_));
-          for (std::size_t t = 0; t < std::size(kThresholdsPx); ++t) {
-            if (IsParallel(segments_[free_[n]], error_px, kThresholdsPx[t])) {
-              ++inliers[t];
-            }
-          }
-        }
-        for (std::size_t t = 0; t < std::size(kThresholdsPx); ++t) {
+        const auto inliers = table.CountParallel(direction);
+        for (std::size_t t = 0; t < kNumThresholds; ++t) {
+          if (inliers[t] <= most[t]) continue;
+          most[t] = inliers[t];
           const double nfa =
-              log10_tests +
-              Log10Tail(count - 2,
-                        inliers[t] - std::min<std::size_t>(2, inliers[t]),
-                        alpha[t]);
-          if (inliers[t] >= kMinSegments && nfa < best_nfa) {
+              log10_tests + Log10Tail(count - 2,
+                                      static_cast<std::size_t>(inliers[t] - 2),
+                                      alpha[t]);
+          if (nfa < best_nfa) {
             best_nfa = nfa;
             best = direction;
           }
@@ -172,6 +208,23 @@ class Finder {
   }
 
  private:
+  // Of the longest free segments.
+  SegmentTable MakeTable(std::size_t count) const {
+    SegmentTable table(static_cast<Eigen::Index>(count));
+    for (std::size_t n = 0; n < count; ++n) {
+      const Segment& s = segments_[free_[n]];
+      const auto row = static_cast<Eigen::Index>(n);
+      table.moments.row(row) = s.moment;
+      table.middles.row(row) = s.middle;
+      for (std::size_t t = 0; t < kNumThresholds; ++t) {
+        const double limit =
+            MaxSine(s, kThresholdsPx[t]) * s.length_px / focal_px_;
+        table.squared_limits[t][row] = limit * limit;
+      }
+    }
+    return table;
+  }
+
   // Greatest sine of the turn that keeps the error within the threshold.
   double MaxSine(const Segment& s, double threshold_px) const {
     return std::min(max_sine_, 2 * threshold_px / s.length_px);
@@ -260,10 +313,12 @@ VanishingDirection FitDirection(const NormalizedFeatures& features,
                                 const Vec3& start,
                                 const VanishingOptions& options) {
   std::vector<Segment> members;
+  members.reserve(segments.size());
   for (const int n : segments) {
     members.push_back(MakeSegment(n, features.segments[n], features.focal_px));
   }
   std::vector<const Segment*> support;
+  support.reserve(members.size());
   for (const Segment& s : members) support.push_back(&s);
   DirectionFit fit(start, features.focal_px, options);
   for (int iteration = 0; iteration < 10; ++iteration) fit.Step(support);
