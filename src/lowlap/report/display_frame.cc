@@ -19,7 +19,7 @@ DisplayFrame ChooseDisplayFrame(const Scene& scene) {
     shown.push_back(landmark.position);
   }
   for (const auto& [id, line] : scene.line_structure) {
-    shown.push_back(0.5 * (line.start + line.end));
+    shown.emplace_back(0.5 * (line.start + line.end));
   }
   DisplayFrame frame;
   if (shown.empty()) return frame;

@@ -100,7 +100,7 @@ class DatabaseReader {
       const Vec2 shift = PixelShift(*scene.FindIntrinsic(view));
       auto& points_px = scene.features.at(view).points_px;
       for (const auto& [x, y] : ReadKeypoints(row, 1)) {
-        points_px.push_back(Vec2(x, y) - shift);
+        points_px.emplace_back(Vec2(x, y) - shift);
       }
     }
   }

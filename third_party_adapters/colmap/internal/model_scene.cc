@@ -115,7 +115,7 @@ void AddImages(const Model& model, Scene* scene, SceneNotes* notes) {
     if (image.points.empty()) continue;
     auto& points_px = scene->features[image.id].points_px;
     for (const Point2D& point : image.points) {
-      points_px.push_back(point.pixel_px - PixelShift(intrinsic));
+      points_px.emplace_back(point.pixel_px - PixelShift(intrinsic));
     }
   }
   AddNote(num_unposed, "images have no complete pose and are views without one",

@@ -109,7 +109,7 @@ Result<std::map<ImageIndex, ImageKeys>> ParseCoords(std::string_view text,
       const double x = reader.Next<double>("x of a keypoint");
       const double y = reader.Next<double>("y of a keypoint");
       reader.RestOfLine();  // 0 0 r g b
-      image.keys_px.push_back({x, y});
+      image.keys_px.emplace_back(x, y);
     }
     if (!reader.status()) break;
     if (!images.emplace(index, std::move(image)).second) {

@@ -30,9 +30,9 @@ constexpr std::array<std::string_view, 13> kSections = {
 // The sections of a version, in their order.
 std::vector<std::string_view> SectionsOf(std::uint32_t version) {
   std::vector<std::string_view> sections(kSections.begin(), kSections.end());
-  if (version == 3) sections.push_back("RATD");
-  if (version >= 4) sections.push_back("GIVN");
-  if (version >= 5) sections.push_back("CCOV");
+  if (version == 3) sections.emplace_back("RATD");
+  if (version >= 4) sections.emplace_back("GIVN");
+  if (version >= 5) sections.emplace_back("CCOV");
   return sections;
 }
 

@@ -112,6 +112,7 @@ Result<std::vector<ViewPair>> RetrievePairs(
     const RetrievalOptions& options, const RunContext& context) {
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   std::vector<ViewId> ids;
+  ids.reserve(features.size());
   for (const auto& [id, view] : features) ids.push_back(id);
   std::vector<Votes> votes;
   std::vector<ViewPair> everything;
@@ -125,6 +126,7 @@ Result<std::vector<ViewPair>> RetrievePairs(
   if (ids.size() <= max_partners + 1) return everything;
 
   std::vector<std::vector<PointDescriptor>> samples;
+  samples.reserve(features.size());
   for (const auto& [id, view] : features) {
     samples.push_back(
         LargestPoints(view, static_cast<std::size_t>(options.sample_points)));

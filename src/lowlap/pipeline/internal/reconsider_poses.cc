@@ -91,6 +91,7 @@ Result<std::vector<ReconsideredPose>> ReconsiderPoses(
   RotationPaths paths(
       *scene, RadFromDeg(options.least_false_deg) / options.outlier_reach);
   std::vector<Candidate> candidates;
+  candidates.reserve(pairs.size());
   for (const ViewPair& views : pairs) {
     candidates.push_back({views, std::nullopt, {}});
   }

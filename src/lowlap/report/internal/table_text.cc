@@ -44,7 +44,11 @@ std::string ToAlignedText(const TextTable& table) {
     for (std::size_t n = 0; n < num_columns; ++n) {
       const std::string cell = n < row.size() ? row[n] : std::string();
       const std::string pad(widths[n] - Width(cell), ' ');
-      line += n == 0 ? cell + pad : "  " + pad + cell;
+      if (n == 0) {
+        line.append(cell).append(pad);
+      } else {
+        line.append("  ").append(pad).append(cell);
+      }
     }
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + '\n';

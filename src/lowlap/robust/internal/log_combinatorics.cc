@@ -1,7 +1,6 @@
 #include "lowlap/robust/internal/log_combinatorics.h"
 
-#include <math.h>
-
+#include <cmath>
 #include <limits>
 
 namespace lowlap {

@@ -53,6 +53,7 @@ std::vector<RatioCandidate> Evidence::RatiosIn(
     const TripletView&, const TripletGeometry&,
     const std::vector<int>& candidates) const {
   std::vector<RatioCandidate> same;
+  same.reserve(candidates.size());
   for (const int n : candidates) same.push_back(ratios_[n]);
   return same;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "lowlap/core/internal/joined.h"
 #include "lowlap/scale/evidence/internal/coplanar_lines.h"
 #include "lowlap/scale/evidence/internal/plane_points.h"
 #include "lowlap/scale/evidence/internal/trifocal.h"
@@ -64,13 +65,9 @@ Result<EvidenceKinds> EvidenceRegistry::Make(
   const std::vector<std::string> known = Features();
   for (const std::string& feature : features) {
     if (Contains(known, feature)) continue;
-    std::string list;
-    for (const std::string& word : known) {
-      list += (list.empty() ? "" : ", ") + word;
-    }
-    return MakeError(
-        ErrorCode::kInvalidArgument,
-        "unknown kind of feature '" + feature + "'; known: " + list);
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "unknown kind of feature '" + feature +
+                         "'; known: " + Joined(known, ", "));
   }
   for (const std::string& name : without) {
     const auto has_name = [&](const Entry& e) { return e.name == name; };

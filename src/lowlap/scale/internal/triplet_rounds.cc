@@ -16,6 +16,7 @@ std::vector<std::size_t> LargestFirst(
     return edge->point_inliers.size() + edge->line_inliers.size();
   };
   std::vector<std::size_t> size;
+  size.reserve(triplets.size());
   for (const ViewTriplet& views : triplets) {
     size.push_back(num_matches(views.first, views.middle) +
                    num_matches(views.middle, views.last));
@@ -38,7 +39,8 @@ Result<EvidenceKinds> PrepareRound(const EvidenceKinds& kinds,
     if (kind->Round() != round) continue;
     auto prepared = kind->Prepare(features, triplets, context);
     if (!prepared) return tl::unexpected<Error>(prepared.error());
-    asked.push_back(*prepared == nullptr ? kind : std::move(*prepared));
+    asked.push_back(kind);
+    if (*prepared != nullptr) asked.back() = std::move(*prepared);
   }
   return asked;
 }

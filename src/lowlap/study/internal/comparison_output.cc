@@ -57,14 +57,14 @@ std::string ToText(const Comparison& comparison) {
   for (const char* stage : {"before", "after"}) {
     if (stage == std::string("after") && !adjusted) continue;
     table.columns.push_back(what + " " + stage);
-    table.columns.push_back("max");
-    table.columns.push_back("RMSE px");
+    table.columns.emplace_back("max");
+    table.columns.emplace_back("RMSE px");
   }
   for (const char* column :
        {"direction deg", "ratio %", "iterations", "averaging s"}) {
-    table.columns.push_back(column);
+    table.columns.emplace_back(column);
   }
-  if (adjusted) table.columns.push_back("adjustment s");
+  if (adjusted) table.columns.emplace_back("adjustment s");
   for (const StrategyResult& result : comparison.results) {
     std::vector<std::string> row = {result.strategy,
                                     std::to_string(result.num_placed) + "/" +
@@ -123,7 +123,7 @@ std::string ToText(const Comparison& comparison) {
     }
   }
   for (const auto& [reason, names] : names_of_reason) {
-    text += "\n" + names + ": " + reason + "\n";
+    text.append("\n").append(names).append(": ").append(reason).append("\n");
   }
   return text;
 }

@@ -28,7 +28,7 @@ std::size_t CountSubsets(std::size_t n, std::size_t k) {
     count = count * static_cast<double>(n - k + i) / static_cast<double>(i);
     if (count > static_cast<double>(kMaxSubsets)) return kMaxSubsets + 1;
   }
-  return static_cast<std::size_t>(count + 0.5);
+  return static_cast<std::size_t>(std::llround(count));
 }
 
 std::vector<std::vector<ViewId>> AllSubsets(const std::vector<ViewId>& views,
@@ -38,6 +38,7 @@ std::vector<std::vector<ViewId>> AllSubsets(const std::vector<ViewId>& views,
   for (std::size_t i = 0; i < size; ++i) chosen[i] = i;
   while (true) {
     std::vector<ViewId> subset;
+    subset.reserve(size);
     for (const std::size_t i : chosen) subset.push_back(views[i]);
     subsets.push_back(std::move(subset));
     std::size_t at = size;

@@ -100,6 +100,7 @@ std::vector<CoplanarCandidate> Candidates(const SyntheticScene& synthetic,
   const auto add_nearest = [&](const std::vector<FeatureIndex>& from,
                                const std::vector<FeatureIndex>& to, bool swap) {
     std::vector<LineTrackId> lines_of_to;
+    lines_of_to.reserve(to.size());
     for (const FeatureIndex b : to) lines_of_to.push_back(line_of.at(b));
     std::vector<std::pair<double, FeatureIndex>> nearest;
     for (const FeatureIndex a : from) {

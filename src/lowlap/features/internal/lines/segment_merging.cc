@@ -123,6 +123,7 @@ bool IsStraight(const RawSegment& span, const std::vector<RawSegment>& pieces) {
 double Cover(const RawSegment& span, const std::vector<RawSegment>& pieces) {
   const Axis axis(span.start_px, span.end_px);
   std::vector<Interval> intervals;
+  intervals.reserve(pieces.size());
   for (const RawSegment& piece : pieces) {
     intervals.push_back(Project(axis, piece));
   }
@@ -164,7 +165,7 @@ MidpointGrid EmptyGrid(const std::vector<RawSegment>& segments) {
 // Segments in the order in which they came, found by their place.
 class SegmentSet {
  public:
-  explicit SegmentSet(std::vector<RawSegment> segments)
+  explicit SegmentSet(const std::vector<RawSegment>& segments)
       : grid_(EmptyGrid(segments)) {
     for (const RawSegment& segment : segments) Add(segment);
   }

@@ -109,7 +109,7 @@ class JsonRecordReader {
  private:
   std::optional<JsonValue> Find(const char* name, Presence presence) {
     if (!object_) {
-      names_.push_back(name);
+      names_.emplace_back(name);
       return std::nullopt;
     }
     return presence == Presence::kAlways ? object_->At(name)
@@ -129,7 +129,7 @@ void Read(const JsonValue& object, Value& value, const Visit& visit,
   Value unused{};
   visit(known, unused);
   std::vector<std::string_view> names = known.names();
-  if (key != nullptr) names.push_back(key);
+  if (key != nullptr) names.emplace_back(key);
   object.AllowOnly(names);
   JsonRecordReader reader(object);
   visit(reader, value);

@@ -193,6 +193,7 @@ std::vector<ScoredMatch> RelaxGuided(
     }
   }
   std::vector<double> scores;
+  scores.reserve(candidates.size());
   for (const GuidedCandidate& c : candidates) scores.push_back(c.similarity);
   scores = RelaxScores(std::move(scores), supports, kGuidedHalfSupport,
                        kGuidedIterations);

@@ -175,6 +175,7 @@ std::vector<ScoredMatch> Relax(const DescribedLines& first,
     }
   }
   std::vector<double> scores;
+  scores.reserve(candidates.size());
   for (const Candidate& c : candidates) scores.push_back(c.similarity);
   scores = RelaxScores(std::move(scores), supports, kHalfSupport, kIterations);
   std::vector<ScoredMatch> scored;

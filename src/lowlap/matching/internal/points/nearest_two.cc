@@ -146,10 +146,13 @@ template <int kWidth, int kAtOnce>
 inline __attribute__((always_inline)) void UpdateMinimaInVectors(
     const FloatQuery* queries, const FloatGroup* groups, std::size_t begin,
     std::size_t end, Minima<float>* minima) {
+  // GCC drops the size from an alias in a template.
+  // NOLINTBEGIN(modernize-use-using)
   typedef float Floats
       __attribute__((vector_size(kWidth * sizeof(float)), may_alias));
   typedef std::int32_t Ints
       __attribute__((vector_size(kWidth * sizeof(std::int32_t)), may_alias));
+  // NOLINTEND(modernize-use-using)
   constexpr int kVectors = kLanes / kWidth;
   for (std::size_t g = begin; g < end; ++g) {
     for (int first = 0; first < kQueries; first += kAtOnce) {

@@ -70,12 +70,14 @@ std::vector<AlikePlaces> FindAlikePlaces(const PointView& view,
                                          const std::vector<int>& points) {
   const auto descriptors_of = [&](const std::vector<int>& members) {
     std::vector<PointDescriptor> descriptors;
+    descriptors.reserve(members.size());
     for (const int n : members) {
       descriptors.push_back(view.descriptors[points[n]]);
     }
     return descriptors;
   };
   std::vector<PointDescriptor> queries;
+  queries.reserve(points.size());
   for (const int point : points) queries.push_back(view.descriptors[point]);
   std::vector<std::vector<Candidate>> candidates(points.size());
   for (const std::vector<int>& part : Parts(view, points)) {

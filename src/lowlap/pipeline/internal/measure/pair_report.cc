@@ -55,6 +55,7 @@ std::vector<UnrelatedView> FindUnrelatedViews(
     views[view] = {view, false, error.message};
   }
   std::vector<UnrelatedView> result;
+  result.reserve(views.size());
   for (auto& entry : views) result.push_back(std::move(entry.second));
   return result;
 }

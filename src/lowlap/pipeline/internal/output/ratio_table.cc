@@ -71,7 +71,7 @@ RatioTable MakeRatioTable(const std::vector<ScaleRatio>& ratios) {
   table.columns = {"ratio", "95 % from", "to", "log10 NFA"};
   table.columns.insert(table.columns.end(), kinds.begin(), kinds.end());
   for (const char* column : {"info %", "second mode", "verdict"}) {
-    table.columns.push_back(column);
+    table.columns.emplace_back(column);
   }
   for (const ScaleRatio& ratio : ratios) {
     table.rows.push_back(Row(ratio, kinds));

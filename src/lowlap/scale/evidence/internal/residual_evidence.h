@@ -27,6 +27,7 @@ class ResidualEvidence : public Evidence {
       const TripletView& triplet,
       const std::vector<int>& candidates) const final {
     std::vector<CandidateDetail> details;
+    details.reserve(candidates.size());
     for (const int n : candidates) details.push_back(DetailOf(triplet, n));
     return details;
   }
@@ -34,6 +35,7 @@ class ResidualEvidence : public Evidence {
       const TripletView& triplet, const TripletGeometry& geometry,
       const std::vector<int>& candidates) const final {
     std::vector<RatioCandidate> ratios;
+    ratios.reserve(candidates.size());
     for (const int n : candidates) {
       ratios.push_back(RatioIn(triplet, geometry, n));
     }

@@ -73,6 +73,7 @@ std::vector<int> Nearest(const std::vector<DepthSample>& samples,
     }
   }
   std::vector<int> indices;
+  indices.reserve(nearest.size());
   for (const auto& [distance, index] : nearest) indices.push_back(index);
   return indices;
 }
@@ -139,8 +140,9 @@ class PlaneSearch {
       }
       if (!(best.log10_nfa < 0)) continue;
       std::vector<Vec2> rays;
+      rays.reserve(best.samples.size());
       for (const int n : best.samples) {
-        rays.push_back(samples_[n].ray.head<2>());
+        rays.emplace_back(samples_[n].ray.head<2>());
         result_->plane_of_sample[n] = static_cast<int>(result_->planes.size());
       }
       best.hull = ConvexHull(std::move(rays));
@@ -209,6 +211,7 @@ class PlaneSearch {
     }
     std::sort(order.begin(), order.end());
     std::vector<int> seeds;
+    seeds.reserve(order.size());
     for (const auto& [residual_px, n] : order) seeds.push_back(n);
     return seeds;
   }

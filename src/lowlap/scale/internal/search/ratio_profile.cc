@@ -98,6 +98,7 @@ void PayForTests(const TripletEvidence& evidence, RatioOptimum* optimum) {
 std::vector<std::string> NamesOf(const RatioSupport& support,
                                  const TripletEvidence& evidence) {
   std::vector<std::string> names;
+  names.reserve(support.num_kinds());
   for (int k = 0; k < support.num_kinds(); ++k) {
     names.push_back(evidence.kinds[support.PlaceOf(k)].name);
   }

@@ -8,8 +8,9 @@ namespace {
 // min(wanted, count) numbers of [0, count), evenly spaced; the same read from
 // either end.
 std::vector<int> EvenlySpaced(int count, int wanted) {
-  std::vector<int> indices;
   const int num = std::min(count, wanted);
+  std::vector<int> indices;
+  indices.reserve(num);
   for (int m = 0; m < num; ++m) {
     indices.push_back(static_cast<int>((2LL * m + 1) * count / (2LL * num)));
   }

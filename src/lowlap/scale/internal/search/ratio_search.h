@@ -54,6 +54,7 @@ int SearchRatios(const std::vector<Hypothesis>& hypotheses, bool exhaustive,
     coarse = CoarseSubset(hypotheses);
   }
   std::vector<Tried> tried;
+  tried.reserve(coarse.size());
   for (const int index : coarse) tried.push_back({index, score(index)});
   const std::size_t num_best =
       std::min<std::size_t>(kRefinedHypotheses, tried.size());

@@ -39,7 +39,7 @@ class MixtureFit {
       stddev_[n] = feature.log_ratio_stddev;
       for (const int side : {0, 1}) {
         const auto num_units =
-            static_cast<std::size_t>(feature.units[side] + 1);
+            static_cast<std::size_t>(feature.units[side]) + 1;
         if (num_units > of_unit_[side].size()) of_unit_[side].resize(num_units);
       }
       if (runs_.empty() || runs_.back().group != feature.group) {

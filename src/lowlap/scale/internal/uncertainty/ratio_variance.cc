@@ -17,10 +17,10 @@ constexpr double kLeastKept = 0.25;
 // (Abramowitz and Stegun 26.7.5).
 double StudentFactor(double degrees) {
   constexpr double kLeast = 2.0;
-  constexpr double z2 = 1.959964 * 1.959964;
+  constexpr double kZ2 = 1.959964 * 1.959964;
   const double n = std::max(degrees, kLeast);
-  return 1 + (z2 + 1) / (4 * n) + ((5 * z2 + 16) * z2 + 3) / (96 * n * n) +
-         (((3 * z2 + 19) * z2 + 17) * z2 - 15) / (384 * n * n * n);
+  return 1 + (kZ2 + 1) / (4 * n) + ((5 * kZ2 + 16) * kZ2 + 3) / (96 * n * n) +
+         (((3 * kZ2 + 19) * kZ2 + 17) * kZ2 - 15) / (384 * n * n * n);
 }
 
 // (r / (phi s))^2.

@@ -18,7 +18,7 @@
 namespace lowlap {
 namespace {
 
-constexpr double kRight_deg = 2;
+constexpr double kRightDeg = 2;
 
 // The point matches as `lowlap run` finds them. Starved pairs add points.
 Status MatchAgainFromAside(const std::array<GrayImage, 2>& images,
@@ -158,10 +158,10 @@ TextTable LookAlikeTable(const LookAlikeStudy& study) {
       const int same = std::get<1>(key) ? 1 : 0;
       ++pairs[same];
       accepted[same] += trial.is_accepted ? 1 : 0;
-      right += same == 1 && trial.is_accepted &&
-                       trial.rotation_error_deg < kRight_deg
-                   ? 1
-                   : 0;
+      right +=
+          same == 1 && trial.is_accepted && trial.rotation_error_deg < kRightDeg
+              ? 1
+              : 0;
     }
     table.rows.push_back({RepeatedKindName(kind), OfHow(accepted[0], pairs[0]),
                           OfHow(accepted[1], pairs[1]), std::to_string(right)});

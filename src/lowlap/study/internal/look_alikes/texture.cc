@@ -9,7 +9,7 @@ namespace lowlap {
 namespace {
 
 /// Of the finest noise of a poster and of the grain, in metres.
-constexpr double kFinest_m = 0.02;
+constexpr double kFinestM = 0.02;
 
 bool IsInside(const Vec2& place, const Vec2& corner, const Vec2& size) {
   const Vec2 inner = place - corner;
@@ -40,7 +40,7 @@ double PosterTone(const Poster& poster, const Vec2& place_m) {
   constexpr int kOctaves = 4;
   double sum = 0;
   for (int octave = 0; octave < kOctaves; ++octave) {
-    sum += Noise(place_m, kFinest_m * std::pow(2, octave),
+    sum += Noise(place_m, kFinestM * std::pow(2, octave),
                  poster.seed + static_cast<std::uint64_t>(octave));
   }
   return sum / kOctaves;
@@ -63,8 +63,7 @@ double Texture::ToneAt(const Vec2& place_m) const {
       if (IsInside(inner, patch.corner_m, patch.size_m)) result = patch.tone;
     }
   }
-  if (grain > 0)
-    result += grain * (Noise(place_m, kFinest_m, grain_seed) - 0.5);
+  if (grain > 0) result += grain * (Noise(place_m, kFinestM, grain_seed) - 0.5);
   return std::clamp(result, 0.0, 1.0);
 }
 

@@ -119,7 +119,7 @@ RobustnessOutcome JudgeCenters(const std::vector<Vec3>& truth, int num_views,
   std::vector<Vec3> from, to;
   for (std::size_t n = 0; n < truth.size(); ++n) {
     if (solution.component[n] != 0) continue;
-    from.push_back(truth_from_solved * solution.center_in_world[n]);
+    from.emplace_back(truth_from_solved * solution.center_in_world[n]);
     to.push_back(truth[n]);
   }
   outcome.num_placed = static_cast<int>(from.size());

@@ -125,8 +125,9 @@ std::string IndexHtml(const RobustnessStudy& study) {
             scenario.world + "</h2>\n<p>Against: " + scenario.axis + "</p>\n";
     for (const Quantity& quantity : QuantitiesOf(scenario)) {
       const std::string name = PlotName(scenario, quantity);
-      html += "<a href=\"" + name + "\"><img src=\"" + name + "\" alt=\"" +
-              quantity.axis.label + "\"></a>\n";
+      html.append("<a href=\"").append(name).append("\"><img src=\"");
+      html.append(name).append("\" alt=\"").append(quantity.axis.label);
+      html += "\"></a>\n";
     }
   }
   return html + "</body>\n</html>\n";

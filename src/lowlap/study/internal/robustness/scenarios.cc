@@ -177,7 +177,7 @@ const std::vector<Definition>& Definitions() {
 std::vector<std::string> RobustnessScenarioNames() {
   std::vector<std::string> names;
   for (const Definition& definition : Definitions()) {
-    names.push_back(definition.name);
+    names.emplace_back(definition.name);
   }
   return names;
 }

@@ -62,15 +62,16 @@ PositionErrors RobustPositionErrors(const Scene& scene,
     views.push_back(view);
     solved.push_back(found->center);
     true_centers.push_back(pose.center);
-    truth_from_solved.push_back(pose.rotation.transpose() * found->rotation);
+    truth_from_solved.emplace_back(pose.rotation.transpose() * found->rotation);
   }
   const double size = SizeOf(truth);
   const std::vector<std::size_t> tried = EvenlySpaced(views.size());
   AlignedErrors best;
   for (const std::size_t n : tried) {
     std::vector<Vec3> turned;
+    turned.reserve(solved.size());
     for (const Vec3& center : solved) {
-      turned.push_back(truth_from_solved[n] * center);
+      turned.emplace_back(truth_from_solved[n] * center);
     }
     for (const std::size_t i : tried) {
       for (const std::size_t j : tried) {

@@ -31,7 +31,7 @@ Vec2 AnyPixel(const View& view, Random* random) {
 
 FeatureIndex AddPoint(const Vec2& pixel_px, double noise_px, Random* random,
                       ViewFeatures* features) {
-  features->points_px.push_back(
+  features->points_px.emplace_back(
       pixel_px + Vec2{random->Gaussian(noise_px), random->Gaussian(noise_px)});
   return static_cast<FeatureIndex>(features->points_px.size() - 1);
 }
