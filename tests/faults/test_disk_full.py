@@ -198,7 +198,8 @@ class DiskFull(FaultCase):
         images = copy_photographs(self.folder / "images")
         cache = self.folder / "cache"
         arguments = ["run", images, "--intrinsics", images / "K.txt",
-                     "--max-tilt", "1", "--cache", cache, "-o", self.out]
+                     "--max-tilt", "1", "--no-adjust", "--cache", cache,
+                     "-o", self.out]
         self.succeed(arguments)
         whole = self.folder / "whole"
         self.out.rename(whole)

@@ -93,7 +93,7 @@ class Vanishing(FaultCase):
         self.images = copy_photographs(self.folder / "images")
         self.arguments = ["run", self.images, "--intrinsics",
                           self.images / "K.txt", "--max-tilt", "1",
-                          "-o", self.folder / "out",
+                          "--no-adjust", "-o", self.folder / "out",
                           "--cache", self.folder / "cache"]
         begin = time.monotonic()
         self.succeed(self.arguments)
