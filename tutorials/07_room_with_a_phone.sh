@@ -18,9 +18,9 @@
 # those that it asks for while you are still there. That is what follows, with
 # the rendered photographs of the bundled room in place of your own.
 #
-#   bash tutorials/07_room_with_a_phone.sh [LOWLAP] [OUT]
+#   bash tutorials/07_room_with_a_phone.sh [LOWLAP] [OUT] [OPTION...]
 #
-# from the clone, after the quickstart.
+# from the clone, after the quickstart; options are those of `lowlap run`.
 set -euo pipefail
 lowlap=$(realpath "${1:-build/quickstart/src/cli/lowlap}")
 out=$(realpath -m "${2:-out/room_with_a_phone}")
@@ -32,7 +32,7 @@ cp "$room"/{0000,0001,0002,0004,0005,0006,0009,0010}.jpg "$out/photographs"
 
 echo "== the first eight photographs"
 "$lowlap" run "$out/photographs" --intrinsics "$room/K.txt" \
-  --output "$out/first"
+  --output "$out/first" "${@:3}"
 
 echo
 echo "== what is missing? (--strict: exit code 2, since something is)"
@@ -48,7 +48,7 @@ echo "== three more, taken where diagnose asked for them; features and matches"
 echo "   of the first eight come from the cache"
 cp "$room"/{0003,0007,0008}.jpg "$out/photographs"
 "$lowlap" run "$out/photographs" --intrinsics "$room/K.txt" \
-  --cache "$out/first/cache" --output "$out/all"
+  --cache "$out/first/cache" --output "$out/all" "${@:3}"
 
 echo
 "$lowlap" evaluate "$out/all/scene.lowlap" sfm_data/samples/room/gt_dense_cameras

@@ -27,8 +27,8 @@ struct ImageRow {
 };
 
 std::vector<double> RowMajor(const Mat3& matrix) {
-  std::vector<double> numbers;
-  for (int n = 0; n < 9; ++n) numbers.push_back(matrix(n / 3, n % 3));
+  std::vector<double> numbers(9);
+  for (int n = 0; n < 9; ++n) numbers[n] = matrix(n / 3, n % 3);
   return numbers;
 }
 
