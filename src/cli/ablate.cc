@@ -13,7 +13,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct AblateFlags {
   CommonFlags common;
   SceneInputFlags input;
   std::string strategy = "graph";
@@ -22,7 +22,7 @@ struct Flags {
   std::string output;
 };
 
-Result<int> RunAblation(const Flags& flags) {
+Result<int> RunAblation(const AblateFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   AblationOptions options;
   options.thresholds_px = flags.thresholds_px;
@@ -59,7 +59,7 @@ Result<int> RunAblation(const Flags& flags) {
 }  // namespace
 
 void AddAblate(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<AblateFlags>();
   CLI::App* command = AddCommand(
       program, "ablate",
       "Position errors with fixed inlier thresholds and without, by kind of "

@@ -14,7 +14,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct AdjustFlags {
   CommonFlags common;
   std::string scene;
   std::string output;
@@ -27,7 +27,7 @@ struct Flags {
   std::string ground_truth;
 };
 
-Result<int> Adjust(const Flags& flags) {
+Result<int> Adjust(const AdjustFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   AdjustmentOptions options;
   LOWLAP_RETURN_IF_ERROR(SetAdjustedFeatures(flags.features, &options));
@@ -105,7 +105,7 @@ Result<int> Adjust(const Flags& flags) {
 }  // namespace
 
 void AddAdjust(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<AdjustFlags>();
   CLI::App* command = AddCommand(
       program, "adjust",
       "Bundle adjustment of a solved scene, over points, lines and "

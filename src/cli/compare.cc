@@ -13,7 +13,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct CompareFlags {
   CommonFlags common;
   SceneInputFlags input;
   SolveFlags solve;
@@ -22,7 +22,7 @@ struct Flags {
   std::string output;
 };
 
-Result<int> Compare(const Flags& flags) {
+Result<int> Compare(const CompareFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   CompareOptions options;
   options.strategies = flags.strategies;
@@ -50,7 +50,7 @@ Result<int> Compare(const Flags& flags) {
 }  // namespace
 
 void AddCompare(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<CompareFlags>();
   CLI::App* command = AddCommand(
       program, "compare",
       "Run every strategy of composing poses on the same relative poses and "

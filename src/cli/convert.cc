@@ -10,7 +10,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct ConvertFlags {
   CommonFlags common;
   std::string input;
   std::string output;
@@ -22,7 +22,7 @@ struct Flags {
   std::optional<std::string> root_path;
 };
 
-Result<int> Convert(const Flags& flags) {
+Result<int> Convert(const ConvertFlags& flags) {
   if (flags.lists_formats) {
     std::fputs(TabulateSceneFormats(AllSceneFormats()).c_str(), stdout);
     return 0;
@@ -50,7 +50,7 @@ Result<int> Convert(const Flags& flags) {
 }  // namespace
 
 void AddConvert(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ConvertFlags>();
   CLI::App* command =
       AddCommand(program, "convert", "Convert a scene file to another format");
   AddOption(command, "input", flags->input, "Scene file to read");

@@ -14,7 +14,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct DiagnoseFlags {
   CommonFlags common;
   SceneInputFlags input;
   ScaleFlags scale;
@@ -23,7 +23,7 @@ struct Flags {
   bool strict = false;
 };
 
-Result<int> RunDiagnose(const Flags& flags) {
+Result<int> RunDiagnose(const DiagnoseFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeScaleOptions(flags.scale));
   LOWLAP_RETURN_IF_ERROR(flags.diagnosis.Validate());
@@ -47,7 +47,7 @@ Result<int> RunDiagnose(const Flags& flags) {
 }  // namespace
 
 void AddDiagnose(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<DiagnoseFlags>();
   CLI::App* command = AddCommand(
       program, "diagnose",
       "Say which views share one scale and through what, which float or hang "

@@ -20,7 +20,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct DrawFlags {
   CommonFlags common;
   std::string scene;
   std::string images;
@@ -59,7 +59,7 @@ Result<ViewPair> FindPair(const Scene& scene, const ViewNames& names,
                        "0001-0002");
 }
 
-Result<Selection> Select(const Scene& scene, const Flags& flags) {
+Result<Selection> Select(const Scene& scene, const DrawFlags& flags) {
   Selection selection;
   const ViewNames names(scene);
   for (const std::string& word : flags.views) {
@@ -128,7 +128,7 @@ std::string FileStem(const Scene& scene, ViewId id) {
   return std::to_string(id.value()) + "_" + name.stem().string();
 }
 
-Result<int> Draw(const Flags& flags) {
+Result<int> Draw(const DrawFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
   LOWLAP_ASSIGN_OR_RETURN(auto scene, ReadScene(flags.scene));
@@ -175,7 +175,7 @@ Result<int> Draw(const Flags& flags) {
 }  // namespace
 
 void AddDraw(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<DrawFlags>();
   CLI::App* command = AddCommand(
       program, "draw",
       "Draw the photographs of a scene with their features as PNG files: those "

@@ -14,7 +14,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct EvaluateFlags {
   std::string solution;
   std::string ground_truth;
   std::string truth_option;  // --gt, the same as an option
@@ -42,7 +42,7 @@ Result<std::vector<ViewPair>> ParsePairs(
   return pairs;
 }
 
-Result<int> EvaluateMeasurements(const Flags& flags, const Scene& scene,
+Result<int> EvaluateMeasurements(const EvaluateFlags& flags, const Scene& scene,
                                  const GroundTruth& truth) {
   PairEvaluationOptions options;
   LOWLAP_ASSIGN_OR_RETURN(options.expected, ParsePairs(flags.expected_pairs));
@@ -53,7 +53,7 @@ Result<int> EvaluateMeasurements(const Flags& flags, const Scene& scene,
   return 0;
 }
 
-Result<int> EvaluateLines(const Flags& flags, const Scene& scene,
+Result<int> EvaluateLines(const EvaluateFlags& flags, const Scene& scene,
                           const GroundTruth& truth) {
   LOWLAP_ASSIGN_OR_RETURN(const auto edges, ReadTrueEdges(flags.true_edges));
   LOWLAP_ASSIGN_OR_RETURN(const auto pairs,
@@ -65,7 +65,7 @@ Result<int> EvaluateLines(const Flags& flags, const Scene& scene,
   return 0;
 }
 
-Result<int> Evaluate(const Flags& flags) {
+Result<int> Evaluate(const EvaluateFlags& flags) {
   LOWLAP_ASSIGN_OR_RETURN(const auto scene, ReadScene(flags.solution));
   const auto truth = LoadGroundTruth(
       flags.ground_truth.empty() ? flags.truth_option : flags.ground_truth,
@@ -93,7 +93,7 @@ Result<int> Evaluate(const Flags& flags) {
 }  // namespace
 
 void AddEvaluate(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<EvaluateFlags>();
   CLI::App* command =
       AddCommand(program, "evaluate",
                  "Compare solved cameras with true ones, after a similarity "

@@ -10,7 +10,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct FeaturesFlags {
   std::string image;
   std::string draw;
   bool points = false;
@@ -29,7 +29,7 @@ class Stopwatch {
   Clock::time_point start_ = Clock::now();
 };
 
-Result<int> Features(const Flags& flags) {
+Result<int> Features(const FeaturesFlags& flags) {
   const bool both = flags.points == flags.lines;
   LOWLAP_ASSIGN_OR_RETURN(const auto image, ReadGrayImage(flags.image));
   const double megapixels = 1e-6 * image.width * image.height;
@@ -67,7 +67,7 @@ Result<int> Features(const Flags& flags) {
 }  // namespace
 
 void AddFeatures(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<FeaturesFlags>();
   CLI::App* command = AddCommand(
       program, "features",
       "Detect the points and line segments of one image, count them, "

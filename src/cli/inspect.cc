@@ -14,7 +14,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct InspectFlags {
   CommonFlags common;
   SceneInputFlags input;
   std::string json;
@@ -92,7 +92,7 @@ void PrintGroups(const RigidityReport& report, const Scene& scene) {
   }
 }
 
-Result<int> Inspect(const Flags& flags) {
+Result<int> Inspect(const InspectFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   StageLog stages;
   LOWLAP_ASSIGN_OR_RETURN(const auto loaded,
@@ -130,7 +130,7 @@ Result<int> Inspect(const Flags& flags) {
 }  // namespace
 
 void AddInspect(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<InspectFlags>();
   CLI::App* command =
       AddCommand(program, "inspect",
                  "Say what a scene holds, and which views can share a scale, "

@@ -19,7 +19,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct MergeFlags {
   CommonFlags common;
   std::vector<std::string> models;
   SceneInputFlags measured;
@@ -30,7 +30,7 @@ struct Flags {
 };
 
 // What was measured before.
-Result<LoadedScene> Load(const Flags& flags, const ViewCheck& check,
+Result<LoadedScene> Load(const MergeFlags& flags, const ViewCheck& check,
                          const RunContext& context, StageLog* stages) {
   SceneInputFlags measured = flags.measured;
   if (!flags.database.empty()) {
@@ -48,7 +48,7 @@ Result<LoadedScene> Load(const Flags& flags, const ViewCheck& check,
 }
 
 // The measured scene, from photographs or as it was measured before.
-Result<Scene> Measure(const Flags& flags, const ViewCheck& check,
+Result<Scene> Measure(const MergeFlags& flags, const ViewCheck& check,
                       const RunContext& context, StageLog* stages,
                       RunSummary* summary) {
   if (!flags.measured.scene.empty() || !flags.database.empty()) {
@@ -76,7 +76,7 @@ Result<Scene> Measure(const Flags& flags, const ViewCheck& check,
   return scene;
 }
 
-Result<std::vector<Scene>> ReadModels(const Flags& flags,
+Result<std::vector<Scene>> ReadModels(const MergeFlags& flags,
                                       const RunContext& context) {
   std::vector<Scene> models;
   for (const std::string& path : flags.models) {
@@ -88,7 +88,7 @@ Result<std::vector<Scene>> ReadModels(const Flags& flags,
   return models;
 }
 
-Result<std::vector<PartialModel>> MatchModels(const Flags& flags,
+Result<std::vector<PartialModel>> MatchModels(const MergeFlags& flags,
                                               const std::vector<Scene>& models,
                                               const Scene& measured,
                                               const RunContext& context) {
@@ -101,7 +101,7 @@ Result<std::vector<PartialModel>> MatchModels(const Flags& flags,
   return matched;
 }
 
-Result<int> Merge(const Flags& flags) {
+Result<int> Merge(const MergeFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   // Everything that can be refused is refused before the long work.
   LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeSolveOptions(flags.solve));
@@ -139,7 +139,7 @@ Result<int> Merge(const Flags& flags) {
 }  // namespace
 
 void AddMerge(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<MergeFlags>();
   CLI::App* command = AddCommand(
       program, "merge",
       "Make one model of partial reconstructions, of any program whose format "

@@ -25,7 +25,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct RobustnessFlags {
   CommonFlags common;
   RobustnessOptions options;
   bool trust = false;
@@ -37,7 +37,7 @@ struct Flags {
 
 // The trials of an output folder; `take` is given those that are there.
 Result<ResultLog> OpenTrials(
-    const Flags& flags, const std::string& settings,
+    const RobustnessFlags& flags, const std::string& settings,
     const std::function<bool(const std::string&)>& take) {
   LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(flags.output));
   return ResultLog::Open(
@@ -61,7 +61,7 @@ std::string SettingsText(const RobustnessOptions& options, std::uint64_t seed) {
          NumberText(options.time_limit_s, 9) + "\n";
 }
 
-Status Complete(const Flags& flags, const RunContext& context,
+Status Complete(const RobustnessFlags& flags, const RunContext& context,
                 RobustnessStudy* study) {
   const auto log = OpenTrials(
       flags, SettingsText(study->options, flags.common.seed),
@@ -88,7 +88,7 @@ Status Complete(const Flags& flags, const RunContext& context,
   return RunRobustnessStudy(context, sinks, study);
 }
 
-Result<int> StudyTrust(const Flags& flags) {
+Result<int> StudyTrust(const RobustnessFlags& flags) {
   TrustStudy study;
   study.num_scenes = flags.num_scenes;
   const RunContext context = MakeContext(flags.common);
@@ -113,7 +113,7 @@ Result<int> StudyTrust(const Flags& flags) {
   return 0;
 }
 
-Result<int> StudyLookAlikes(const Flags& flags) {
+Result<int> StudyLookAlikes(const RobustnessFlags& flags) {
   LookAlikeStudy study;
   study.num_pairs = flags.num_pairs;
   const RunContext context = MakeContext(flags.common);
@@ -138,7 +138,7 @@ Result<int> StudyLookAlikes(const Flags& flags) {
   return 0;
 }
 
-Result<int> StudyAndWrite(const Flags& flags) {
+Result<int> StudyAndWrite(const RobustnessFlags& flags) {
   if (flags.trust) return StudyTrust(flags);
   if (flags.look_alikes) return StudyLookAlikes(flags);
   LOWLAP_ASSIGN_OR_RETURN(auto study, PlanRobustnessStudy(flags.options));
@@ -156,7 +156,7 @@ Result<int> StudyAndWrite(const Flags& flags) {
 }  // namespace
 
 void AddRobustness(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<RobustnessFlags>();
   RobustnessOptions& o = flags->options;
   CLI::App* command = AddCommand(
       program, "robustness",

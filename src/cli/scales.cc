@@ -22,7 +22,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct ScalesFlags {
   CommonFlags common;
   SceneInputFlags input;
   ScaleFlags scale;
@@ -109,7 +109,7 @@ void PrintTable(const std::vector<ScaleRatio>& ratios) {
   }
 }
 
-Result<int> Scales(const Flags& flags) {
+Result<int> Scales(const ScalesFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeScaleOptions(flags.scale));
   StageLog stages;
@@ -145,7 +145,7 @@ Result<int> Scales(const Flags& flags) {
 }  // namespace
 
 void AddScales(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<ScalesFlags>();
   CLI::App* command =
       AddCommand(program, "scales",
                  "Show the relative scale of every two relative poses that "

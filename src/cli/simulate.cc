@@ -12,7 +12,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct SimulateFlags {
   CommonFlags common;
   SyntheticOptions options;
   std::string kind = "room";
@@ -20,7 +20,7 @@ struct Flags {
   std::string truth;
 };
 
-Result<int> RunSimulation(const Flags& flags) {
+Result<int> RunSimulation(const SimulateFlags& flags) {
   const auto kind = SyntheticKindFromName(flags.kind);
   if (!kind) {
     return MakeError(ErrorCode::kInvalidArgument,
@@ -57,7 +57,7 @@ Result<int> RunSimulation(const Flags& flags) {
 }  // namespace
 
 void AddSimulate(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<SimulateFlags>();
   SyntheticOptions& o = flags->options;
   CLI::App* command = AddCommand(program, "simulate",
                                  "Make a synthetic scene whose truth is known");

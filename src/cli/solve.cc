@@ -22,7 +22,7 @@ struct HostFlags {
   bool priors = false;
 };
 
-struct Flags {
+struct SolveCommandFlags {
   CommonFlags common;
   SceneInputFlags input;
   std::string output;
@@ -149,7 +149,7 @@ Result<SolveFlags> WithHostFlags(SolveFlags solve, const HostFlags& host,
   return solve;
 }
 
-Result<int> Solve(const Flags& flags) {
+Result<int> Solve(const SolveCommandFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   LOWLAP_ASSIGN_OR_RETURN(const SolveFlags solve,
                           WithHostFlags(flags.solve, flags.host, context));
@@ -175,7 +175,7 @@ Result<int> Solve(const Flags& flags) {
 }  // namespace
 
 void AddSolve(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<SolveCommandFlags>();
   CLI::App* command = AddCommand(
       program, "solve",
       "Solve a scene description (ours, an OpenMVG project, or a COLMAP "

@@ -26,7 +26,7 @@
 namespace lowlap::cli {
 namespace {
 
-struct Flags {
+struct SubsetsFlags {
   CommonFlags common;
   SceneInputFlags input;
   SolveFlags solve;
@@ -39,7 +39,7 @@ struct Flags {
 };
 
 // What the results depend on, apart from the choice of the subsets.
-Result<std::string> SettingsText(const Flags& flags, const Scene& scene,
+Result<std::string> SettingsText(const SubsetsFlags& flags, const Scene& scene,
                                  const GroundTruth& truth) {
   LOWLAP_ASSIGN_OR_RETURN(const auto bytes, FormatSceneBinary(scene));
   Hash128 hash;
@@ -95,7 +95,7 @@ void PrintUnsaid(const std::vector<SubsetOutcome>& outcomes, const Scene& scene,
 
 Result<int> Finish(const std::vector<SubsetOutcome>& all,
                    const std::vector<SubsetOutcome>& outcomes,
-                   const Scene& scene, const Flags& flags) {
+                   const Scene& scene, const SubsetsFlags& flags) {
   const SubsetSummary summary = SummarizeSubsets(outcomes, flags.bounds);
   LOWLAP_ASSIGN_OR_RETURN(const auto plot, DrawSubsets(outcomes));
   LOWLAP_RETURN_IF_ERROR(
@@ -149,7 +149,7 @@ void EstimateTimeLeft(RunContext* context) {
       };
 }
 
-Result<int> Subsets(const Flags& flags) {
+Result<int> Subsets(const SubsetsFlags& flags) {
   RunContext context = MakeContext(flags.common);
   EstimateTimeLeft(&context);
   if (flags.jobs > 0) context.num_threads = flags.jobs;
@@ -211,7 +211,7 @@ Result<int> Subsets(const Flags& flags) {
 }  // namespace
 
 void AddSubsets(CLI::App* program, Action* action) {
-  auto flags = std::make_shared<Flags>();
+  auto flags = std::make_shared<SubsetsFlags>();
   // Coplanar pairs take most of the adjustment's time, and matter little where
   // points are many.
   flags->solve.adjust_features = {"points", "lines"};
