@@ -181,22 +181,20 @@ class FacetFinder {
   };
 
   Counts Count(double thickest_square) const {
-    // By how many thicknesses they are within.
-    std::array<int, kNumThicknesses + 1> last_known{}, last_near{};
+    Counts counts;  // at first of the last thickness only
     for (std::size_t l = 0; l < taken_.size(); ++l) {
       if (taken_[l] != 0) continue;
       const auto index = static_cast<Eigen::Index>(l);
       const int known = TimesWithin(variance_[index], thickest_square);
-      const int near =
-          TimesWithin(squared_distance_[index], 4 * thickest_square);
-      ++last_known[known];
-      ++last_near[std::min(known, near)];
+      if (known == 0) continue;
+      ++counts.known[known - 1];
+      const int near = std::min(
+          known, TimesWithin(squared_distance_[index], 4 * thickest_square));
+      if (near > 0) ++counts.near[near - 1];
     }
-    Counts counts;
-    int known = 0, near = 0;
-    for (int step = kNumThicknesses - 1; step >= 0; --step) {
-      counts.known[step] = known += last_known[step + 1];
-      counts.near[step] = near += last_near[step + 1];
+    for (int step = kNumThicknesses - 1; step > 0; --step) {
+      counts.known[step - 1] += counts.known[step];
+      counts.near[step - 1] += counts.near[step];
     }
     return counts;
   }
