@@ -6,8 +6,9 @@
 #   tests/run.sh --tidy      cppcheck and clang-tidy on the sources as well (some
 #                            minutes more)
 #   tests/run.sh --no-slow   without the tests that work on photographs
-#   tests/run.sh --long      those that count over many simulated scenes, or kill
-#                            and interrupt very often, as well (ten minutes more)
+#   tests/run.sh --long      those that count over many simulated scenes, adjust
+#                            much, or kill and interrupt very often, as well (a
+#                            quarter of an hour more)
 #
 # Instead, in builds of their own, without the tests that work on photographs:
 #
@@ -34,7 +35,7 @@ for option in "$@"; do
     --no-slow) slow=false ;;
     --long) long=true ;;
     *)
-      sed -n '2,24s/^# \{0,1\}//p' tests/run.sh >&2
+      sed -n '2,25s/^# \{0,1\}//p' tests/run.sh >&2
       echo "unknown option $option" >&2
       exit 2
       ;;

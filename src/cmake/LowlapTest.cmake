@@ -4,9 +4,9 @@
 # One test program per tested folder. Tests that need photographs go into a
 # program of their own with LABELS slow; they find the photographs under
 # LOWLAP_DATA and say so when they are absent. Those that count over many
-# simulated scenes or random moments have LABELS long. CTest starts a process
-# for each test, or with ONE_PROCESS one for all, which then prepare once what
-# they share.
+# simulated scenes or random moments, or adjust for minutes, have LABELS long.
+# CTest starts a process for each test, or with ONE_PROCESS one for all, which
+# then prepare once what they share.
 #
 # As in libraries, names in anonymous namespaces differ within a folder
 # (LOWLAP_UNITY_BUILD).

@@ -1,13 +1,5 @@
 // The engine on OpenMVG's own projects.
-#include <gtest/gtest.h>
-
-#include <iostream>
-
-#include "adapters/openmvg_host.h"
-#include "adapters/temporary_folder.h"
-#include "cli/cli_fixture.h"
-#include "support/data_folder.h"
-#include "support/matchers.h"
+#include "adapters/openmvg_engine_data.h"
 
 namespace lowlap {
 namespace {
@@ -15,62 +7,14 @@ namespace {
 using Rotations = LowlapGlobalEngine::Rotations;
 using testing::IsOk;
 
-class OpenMvgEngineData : public ::testing::Test {
- protected:
-  void SetUp() override {
-    if (DataFolder().empty()) GTEST_SKIP() << "skipped: no data";
-  }
-  static std::string Path(const std::string& name) {
-    return DataFolder() + "/" + name;
-  }
-  Scene SolvedByCommand(const std::string& arguments) const {
-    const Outcome outcome =
-        Lowlap("solve " + arguments + " -o " + folder_.Path("out"));
-    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
-    const auto scene = ReadScene(folder_.Path("out/scene.lowlap"));
-    EXPECT_THAT(scene, IsOk());
-    return scene ? *scene : Scene();
-  }
-
-  const TemporaryFolder folder_;
-};
-
 TEST_F(OpenMvgEngineData, GivesThePosesOfTheFilesToTheByte) {
-  struct Case {
-    const char* listing;
-    const char* matches;
-    std::size_t num_views;
-    bool also_adjusted;
-  };
-  for (const Case& project : {Case{"fountain-P11/matches/sfm_data.json",
-                                   "fountain-P11/matches", 11, false},
-                              Case{"Herz-Jesus-P8/matches/sfm_data.json",
-                                   "Herz-Jesus-P8/matches", 8, true},
-                              Case{"castle-P19/matches/sfm_data.json",
-                                   "castle-P19/matches", 19, false},
-                              Case{"castle-P19_without_3_9_14/sfm_data.json",
-                                   "castle-P19/matches", 16, false}}) {
-    SCOPED_TRACE(project.listing);
-    const std::string listing = Path(std::string("openmvg/") + project.listing);
-    const std::string matches = Path(std::string("openmvg/") + project.matches);
-    auto host = LoadHost(listing, matches, "matches.e.bin");
-    ASSERT_THAT(host, IsOk());
-    for (const bool adjust : {false, true}) {
-      if (adjust && !project.also_adjusted) continue;
-      openmvg::TranslationStepOptions options;
-      options.solve.adjust = adjust;
-      const auto poses = PosesOfEngine(&*host, Rotations::kLowlap, options);
-      const Scene solved =
-          SolvedByCommand("-i " + listing + " -m " + matches +
-                          " -M matches.e.bin" + (adjust ? "" : " --no-adjust"));
-      EXPECT_EQ(poses, PosesOfHost(solved.poses));
-      std::cout << project.listing << (adjust ? ", adjusted: " : ": ")
-                << poses.size() << " of " << host->scene.views.size()
-                << " views placed\n";
-      EXPECT_EQ(host->scene.views.size(), project.num_views);
-      EXPECT_FALSE(poses.empty());
-    }
+  for (const Project& project : AllProjects()) {
+    ExpectPosesOfTheFiles(project, false);
   }
+}
+
+TEST_F(OpenMvgEngineData, GivesTheAdjustedPosesOfTheFilesToTheByte) {
+  ExpectPosesOfTheFiles(AllProjects()[1], true);
 }
 
 TEST_F(OpenMvgEngineData, UsesTheLinesOfThePhotographs) {

@@ -45,18 +45,18 @@ AdjustmentSummary Adjusted(Scene* scene, const AdjustmentOptions& options) {
   return summary.value_or(AdjustmentSummary{});
 }
 
-// One call in a hundred may be false: more than three in forty scenes would be
-// so once in a thousand times.
+// One call in a hundred may be false: more than five in a hundred scenes would
+// be so once in two thousand times.
 TEST(CalibrationScoreTest, IsSilentAboutATrueCalibration) {
   int false_alarms = 0;
-  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
     TestScene test = MakeTestScene(SmallScene(seed));
     const auto summary = Adjusted(&test.scene, {});
     false_alarms += summary.calibration_preferences.empty() ? 0 : 1;
     EXPECT_TRUE(DescribeCalibrationPreferences(summary).empty() ==
                 summary.calibration_preferences.empty());
   }
-  EXPECT_LE(false_alarms, 3);
+  EXPECT_LE(false_alarms, 5);
 }
 
 struct Fault {

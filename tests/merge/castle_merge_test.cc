@@ -41,18 +41,16 @@ class CastleMerge : public ::testing::Test {
     ASSERT_THAT(solution_, SizeIs(19));
   }
 
-  // Without adjustment.
   static Result<SolveResult> Merge(const std::vector<PartialModel>& models,
                                    Scene* scene) {
-    SolveOptions options;
-    options.adjust = false;
     std::vector<ModelCheck> checks;
     for (const PartialModel& model : models) {
-      auto check = CheckModel(*scene, model, options, RunContext());
+      auto check = CheckModel(*scene, model, SolveOptions(), RunContext());
       if (!check) return tl::unexpected<Error>(check.error());
       checks.push_back(std::move(*check));
     }
-    return MergeModels(scene, models, checks, options, RunContext(), nullptr);
+    return MergeModels(scene, models, checks, SolveOptions(), RunContext(),
+                       nullptr);
   }
 
   static void ExpectAllWithin(const Scene& scene, double mean_m) {
@@ -122,7 +120,7 @@ TEST_F(CastleMerge, SoDoPartsWithoutACommonTrack) {
                              ScaledAndTurned(PartOf(solution_, Range(10, 17)))},
                             &scene);
   ASSERT_THAT(merged, testing::IsOk());
-  ExpectAllWithin(scene, 0.06);
+  ExpectAllWithin(scene, 0.03);
 }
 
 TEST_F(CastleMerge, APartThatIsTurnedInsideIsNamed) {

@@ -14,7 +14,7 @@
 namespace lowlap {
 namespace {
 
-constexpr std::size_t kSeeds = 16;
+constexpr std::size_t kSeeds = 30;
 
 struct World {
   std::string name;

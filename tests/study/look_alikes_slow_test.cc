@@ -28,7 +28,7 @@ TEST(MakePhotographPair, TheSameSeedGivesTheSamePhotographs) {
 
 TEST(LookAlikeStudy, JoinsNoTwoPlacesAndGoesOnWhereItStopped) {
   LookAlikeStudy study;
-  study.num_pairs = 1;
+  study.num_pairs = 2;
   RunContext context;
   context.seed = 77;
   std::string log;
@@ -40,7 +40,7 @@ TEST(LookAlikeStudy, JoinsNoTwoPlacesAndGoesOnWhereItStopped) {
       },
       &study);
   ASSERT_TRUE(done.has_value());
-  ASSERT_EQ(study.trials.size(), 6u);
+  ASSERT_EQ(study.trials.size(), 12u);
   int same = 0;
   for (const auto& [key, trial] : study.trials) {
     if (std::get<1>(key)) {
@@ -55,7 +55,7 @@ TEST(LookAlikeStudy, JoinsNoTwoPlacesAndGoesOnWhereItStopped) {
   EXPECT_GE(same, 1);
 
   LookAlikeStudy read;
-  read.num_pairs = 1;
+  read.num_pairs = 2;
   std::istringstream lines(log);
   for (std::string line; std::getline(lines, line);) {
     EXPECT_TRUE(AddJsonLine(line, &read)) << line;
@@ -71,7 +71,7 @@ TEST(LookAlikeStudy, JoinsNoTwoPlacesAndGoesOnWhereItStopped) {
                   .has_value());
   EXPECT_EQ(again, 0);
   EXPECT_EQ(LookAlikeFiles(read), LookAlikeFiles(study));
-  EXPECT_THAT(LookAlikeFiles(study)[1].second, HasSubstr("0 of 1"));
+  EXPECT_THAT(LookAlikeFiles(study)[1].second, HasSubstr("0 of 2"));
 }
 
 TEST(LookAlikeStudy, RefusesWhatIsNoStudyOrRecord) {
