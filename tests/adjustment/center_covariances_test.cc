@@ -231,19 +231,5 @@ TEST(CenterCovariances, CountACalibrationThatTheImagesContradict) {
   EXPECT_GT(normalised, 0.1);
 }
 
-TEST(CenterCovariances, DoNotDependOnATestThatFindsNothing) {
-  TestScene test = MakeTestScene(NoisyScene());
-  TestScene untested = test;
-  const AdjustmentSummary summary = BuildAndAdjust(&test.scene);
-  ASSERT_TRUE(summary.calibration_preferences.empty());
-  AdjustmentOptions options;
-  options.test_calibration = false;
-  BuildAndAdjust(&untested.scene, options);
-  for (const auto& [id, pose] : test.scene.poses) {
-    EXPECT_EQ(*pose.center_covariance,
-              *untested.scene.poses.at(id).center_covariance);
-  }
-}
-
 }  // namespace
 }  // namespace lowlap

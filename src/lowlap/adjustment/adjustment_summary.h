@@ -135,11 +135,10 @@ struct AdjustmentSummary {
   double seconds = 0;
 
   /// What the observations, parts of the scene that err as one, and a
-  /// calibration that the observations contradict leave open of the scale
-  /// ratios and relative poses of the scene whose views share structure, even
-  /// over others, at the adjusted centres: standard deviations of
-  /// log(|c3 - c2| / |c2 - c1|), and of the direction of c2 - c1 along the axis
-  /// in which it is known least.
+  /// calibration that is off leave open of the scale ratios and relative poses
+  /// of the scene whose views share structure, even over others, at the
+  /// adjusted centres: standard deviations of log(|c3 - c2| / |c2 - c1|), and
+  /// of the direction of c2 - c1 along the axis in which it is known least.
   std::map<ViewTriplet, double> log_ratio_stddevs;
   std::map<ViewPair, double> direction_stddevs_rad;
 };

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "lowlap/adjustment/internal/rounds/calibration_score.h"
+#include "lowlap/adjustment/internal/rounds/calibration_preference.h"
 #include "lowlap/adjustment/internal/rounds/kind_statistics.h"
 #include "lowlap/adjustment/internal/rounds/optimum_starts.h"
 #include "lowlap/adjustment/internal/rounds/outlier_round.h"
@@ -129,7 +129,7 @@ class Adjuster {
         return MakeError(ErrorCode::kCancelled, "stopped on request");
       }
       summary_.calibration_preferences = FindCalibrationPreferences(
-          options_, optimum_.noise, optimum_.cameras, optimum_.state);
+          options_, optimum_.noise, scene_, optimum_.cameras, optimum_.state);
     }
     if (options_.estimate_uncertainty) {
       LOWLAP_RETURN_IF_ERROR(EstimateUncertainty());
@@ -178,9 +178,11 @@ class Adjuster {
     LOWLAP_RETURN_IF_ERROR(AddJackknife(options_, optimum_.noise, context_,
                                         optimum_.cameras, optimum_.state,
                                         &uncertainty));
-    LOWLAP_RETURN_IF_ERROR(AddCalibrationShift(
-        options_, optimum_.noise, summary_.calibration_preferences, scene_,
-        context_, optimum_.cameras, optimum_.state, &uncertainty));
+    if (options_.test_calibration) {
+      LOWLAP_RETURN_IF_ERROR(AddCalibrationShift(
+          options_, optimum_.noise, summary_.calibration_preferences, scene_,
+          context_, optimum_.cameras, optimum_.state, &uncertainty));
+    }
     summary_.rivals = AddRivals(options_, rivals_, optimum_.cameras,
                                 optimum_.state, &uncertainty);
     summary_.log_ratio_stddevs = std::move(uncertainty.log_ratio_stddevs);

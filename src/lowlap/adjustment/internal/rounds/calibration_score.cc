@@ -4,13 +4,10 @@
 #include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <optional>
 
 #include "lowlap/adjustment/internal/costs/intrinsic_freedom.h"
 #include "lowlap/adjustment/internal/rounds/linearised_problem.h"
 #include "lowlap/adjustment/internal/rounds/quiet_logging.h"
-#include "lowlap/robust/internal/chi_square.h"
 
 namespace lowlap {
 namespace {
@@ -19,16 +16,15 @@ using MatX = Eigen::MatrixXd;
 using VecX = Eigen::VectorXd;
 
 constexpr std::size_t kMaxSeparate = 16;
-constexpr double kFalseAlarms = 0.01;
 constexpr IntrinsicRefinement kAllParts{true, true, true, true};
 
-using Part = bool IntrinsicRefinement::*;
+using Group = CalibrationScore::Group;
 // In the order of the columns of FreeDirections.
-constexpr Part kParts[] = {
+constexpr IntrinsicPart kParts[] = {
     &IntrinsicRefinement::focal, &IntrinsicRefinement::aspect_ratio,
     &IntrinsicRefinement::principal_point, &IntrinsicRefinement::distortion};
 
-int Size(Part part, const Intrinsic& intrinsic) {
+int Size(IntrinsicPart part, const Intrinsic& intrinsic) {
   if (part == &IntrinsicRefinement::principal_point) return 2;
   if (part == &IntrinsicRefinement::distortion) {
     return static_cast<int>(intrinsic.distortion.size());
@@ -38,7 +34,7 @@ int Size(Part part, const Intrinsic& intrinsic) {
 
 // How far a part of the solver's parameters moves at a change of 1: focal
 // lengths and aspect by the factor e, the principal point by the diagonal.
-double Unit(Part part, const Intrinsic& intrinsic) {
+double Unit(IntrinsicPart part, const Intrinsic& intrinsic) {
   if (part == &IntrinsicRefinement::focal) {
     return std::hypot(intrinsic.fx_px, intrinsic.fy_px);
   }
@@ -47,35 +43,6 @@ double Unit(Part part, const Intrinsic& intrinsic) {
              ? intrinsic.ImageDiagonal()
              : 1;
 }
-
-void Apply(Part part, const VecX& change, Intrinsic* intrinsic) {
-  if (part == &IntrinsicRefinement::focal) intrinsic->fx_px *= 1 + change(0);
-  if (part == &IntrinsicRefinement::focal ||
-      part == &IntrinsicRefinement::aspect_ratio) {
-    intrinsic->fy_px *= 1 + change(0);
-  } else if (part == &IntrinsicRefinement::principal_point) {
-    intrinsic->principal_point_px += intrinsic->ImageDiagonal() * change;
-  } else {
-    for (std::size_t n = 0; n < intrinsic->distortion.size(); ++n) {
-      intrinsic->distortion[n] += change(static_cast<Eigen::Index>(n));
-    }
-  }
-}
-
-// A held part of the intrinsics that are tested together: consecutive columns
-// of the held parameters t.
-struct Candidate {
-  std::size_t group = 0;
-  Part part = nullptr;
-  int first = 0;
-  int size = 0;
-  bool chosen = false;
-};
-
-struct Group {
-  std::vector<int> intrinsics;
-  IntrinsicRefinement refined;
-};
 
 std::vector<Group> MakeGroups(const AdjustmentOptions& options,
                               const CameraSet& cameras) {
@@ -87,7 +54,7 @@ std::vector<Group> MakeGroups(const AdjustmentOptions& options,
     const IntrinsicRefinement refined = RefinementOf(options, intrinsic);
     if (separate || groups.empty()) groups.push_back({{}, refined});
     groups.back().intrinsics.push_back(static_cast<int>(n));
-    for (const Part part : kParts) {
+    for (const IntrinsicPart part : kParts) {
       groups.back().refined.*part |= refined.*part;
     }
   }
@@ -105,19 +72,11 @@ MatX TransposedProduct(const MatX& a, const MatX& b) {
   return a.transpose().lazyProduct(b);
 }
 
-// The score test in the held parameters alone; see the header.
-struct Score {
-  VecX u;
-  MatX information;
-  MatX prior_information;  // if everything else were known
-  MatX variance;           // of u, from the landmarks' shares
-};
-
 // `held` says how the held parameters move the kept columns; the columns
 // `free` move by themselves.
-std::optional<Score> ComputeScore(const LinearisedProblem& linearised,
-                                  const std::vector<int>& free,
-                                  const MatX& held) {
+bool ComputeScore(const LinearisedProblem& linearised,
+                  const std::vector<int>& free, const MatX& held,
+                  CalibrationScore* score) {
   std::vector<int> place(static_cast<std::size_t>(linearised.kept_size), -1);
   for (std::size_t n = 0; n < free.size(); ++n) {
     place[free[n]] = static_cast<int>(n);
@@ -139,30 +98,56 @@ std::optional<Score> ComputeScore(const LinearisedProblem& linearised,
   SparseMat free_part(free_count, free_count);
   free_part.setFromTriplets(entries.begin(), entries.end());
   const Eigen::SimplicialLDLT<SparseMat> factor(free_part);
-  if (factor.info() != Eigen::Success) return std::nullopt;
+  if (factor.info() != Eigen::Success) return false;
   const MatX kept_held = linearised.schur_complement * held;
   MatX cross(free_count, held.cols());
   for (const int n : free) cross.row(place[n]) = kept_held.row(n);
   const MatX solved = factor.solve(cross);
-  Score score;
-  score.prior_information = TransposedProduct(held, kept_held);
-  score.information =
-      score.prior_information - TransposedProduct(cross, solved);
+  score->prior_information = TransposedProduct(held, kept_held);
+  score->information =
+      score->prior_information - TransposedProduct(cross, solved);
   MatX efficient = held;
   for (const int n : free) efficient.row(n) -= solved.row(place[n]);
   const MatX shares = linearised.gradients * efficient;  // by landmark
-  score.u = shares.colwise().sum().transpose();
+  score->u = shares.colwise().sum().transpose();
   const double unknowns = static_cast<double>(free_count + held.cols());
-  if (!(linearised.redundancy > unknowns)) return std::nullopt;
-  score.variance = TransposedProduct(shares, shares) *
-                   (linearised.redundancy / (linearised.redundancy - unknowns));
-  return score;
+  if (!(linearised.redundancy > unknowns)) return false;
+  score->variance =
+      TransposedProduct(shares, shares) *
+      (linearised.redundancy / (linearised.redundancy - unknowns));
+  return true;
 }
 
-// The statistic of the parameters `which`, given that those in `free` are free;
-// 0 where the images do not determine them.
-double Statistic(const Score& score, const std::vector<int>& which,
-                 const std::vector<int>& free) {
+}  // namespace
+
+void ChangePart(IntrinsicPart part, const VecX& change, Intrinsic* intrinsic) {
+  if (part == &IntrinsicRefinement::focal) intrinsic->fx_px *= 1 + change(0);
+  if (part == &IntrinsicRefinement::focal ||
+      part == &IntrinsicRefinement::aspect_ratio) {
+    intrinsic->fy_px *= 1 + change(0);
+  } else if (part == &IntrinsicRefinement::principal_point) {
+    intrinsic->principal_point_px += intrinsic->ImageDiagonal() * change;
+  } else {
+    for (std::size_t n = 0; n < intrinsic->distortion.size(); ++n) {
+      intrinsic->distortion[n] += change(static_cast<Eigen::Index>(n));
+    }
+  }
+}
+
+Intrinsic WithDistortion(Intrinsic intrinsic) {
+  if (intrinsic.model == CameraModel::kPinhole) {
+    intrinsic.model = CameraModel::kRadialK1;
+    intrinsic.distortion = {0};
+  }
+  return intrinsic;
+}
+
+void HeldPart::AddTo(std::vector<int>* columns) const {
+  for (int n = 0; n < size; ++n) columns->push_back(first + n);
+}
+
+double CalibrationScore::Statistic(const std::vector<int>& which,
+                                   const std::vector<int>& free) const {
   // u' = M^T (u_which, u_free).
   std::vector<int> both = which;
   both.insert(both.end(), free.begin(), free.end());
@@ -170,94 +155,57 @@ double Statistic(const Score& score, const std::vector<int>& which,
   MatX reduce = MatX::Identity(static_cast<Eigen::Index>(both.size()), size);
   if (!free.empty()) {
     reduce.bottomRows(static_cast<Eigen::Index>(free.size())) =
-        -TransposedProduct(PseudoInverse(Block(score.information, free, free)),
-                           Block(score.information, free, which));
+        -TransposedProduct(PseudoInverse(Block(information, free, free)),
+                           Block(information, free, which));
   }
   const auto reduced = [&](const MatX& matrix) {
     return TransposedProduct(
         reduce, TransposedProduct(Block(matrix, both, both), reduce));
   };
-  const VecX u = TransposedProduct(reduce, Block(score.u, both, {0}));
-  const MatX information = reduced(score.information);
-  const VecX scale = Block(score.prior_information, which, which)
+  const VecX left = TransposedProduct(reduce, Block(u, both, {0}));
+  const MatX by_noise = reduced(information);
+  const VecX scale = Block(prior_information, which, which)
                          .diagonal()
                          .cwiseSqrt()
                          .cwiseInverse();
   if (!scale.allFinite()) return 0;
   // No eigenvalue of the scaled information may be below this.
   constexpr double kLeastShare = 1e-7;
-  MatX beyond = scale.asDiagonal() * information * scale.asDiagonal();
+  MatX beyond = scale.asDiagonal() * by_noise * scale.asDiagonal();
   beyond.diagonal().array() -= kLeastShare;
   if (!(Eigen::LDLT<MatX>(beyond).vectorD().minCoeff() > 0)) return 0;
-  const double by_model = u.dot(VecX(Eigen::LDLT<MatX>(information).solve(u)));
+  const double by_model =
+      left.dot(VecX(Eigen::LDLT<MatX>(by_noise).solve(left)));
   const double by_spread =
-      u.dot(VecX(TransposedProduct(PseudoInverse(reduced(score.variance)), u)));
+      left.dot(VecX(TransposedProduct(PseudoInverse(reduced(variance)), left)));
   const double least = std::min(by_model, by_spread);
   return std::isfinite(least) ? std::max(0.0, least) : 0;
 }
 
-std::vector<int> Columns(const std::vector<Candidate>& candidates,
-                         const std::function<bool(const Candidate&)>& wanted) {
-  std::vector<int> columns;
-  for (const Candidate& candidate : candidates) {
-    if (!wanted(candidate)) continue;
-    for (int n = 0; n < candidate.size; ++n) {
-      columns.push_back(candidate.first + n);
-    }
-  }
-  return columns;
+VecX CalibrationScore::Change(const std::vector<int>& which) const {
+  return -TransposedProduct(PseudoInverse(Block(information, which, which)),
+                            Block(u, which, {0}));
 }
 
-// Marks the candidates that noise does not explain.
-void Choose(const Score& score, std::vector<Candidate>* candidates) {
-  const double level =
-      std::log(kFalseAlarms / static_cast<double>(candidates->size()));
-  for (;;) {
-    const std::vector<int> chosen =
-        Columns(*candidates, [](const Candidate& c) { return c.chosen; });
-    Candidate* best = nullptr;
-    double least = level;
-    for (Candidate& candidate : *candidates) {
-      if (candidate.chosen) continue;
-      const std::vector<int> own = Columns(
-          *candidates, [&](const Candidate& c) { return &c == &candidate; });
-      const double log_tail =
-          LogChiSquareTail(Statistic(score, own, chosen), candidate.size);
-      if (log_tail < least) {
-        least = log_tail;
-        best = &candidate;
-      }
-    }
-    if (best == nullptr) return;
-    best->chosen = true;
-  }
-}
-
-}  // namespace
-
-std::vector<CalibrationPreference> FindCalibrationPreferences(
+std::optional<CalibrationScore> ScoreCalibration(
     const AdjustmentOptions& options, const NoiseLevels& noise,
-    CameraSet cameras, StructureState state) {
-  std::vector<Group> groups = MakeGroups(options, cameras);
-  const CameraSet held = cameras;
+    const Scene& scene, CameraSet cameras, StructureState state) {
+  CalibrationScore score;
+  score.groups = MakeGroups(options, cameras);
   AdjustmentOptions freed = options;
-  freed.use_lines = false;
   freed.principal_point_stddev = 0;
   for (IntrinsicState& intrinsic : cameras.intrinsics) {
-    if (intrinsic.value.model == CameraModel::kPinhole) {
-      intrinsic.value.model = CameraModel::kRadialK1;
-      intrinsic.value.distortion = {0};
-    }
+    intrinsic.value = WithDistortion(intrinsic.value);
     freed.refine_intrinsics[intrinsic.id] = kAllParts;
   }
-  state.lines.clear();
   state.pairs.clear();
+  state.planes.clear();
   state.priors.clear();
   state.ratio_priors.clear();
-  // Directions are those of lines, and of the calibration that is held.
   state.directions.clear();
+  RefreshRays(scene, cameras, &state);
   const ProblemSelection selection = SelectForSolve(cameras, state, freed);
-  if (groups.empty() || selection.IsEmpty()) return {};
+  if (score.groups.empty() || selection.IsEmpty()) return std::nullopt;
   const std::vector<Component> components =
       FindComponents(cameras, state, selection);
   EnterComponentFrames(components, &cameras, &state);
@@ -270,92 +218,47 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
   const auto column_of = [&](int intrinsic) {
     return linearised.KeptColumn(builder.IntrinsicBlock(intrinsic));
   };
-  // The first of a group represents it: it must be one that was tested.
-  for (Group& group : groups) {
+  for (Group& group : score.groups) {
     std::stable_partition(group.intrinsics.begin(), group.intrinsics.end(),
                           [&](int n) { return column_of(n) >= 0; });
   }
 
-  std::vector<Candidate> candidates;
   MatX held_directions = MatX::Zero(
       linearised.kept_size,
-      static_cast<Eigen::Index>(groups.size()) * kMaxIntrinsicParameters);
+      static_cast<Eigen::Index>(score.groups.size()) * kMaxIntrinsicParameters);
   int count = 0;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    std::vector<int> column(groups[g].intrinsics.size());
+  for (std::size_t g = 0; g < score.groups.size(); ++g) {
+    const Group& group = score.groups[g];
+    std::vector<int> column(group.intrinsics.size());
     for (std::size_t n = 0; n < column.size(); ++n) {
-      column[n] = column_of(groups[g].intrinsics[n]);
+      column[n] = column_of(group.intrinsics[n]);
     }
-    for (const Part part : kParts) {
-      Candidate candidate{g, part, count, 0, false};
+    for (const IntrinsicPart part : kParts) {
+      HeldPart held{g, part, count, 0};
       for (std::size_t n = 0; n < column.size(); ++n) {
         if (column[n] < 0) continue;  // no landmark in its views
-        const Intrinsic& value =
-            cameras.intrinsics[groups[g].intrinsics[n]].value;
+        const Intrinsic& value = cameras.intrinsics[group.intrinsics[n]].value;
         const int size = Size(part, value);
-        for (int k = 0; k < size && !(groups[g].refined.*part); ++k) {
+        for (int k = 0; k < size && !(group.refined.*part); ++k) {
           held_directions(column[n] + k, count + k) = Unit(part, value);
-          candidate.size = std::max(candidate.size, size);
+          held.size = std::max(held.size, size);
         }
         column[n] += size;
       }
-      count += candidate.size;
-      if (candidate.size > 0) candidates.push_back(candidate);
+      count += held.size;
+      if (held.size > 0) score.parts.push_back(held);
     }
   }
-  if (candidates.empty()) return {};
+  if (score.parts.empty()) return std::nullopt;
   std::vector<int> free;
   for (int n = 0; n < linearised.kept_size; ++n) {
     if ((held_directions.row(n).array() == 0).all()) free.push_back(n);
   }
   held_directions.conservativeResize(Eigen::NoChange, count);
-
-  const std::optional<Score> score =
-      ComputeScore(linearised, free, held_directions);
-  if (!score) return {};
-  Choose(*score, &candidates);
-
-  const std::vector<int> chosen =
-      Columns(candidates, [](const Candidate& c) { return c.chosen; });
-  if (chosen.empty()) return {};
-  VecX change = VecX::Zero(count);
-  change(chosen) = -TransposedProduct(
-      PseudoInverse(Block(score->information, chosen, chosen)),
-      Block(score->u, chosen, {0}));
-  std::vector<CalibrationPreference> preferences;
-  for (std::size_t g = 0; g < groups.size(); ++g) {
-    CalibrationPreference preference;
-    for (const int n : groups[g].intrinsics) {
-      preference.intrinsics.push_back(cameras.intrinsics[n].id);
-    }
-    const int representative = groups[g].intrinsics.front();
-    preference.held = held.intrinsics[representative].value;
-    preference.preferred = preference.held;
-    preference.refined = groups[g].refined;
-    for (const Candidate& candidate : candidates) {
-      if (candidate.group != g || !candidate.chosen) continue;
-      preference.parts.*candidate.part = true;
-      if (candidate.part == &IntrinsicRefinement::distortion) {
-        preference.preferred.model =
-            cameras.intrinsics[representative].value.model;
-        preference.preferred.distortion =
-            cameras.intrinsics[representative].value.distortion;
-      }
-      Apply(candidate.part, change.segment(candidate.first, candidate.size),
-            &preference.preferred);
-    }
-    if (!preference.parts.Any()) continue;
-    const auto of_group = [&](const Candidate& c) {
-      return c.chosen && c.group == g;
-    };
-    preference.deviations =
-        std::sqrt(Statistic(*score, Columns(candidates, of_group),
-                            Columns(candidates, [&](const Candidate& c) {
-                              return c.chosen && !of_group(c);
-                            })));
-    preferences.push_back(std::move(preference));
+  if (!ComputeScore(linearised, free, held_directions, &score)) {
+    return std::nullopt;
   }
-  return preferences;
+  return score;
 }
 
 }  // namespace lowlap

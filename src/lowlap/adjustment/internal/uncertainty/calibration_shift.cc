@@ -5,6 +5,7 @@
 #include "lowlap/adjustment/internal/rounds/problem_selection.h"
 #include "lowlap/adjustment/internal/rounds/solve.h"
 #include "lowlap/adjustment/internal/uncertainty/center_shift.h"
+#include "lowlap/adjustment/internal/uncertainty/focal_at_stake.h"
 
 namespace lowlap {
 namespace {
@@ -33,19 +34,31 @@ void Change(const CalibrationPreference& preference, Intrinsic* intrinsic) {
   }
 }
 
-CameraSet WithPreferences(const std::vector<CalibrationPreference>& preferences,
-                          CameraSet cameras) {
-  for (const CalibrationPreference& preference : preferences) {
-    for (IntrinsicState& intrinsic : cameras.intrinsics) {
-      if (std::count(preference.intrinsics.begin(), preference.intrinsics.end(),
-                     intrinsic.id) == 0) {
-        continue;
-      }
-      Change(preference, &intrinsic.value);
-      intrinsic.ParametersFromValue();
+// Whether anything moves.
+bool MoveIntrinsics(const std::vector<CalibrationPreference>& preferences,
+                    const std::vector<double>& focal_factors,
+                    std::vector<IntrinsicState>* intrinsics) {
+  bool moved = false;
+  for (std::size_t n = 0; n < intrinsics->size(); ++n) {
+    IntrinsicState& intrinsic = (*intrinsics)[n];
+    const auto preference =
+        std::find_if(preferences.begin(), preferences.end(),
+                     [&](const CalibrationPreference& p) {
+                       return std::count(p.intrinsics.begin(),
+                                         p.intrinsics.end(), intrinsic.id) > 0;
+                     });
+    if (preference != preferences.end()) {
+      Change(*preference, &intrinsic.value);
+    } else if (focal_factors[n] != 1) {
+      intrinsic.value.fx_px *= focal_factors[n];
+      intrinsic.value.fy_px *= focal_factors[n];
+    } else {
+      continue;
     }
+    intrinsic.ParametersFromValue();
+    moved = true;
   }
-  return cameras;
+  return moved;
 }
 
 }  // namespace
@@ -55,10 +68,15 @@ Status AddCalibrationShift(
     const std::vector<CalibrationPreference>& preferences, const Scene& scene,
     const RunContext& context, const CameraSet& cameras, StructureState state,
     CenterUncertainty* uncertainty) {
-  if (preferences.empty()) return {};
+  CameraSet moved = cameras;
+  if (!MoveIntrinsics(
+          preferences,
+          FocalFactorsAtStake(options, noise, scene, cameras, state),
+          &moved.intrinsics)) {
+    return {};
+  }
   const std::vector<Component> components =
       FindComponents(cameras, state, SelectForSolve(cameras, state, options));
-  CameraSet moved = WithPreferences(preferences, cameras);
   // Directions are those of the calibration that is held.
   state.directions.clear();
   RefreshRays(scene, moved, &state);

@@ -11,11 +11,13 @@
 
 namespace lowlap {
 
-/// A calibration that the images contradict moves the cameras all the same:
-/// adds to `uncertainty` how far. From the adjusted state the same observations
-/// are solved once with what the images prefer (CalibrationPreference), and
-/// where that leads is added (CenterShift): it tells how much is at stake
-/// rather than where to, since what is preferred is as uncertain.
+/// A calibration that is off moves the cameras all the same: adds to
+/// `uncertainty` how far. From the adjusted state the same observations are
+/// solved once with what the images prefer where they contradict it
+/// (CalibrationPreference), and elsewhere with focal lengths that are off as
+/// far as they could be (FocalFactorsAtStake). Where that leads is added
+/// (CenterShift): it tells how much is at stake rather than where to, since
+/// what is preferred is as uncertain.
 ///
 /// Nothing is added where nothing is preferred, or the solve fails. Errors:
 /// kCancelled.
