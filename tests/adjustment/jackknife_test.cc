@@ -20,6 +20,7 @@ using test::AddCommonErrors;
 using test::BuildAndAdjust;
 using test::ChainOfLines;
 using test::MakeTestScene;
+using test::NormalisedCenterError;
 using test::TestScene;
 
 // The chain, and what is known of its centres: next to nothing is open.
@@ -105,23 +106,6 @@ TEST_F(WellSeenTest, AddsNothingWhereMoreViewsCheckEachOther) {
   }
 }
 
-// The mean of squared errors over their variances.
-double NormalisedError(const TestScene& test) {
-  std::vector<Vec3> solved, truth;
-  for (const auto& [id, pose] : test.scene.poses) {
-    solved.push_back(pose.center);
-    truth.push_back(test.true_poses.at(id).center);
-  }
-  const Similarity solved_from_truth = AlignPoints(truth, solved).value();
-  double sum = 0;
-  for (const auto& [id, pose] : test.scene.poses) {
-    sum += (pose.center - solved_from_truth * test.true_poses.at(id).center)
-               .squaredNorm() /
-           pose.center_covariance->trace();
-  }
-  return sum / static_cast<double>(test.scene.poses.size());
-}
-
 // Without it this would be 3.3.
 TEST(Jackknife, HoldsErrorsThatNeighboursHaveInCommon) {
   double mean = 0;
@@ -130,7 +114,7 @@ TEST(Jackknife, HoldsErrorsThatNeighboursHaveInCommon) {
     TestScene test = ChainOfLines(300 + trial);
     AddCommonErrors(0.5, 300 + trial, &test.scene);
     BuildAndAdjust(&test.scene);
-    mean += NormalisedError(test) / kTrials;
+    mean += NormalisedCenterError(test) / kTrials;
   }
   EXPECT_GT(mean, 0.3);
   EXPECT_LT(mean, 1.5);

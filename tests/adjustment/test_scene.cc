@@ -323,6 +323,31 @@ PoseErrors ComparePoses(const std::map<PoseId, Pose>& truth,
   return errors;
 }
 
+std::map<PoseId, Vec3> CenterErrors(const TestScene& test) {
+  std::vector<Vec3> solved, truth;
+  for (const auto& [id, pose] : test.scene.poses) {
+    solved.push_back(pose.center);
+    truth.push_back(test.true_poses.at(id).center);
+  }
+  const Similarity solved_from_truth = AlignPoints(truth, solved).value();
+  std::map<PoseId, Vec3> errors;
+  for (const auto& [id, pose] : test.scene.poses) {
+    errors[id] =
+        pose.center - solved_from_truth * test.true_poses.at(id).center;
+  }
+  return errors;
+}
+
+double NormalisedCenterError(const TestScene& test) {
+  const std::map<PoseId, Vec3> errors = CenterErrors(test);
+  double sum = 0;
+  for (const auto& [id, error] : errors) {
+    sum += error.squaredNorm() /
+           test.scene.poses.at(id).center_covariance->trace();
+  }
+  return sum / static_cast<double>(errors.size());
+}
+
 AdjustmentSummary BuildAndAdjust(Scene* scene,
                                  const AdjustmentOptions& options) {
   EXPECT_THAT(BuildStructure(scene, {}, {}), IsOk());

@@ -65,6 +65,14 @@ struct PoseErrors {
 PoseErrors ComparePoses(const std::map<PoseId, Pose>& truth,
                         const Scene& scene);
 
+/// By which the centres miss the true ones, once the least similarity has moved
+/// these to them.
+std::map<PoseId, Vec3> CenterErrors(const TestScene& test);
+
+/// The mean of their squares over the variances that are stated: 1 if these
+/// hold.
+double NormalisedCenterError(const TestScene& test);
+
 /// The structure from the poses, adjusted; expects that both succeed and leave
 /// a valid scene.
 AdjustmentSummary BuildAndAdjust(Scene* scene,

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "lowlap/adjustment/internal/rounds/calibration_preference.h"
+#include "lowlap/adjustment/internal/calibration/calibration_preference.h"
 #include "lowlap/adjustment/internal/rounds/kind_statistics.h"
 #include "lowlap/adjustment/internal/rounds/optimum_starts.h"
 #include "lowlap/adjustment/internal/rounds/outlier_round.h"

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "lowlap/adjustment/internal/calibration/focal_at_stake.h"
 #include "lowlap/adjustment/internal/rounds/problem_selection.h"
 #include "lowlap/adjustment/internal/rounds/solve.h"
 #include "lowlap/adjustment/internal/uncertainty/center_shift.h"
-#include "lowlap/adjustment/internal/uncertainty/focal_at_stake.h"
 
 namespace lowlap {
 namespace {

@@ -1,9 +1,9 @@
-#include "lowlap/adjustment/internal/uncertainty/focal_at_stake.h"
+#include "lowlap/adjustment/internal/calibration/focal_at_stake.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "lowlap/adjustment/internal/rounds/calibration_score.h"
+#include "lowlap/adjustment/internal/calibration/calibration_score.h"
 
 namespace lowlap {
 namespace {

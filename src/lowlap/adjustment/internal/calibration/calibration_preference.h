@@ -15,9 +15,9 @@ namespace lowlap {
 /// for a k1.
 ///
 /// Points alone are asked; without them nothing is said. The score of lines has
-/// a mean: on simulated rooms with the true calibration, of 1.7 standard
-/// deviations in the aspect, where that of points has -0.1. Coplanar pairs and
-/// relative poses depend on both.
+/// a mean: with it, 34 of 182 simulated scenes with the true calibration would
+/// be contradicted (of `robustness --trust`; most have their views in a row, or
+/// see one wall). Coplanar pairs and relative poses depend on both.
 std::vector<CalibrationPreference> FindCalibrationPreferences(
     const AdjustmentOptions& options, const NoiseLevels& noise,
     const Scene& scene, const CameraSet& cameras, StructureState state);

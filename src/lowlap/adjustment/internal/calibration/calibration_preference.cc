@@ -1,9 +1,9 @@
-#include "lowlap/adjustment/internal/rounds/calibration_preference.h"
+#include "lowlap/adjustment/internal/calibration/calibration_preference.h"
 
 #include <cmath>
 #include <utility>
 
-#include "lowlap/adjustment/internal/rounds/calibration_score.h"
+#include "lowlap/adjustment/internal/calibration/calibration_score.h"
 #include "lowlap/robust/internal/chi_square.h"
 
 namespace lowlap {
@@ -65,7 +65,7 @@ CalibrationPreference PreferenceOf(const CalibrationScore::Group& group,
 std::vector<CalibrationPreference> FindCalibrationPreferences(
     const AdjustmentOptions& options, const NoiseLevels& noise,
     const Scene& scene, const CameraSet& cameras, StructureState state) {
-  state.lines.clear();
+  state.lines.clear();  // what is tied to them is left out of the score
   const auto score = ScoreCalibration(options, noise, scene, cameras, state);
   if (!score) return {};
   const std::vector<char> chosen = Choose(*score);

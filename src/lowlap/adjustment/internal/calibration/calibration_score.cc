@@ -1,4 +1,4 @@
-#include "lowlap/adjustment/internal/rounds/calibration_score.h"
+#include "lowlap/adjustment/internal/calibration/calibration_score.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/SparseCholesky>
