@@ -125,7 +125,7 @@ TEST(MakeTripletView, PerturbsThePosesByTheirCovariances) {
   row.scene.relative_poses.at({1, 2}).covariance =
       1e-6 * Eigen::Matrix<double, 5, 5>::Identity();
   const auto triplet = MakeTripletView(features, {0, 1, 2});
-  ASSERT_EQ(triplet->pose_perturbations.size(), 5u);
+  ASSERT_EQ(triplet->pose_perturbations.size(), 10u);
   for (const TripletGeometry& moved : triplet->pose_perturbations) {
     EXPECT_EQ(moved.cami_from_camj.rotation,
               triplet->geometry.cami_from_camj.rotation);

@@ -41,7 +41,7 @@ TEST(PerturbPose, IsEmptyWithoutAUsableCovariance) {
   EXPECT_TRUE(PerturbPose({}, edge, {0, 1, 2}).empty());
 }
 
-// Small errors: their squares add up to the covariance.
+// Small errors: their squares add up to twice the covariance.
 TEST(PerturbPose, SpansTheCovariance) {
   RelativePose edge = Edge();
   Mat5 root;
@@ -50,7 +50,7 @@ TEST(PerturbPose, SpansTheCovariance) {
   edge.covariance = covariance;
   const TripletGeometry geometry = GeometryOf(edge);
   const auto perturbed = PerturbPose(geometry, edge, {0, 1, 2});
-  ASSERT_EQ(perturbed.size(), 5u);
+  ASSERT_EQ(perturbed.size(), 10u);
   Mat5 sum = Mat5::Zero();
   for (const TripletGeometry& moved : perturbed) {
     EXPECT_EQ(moved.cami_from_camj.rotation, geometry.cami_from_camj.rotation);
@@ -60,9 +60,27 @@ TEST(PerturbPose, SpansTheCovariance) {
     error << turn(2, 1), turn(0, 2), turn(1, 0),
         TangentBasis(edge.direction).transpose() *
             (moved.camk_from_camj.translation - edge.direction);
-    sum += error * error.transpose();
+    sum += 0.5 * error * error.transpose();
   }
   EXPECT_LT((sum - covariance).norm(), 1e-4 * covariance.norm());
+}
+
+// Which way an eigenvector points is chance.
+TEST(PerturbPose, GoesBothWays) {
+  RelativePose edge = Edge();
+  edge.covariance = 0.04 * Mat5::Identity();
+  const auto perturbed = PerturbPose(GeometryOf(edge), edge, {0, 1, 2});
+  ASSERT_EQ(perturbed.size(), 10u);
+  for (std::size_t n = 0; n < perturbed.size(); n += 2) {
+    const RigidTransform& there = perturbed[n].camk_from_camj;
+    const RigidTransform& back = perturbed[n + 1].camk_from_camj;
+    EXPECT_LT((there.rotation * edge.rotation.transpose() * back.rotation -
+               edge.rotation)
+                  .norm(),
+              1e-12);
+    const Vec3 mean = there.translation + back.translation;
+    EXPECT_LT(mean.cross(edge.direction).norm(), 1e-12);
+  }
 }
 
 // Its candidates move with the focal length of view i, of all geometries, or,
@@ -90,7 +108,7 @@ class MovedByGeometry : public testing::EvenEvidence {
 
 TEST(PoseVariance, DoesNotFallWithTheNumberOfCandidates) {
   TripletView triplet;
-  for (const double change : {0.03, -0.04}) {
+  for (const double change : {0.03, -0.03, 0.04, -0.04}) {
     triplet.pose_perturbations.emplace_back().focal_i_px = change;
   }
   for (const int count : {1, 10, 100}) {
@@ -103,9 +121,23 @@ TEST(PoseVariance, DoesNotFallWithTheNumberOfCandidates) {
   }
 }
 
+// Along a valley of poses the ratio changes on one side alone.
+TEST(PoseVariance, TakesTheMeanOfBothWays) {
+  TripletView triplet;
+  triplet.pose_perturbations.emplace_back().focal_i_px = 0.07;
+  triplet.pose_perturbations.emplace_back().focal_i_px = 0.01;
+  const RatioSupport support(testing::EvidenceOf(
+      {std::make_shared<MovedByGeometry>(std::vector<double>{0}, 1)}));
+  const double variance = PoseVariance(triplet, support, {{0, 0, 1}});
+  EXPECT_NEAR(variance, 0.05 * 0.05, 1e-15);
+  std::swap(triplet.pose_perturbations[0], triplet.pose_perturbations[1]);
+  EXPECT_EQ(PoseVariance(triplet, support, {{0, 0, 1}}), variance);
+}
+
 TEST(PoseVariance, AveragesWhatMovesAndWhatDoesNot) {
   TripletView triplet;
   triplet.pose_perturbations.emplace_back().focal_i_px = 0.04;
+  triplet.pose_perturbations.emplace_back().focal_i_px = -0.04;
   const RatioSupport support(testing::EvidenceOf(
       {std::make_shared<MovedByGeometry>(std::vector<double>{0}, 1),
        testing::Even({0}, 1)}));

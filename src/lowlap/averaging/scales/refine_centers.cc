@@ -220,6 +220,8 @@ Status RefineCenters(const TranslationProblem& problem,
   Refiner refiner(problem, placed, centers);
   if (refiner.num_blocks() == 0) return {};
   SparseSolver solver(context);
+  // Per direction, in variances: rounding is left, which goes on falling.
+  constexpr double kNoCost = 1e-20;
   double damping = 1e-4;
   double cost = refiner.Cost(centers);
   for (int iteration = 0; iteration < max_iterations; ++iteration) {
@@ -254,7 +256,10 @@ Status RefineCenters(const TranslationProblem& problem,
         damping = std::max(damping / 100, 1e-8);
       }
     }
-    if (!improved || relative_decrease < 1e-6) break;
+    if (!improved || relative_decrease < 1e-6 ||
+        cost <= kNoCost * static_cast<double>(problem.edges.size())) {
+      break;
+    }
   }
   *result = std::move(centers);
   return {};

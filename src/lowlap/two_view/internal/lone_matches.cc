@@ -1,7 +1,6 @@
 #include "lowlap/two_view/internal/lone_matches.h"
 
 #include <Eigen/Cholesky>
-#include <utility>
 
 namespace lowlap {
 namespace {
@@ -29,24 +28,17 @@ std::vector<double> Leverages(const RigidTransform& cam2_from_cam1,
   return leverages;
 }
 
-std::vector<int> BorneOutMatches(RigidTransform cam2_from_cam1,
+std::vector<int> BorneOutMatches(const RigidTransform& cam2_from_cam1,
                                  const PointPairs& pairs,
-                                 std::vector<int> indices,
+                                 const std::vector<int>& indices,
                                  const PoseRefinementOptions& options) {
-  while (true) {
-    const std::vector<double> leverages =
-        Leverages(cam2_from_cam1, pairs, indices, options);
-    std::vector<int> rest;
-    for (std::size_t n = 0; n < leverages.size(); ++n) {
-      if (leverages[n] <= kMaxLeverage) rest.push_back(indices[n]);
-    }
-    if (rest.size() < kFewestMatches || rest.size() == indices.size()) {
-      return indices;
-    }
-    indices = std::move(rest);
-    cam2_from_cam1 =
-        RefineRelativePose(cam2_from_cam1, pairs, indices, options);
+  const std::vector<double> leverages =
+      Leverages(cam2_from_cam1, pairs, indices, options);
+  std::vector<int> rest;
+  for (std::size_t n = 0; n < leverages.size(); ++n) {
+    if (leverages[n] <= kMaxLeverage) rest.push_back(indices[n]);
   }
+  return rest.size() < kFewestMatches ? indices : rest;
 }
 
 }  // namespace lowlap

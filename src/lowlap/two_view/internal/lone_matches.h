@@ -22,13 +22,16 @@ std::vector<double> Leverages(const RigidTransform& cam2_from_cam1,
 /// `indices` without the matches that hold the pose alone. What a match with
 /// h > 1/2 says of the pose has less behind it in all the others together than
 /// in itself; the pose goes through it whether it is right or wrong, and no
-/// residual tells. They are left out and the pose is refined on the rest, until
-/// there are none, the rest is fewer than six or does not determine the pose.
+/// residual tells. All stay where the rest is fewer than six.
+///
+/// They are left out once: what is left has larger leverages, and of few
+/// matches the next pass would find more, and so on down to six that hold
+/// nothing.
 ///
 /// The pose may well be right; what is known of it is what the rest knows.
-std::vector<int> BorneOutMatches(RigidTransform cam2_from_cam1,
+std::vector<int> BorneOutMatches(const RigidTransform& cam2_from_cam1,
                                  const PointPairs& pairs,
-                                 std::vector<int> indices,
+                                 const std::vector<int>& indices,
                                  const PoseRefinementOptions& options);
 
 }  // namespace lowlap

@@ -58,7 +58,7 @@ std::vector<DirectionPair> PossibleDirections(
 /// The disagreement of a pair under a rotation in its own standard deviations:
 ///   e = B^T (+-R direction1 - direction2),  B = TangentBasis(direction2),
 ///   m = W e,  W^T W = (B^T (R C1 R^T + C2) B)^-1,
-/// and, if asked for, dm/dw for R <- exp([w]x) R.
+/// and, if asked for, dm/dw for R <- exp([w]x) R with W held.
 Vec2 DirectionResidual(const DirectionPair& pair, const Mat3& rotation,
                        Eigen::Matrix<double, 2, 3>* jacobian = nullptr);
 

@@ -1,7 +1,10 @@
 #include "lowlap/two_view/internal/partial_evidence.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "lowlap/two_view/internal/search/pose_search.h"
 
@@ -43,14 +46,29 @@ double ScatteredEvidence(const TwoViewInput& input,
       kApartShare * input.image_size1_px.mean() / pairs.focal1_px;
   const double apart2 =
       kApartShare * input.image_size2_px.mean() / pairs.focal2_px;
+  const auto is_near = [&](int n, int other) {
+    return (pairs.x1[n] - pairs.x1[other]).norm() < apart1 &&
+           (pairs.x2[n] - pairs.x2[other]).norm() < apart2;
+  };
+  // Those of each cell of view 1; what is near lies in it or beside it.
+  std::map<std::pair<double, double>, std::vector<int>> cells;
   std::vector<int> scattered;
   for (int n = 0; n < pairs.size(); ++n) {
-    const bool is_apart =
-        std::none_of(scattered.begin(), scattered.end(), [&](int other) {
-          return (pairs.x1[n] - pairs.x1[other]).norm() < apart1 &&
-                 (pairs.x2[n] - pairs.x2[other]).norm() < apart2;
-        });
-    if (is_apart) scattered.push_back(n);
+    const double column = std::floor(pairs.x1[n].x() / apart1);
+    const double row = std::floor(pairs.x1[n].y() / apart1);
+    bool is_apart = true;
+    for (const double x : {column - 1, column, column + 1}) {
+      for (const double y : {row - 1, row, row + 1}) {
+        const auto cell = cells.find({x, y});
+        is_apart = is_apart &&
+                   (cell == cells.end() ||
+                    std::none_of(cell->second.begin(), cell->second.end(),
+                                 [&](int other) { return is_near(n, other); }));
+      }
+    }
+    if (!is_apart) continue;
+    scattered.push_back(n);
+    cells[{column, row}].push_back(n);
   }
   return EvidenceOfSome(input, matches, scattered, pose, options);
 }

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "lowlap/scale/internal/criterion/even_rank.h"
+
 namespace lowlap {
 namespace {
 
@@ -18,7 +20,7 @@ std::vector<double> BackgroundRatios(const std::vector<double>& sorted) {
   const int draws = std::clamp(kErrorsWanted / (2 * n), 16, 256);
   std::vector<double> background;
   for (int m = 0; m < draws; ++m) {
-    const int rank = static_cast<int>((2LL * m + 1) * n / (2LL * draws));
+    const std::size_t rank = EvenRank(m, draws, n);
     const double rotation = (std::min(m, draws - 1 - m) + 0.5) * kGolden;
     const double u =
         0.5 + 0.5 * (rotation - std::floor(rotation));  // in [0.5, 1)

@@ -14,7 +14,8 @@ bool IsUsable(const DepthSample& sample) {
          sample.stddev <= kMaxSampleStddev * sample.inverse_depth;
 }
 
-// How many pixels the transfer moves when x moves by a pixel, at most.
+// How many pixels the transfer moves when x moves by a pixel, for rays that are
+// not far from the axes; it may be half as many again for oblique ones.
 double Magnification(const RigidTransform& camn_from_camj, const Vec3& x,
                      double inverse_depth, double focal_j_px,
                      double focal_n_px) {

@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "lowlap/scale/internal/criterion/even_rank.h"
+
 namespace lowlap {
 namespace {
 
@@ -12,7 +14,7 @@ std::vector<int> EvenlySpaced(int count, int wanted) {
   std::vector<int> indices;
   indices.reserve(num);
   for (int m = 0; m < num; ++m) {
-    indices.push_back(static_cast<int>((2LL * m + 1) * count / (2LL * num)));
+    indices.push_back(static_cast<int>(EvenRank(m, num, count)));
   }
   return indices;
 }

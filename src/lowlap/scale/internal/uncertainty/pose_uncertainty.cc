@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/scale/internal/criterion/even_rank.h"
 
 namespace lowlap {
 namespace {
@@ -41,7 +42,7 @@ std::vector<Sample> SampleKinds(
     }
     for (std::size_t n = 0; n < num; ++n) {
       const WeightedCandidate& taken =
-          of_kind[(2 * n + 1) * of_kind.size() / (2 * num)];
+          of_kind[EvenRank(n, num, of_kind.size())];
       samples[k].candidates.push_back(taken.index);
       samples[k].weights.push_back(taken.weight *
                                    (static_cast<double>(of_kind.size()) / num));
@@ -64,24 +65,26 @@ std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
   const bool is_ij =
       edge.views.first == views.first || edge.views.second == views.first;
   for (int axis = 0; axis < 5; ++axis) {
-    const Eigen::Matrix<double, 5, 1> error =
-        std::sqrt(std::max(0.0, eigen.eigenvalues()(axis))) *
-        eigen.eigenvectors().col(axis);
-    RelativePose moved;
-    moved.views = edge.views;
-    moved.rotation = RotationFromAngleAxis(error.head<3>()) * edge.rotation;
-    moved.direction =
-        (edge.direction + TangentBasis(edge.direction) * error.tail<2>())
-            .normalized();
-    TripletGeometry moved_geometry = geometry;
-    if (is_ij) {
-      moved_geometry.cami_from_camj =
-          UnitTransform(moved, views.middle, views.first);
-    } else {
-      moved_geometry.camk_from_camj =
-          UnitTransform(moved, views.middle, views.last);
+    const double stddev = std::sqrt(std::max(0.0, eigen.eigenvalues()(axis)));
+    for (const double step : {stddev, -stddev}) {
+      const Eigen::Matrix<double, 5, 1> error =
+          step * eigen.eigenvectors().col(axis);
+      RelativePose moved;
+      moved.views = edge.views;
+      moved.rotation = RotationFromAngleAxis(error.head<3>()) * edge.rotation;
+      moved.direction =
+          (edge.direction + TangentBasis(edge.direction) * error.tail<2>())
+              .normalized();
+      TripletGeometry moved_geometry = geometry;
+      if (is_ij) {
+        moved_geometry.cami_from_camj =
+            UnitTransform(moved, views.middle, views.first);
+      } else {
+        moved_geometry.camk_from_camj =
+            UnitTransform(moved, views.middle, views.last);
+      }
+      perturbed.push_back(moved_geometry);
     }
-    perturbed.push_back(moved_geometry);
   }
   return perturbed;
 }
@@ -108,7 +111,7 @@ double PoseVariance(const TripletView& triplet, const RatioSupport& support,
     }
     if (weights > 0) variance += (sum / weights) * (sum / weights);
   }
-  return variance;
+  return 0.5 * variance;  // every error moves both ways
 }
 
 }  // namespace lowlap

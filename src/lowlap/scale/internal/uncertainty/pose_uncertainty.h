@@ -16,19 +16,22 @@ struct WeightedCandidate {
 };
 
 /// The triplet's geometry moved by one standard deviation along each of the
-/// five independent errors of the relative pose `edge`, which is the one with
-/// camera i, or k (the eigenvectors of its covariance; rotations exp([w]x) R,
-/// directions normalised d + B delta with B = TangentBasis(d)). Empty without a
-/// covariance, or with one that is not finite and positive semidefinite.
+/// five independent errors, and against it, of the relative pose `edge`, which
+/// is the one with camera i, or k (the eigenvectors of its covariance;
+/// rotations exp([w]x) R, directions normalised d + B delta with B =
+/// TangentBasis(d)). Empty without a covariance, or with one that is not finite
+/// and positive semidefinite.
 std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
                                          const RelativePose& edge,
                                          const ViewTriplet& views);
 
 /// The variance of a weighted mean of the candidates' log ratios that comes
 /// from the errors of the two relative poses: all candidates move together with
-/// them, so that it does not fall with their number. The sum over
-/// `triplet.pose_perturbations` of the squared change of the mean, which is
-/// taken over a sample of at most 24 candidates of each kind, even by ratio.
+/// them, so that it does not fall with their number. Half the sum over
+/// `triplet.pose_perturbations`, which go both ways, of the squared change of
+/// the mean: a large error along a valley changes it far more on one side than
+/// on the other. The mean is taken over a sample of at most 24 candidates of
+/// each kind, even by ratio.
 double PoseVariance(const TripletView& triplet, const RatioSupport& support,
                     const std::vector<WeightedCandidate>& candidates);
 
