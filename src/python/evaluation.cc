@@ -45,6 +45,7 @@ void BindEvaluation(py::module_& module) {
       .def_readonly("num_total", &PoseEvaluation::num_total)
       .def_readonly("num_solved", &PoseEvaluation::num_solved)
       .def_readonly("unsolved", &PoseEvaluation::unsolved)
+      .def_readonly("without_truth", &PoseEvaluation::without_truth)
       .def_readonly("truth_from_solution", &PoseEvaluation::truth_from_solution)
       .def_readonly("views", &PoseEvaluation::views)
       .def_readonly("position", &PoseEvaluation::position,

@@ -340,6 +340,19 @@ TEST(Bundler, ViewsThatAreNotSolvedAreEmptyCamerasWithNames) {
   EXPECT_EQ(back.poses.size(), 3u);
 }
 
+// Places in the list do not tell ids where views are left out.
+TEST(Nvm, ImagesWithoutNamesAreNamedByTheirViews) {
+  const TemporaryFolder folder;
+  Scene scene = testing::RandomScene(1, 4, 20, 0);
+  for (auto& [id, view] : scene.views) view.filename.clear();
+  scene.poses.erase(1);
+  const std::string path = folder.Path("s.nvm");
+  ASSERT_THAT(WriteScene(scene, path), IsOk());
+  const Scene back = *ReadScene(path);
+  EXPECT_EQ(back.views.size(), 3u);
+  EXPECT_EQ(back.views.at(1).filename, "image2");
+}
+
 TEST(Bundler, NamesAreInAListBesideTheFile) {
   const TemporaryFolder folder;
   const std::string path = folder.Write("bundle.out", BundleText());

@@ -205,6 +205,9 @@ TEST_F(ColmapModel, FilesThatContradictEachOtherAreErrors) {
               HasSubstr("belongs to another point"));
   EXPECT_THAT(message("points3D.txt", "7 1 1 5 0 0 0 0 1 0 5 0\n"),
               HasSubstr("image 5"));
+  // As a text that was cut between two lines.
+  EXPECT_THAT(message("points3D.txt", "# 1 point\n"),
+              HasSubstr("belongs to point 7, which is not there"));
 }
 
 TEST_F(ColmapModel, APoseWithoutAPlaceIsNone) {
@@ -389,6 +392,29 @@ TEST(ColmapExport, OnlyPosedViewsAndWhatTheySeeGoOut) {
   }
   const std::uint32_t index = model->points[0].track[0].point_index;
   EXPECT_EQ(index, scene.features.at(first[0].view).points_px.size());
+}
+
+TEST(ColmapExport, ImagesWithoutNamesAreNamedByTheirViews) {
+  Scene scene = SolvedScene();
+  for (auto& [id, view] : scene.views) view.filename.clear();
+  SceneNotes notes;
+  const auto model = ModelFromScene(scene, &notes);
+  ASSERT_TRUE(model.has_value()) << model.error().ToString();
+  ASSERT_EQ(scene.views.count(0), 1u);
+  EXPECT_EQ(model->images[0].id, 1u);
+  EXPECT_EQ(model->images[0].name, "image0");
+}
+
+// Ids go out one higher, where zero is one of them.
+TEST(ColmapExport, AnIdThatBecomesTheReservedOneIsRefused) {
+  Scene scene = SolvedScene();
+  ASSERT_EQ(scene.views.count(0), 1u);
+  scene.views[kInvalidId - 1] = scene.views.at(0);
+  SceneNotes notes;
+  const auto model = ModelFromScene(scene, &notes);
+  ASSERT_FALSE(model.has_value());
+  EXPECT_EQ(model.error().code, ErrorCode::kUnsupported);
+  EXPECT_THAT(model.error().place, HasSubstr("view 4294967294"));
 }
 
 }  // namespace

@@ -187,6 +187,36 @@ TEST(GroundTruthFromScene, GoesByIdWhereNamesAreBothNoMatchAndIds) {
   EXPECT_EQ(by_name->at(0).center.x(), 1);
 }
 
+// A list of poses counts from zero, COLMAP from one.
+TEST(GroundTruthFromScene, GoesByTheNumbersOfFilesWhereTheyFindMore) {
+  Scene truth = SceneOf({{"", ""}, {"", ""}, {"", ""}});
+  PoseEveryView(&truth);
+  Scene scene;
+  for (const std::uint32_t id : {1, 2, 3}) {
+    scene.views[id].filename = "frame_00" + std::to_string(id - 1) + ".png";
+  }
+  const auto by_number = GroundTruthFromScene(truth, scene);
+  ASSERT_TRUE(by_number.has_value()) << by_number.error().ToString();
+  ASSERT_EQ(by_number->size(), 3u);
+  EXPECT_EQ(by_number->at(1).center.x(), 0);
+  EXPECT_EQ(by_number->at(3).center.x(), 2);
+}
+
+TEST(GroundTruthFromScene, DoesNotChooseBetweenIdsAndNumbers) {
+  Scene truth = SceneOf({{"", ""}, {"", ""}, {"", ""}});
+  PoseEveryView(&truth);
+  const auto both =
+      GroundTruthFromScene(truth, SceneOf({{"", "1.jpg"}, {"", "2.jpg"}}));
+  ASSERT_FALSE(both.has_value());
+  EXPECT_EQ(both.error().code, ErrorCode::kInvalidScene);
+  EXPECT_NE(both.error().message.find("view 0 is '1.jpg'"), std::string::npos);
+  // Where they agree there is nothing to choose.
+  const auto same =
+      GroundTruthFromScene(truth, SceneOf({{"", "0.jpg"}, {"", "1.jpg"}}));
+  ASSERT_TRUE(same.has_value());
+  EXPECT_EQ(same->size(), 2u);
+}
+
 TEST(Summarize, GivesMeanMedianMaxAndRmse) {
   EXPECT_EQ(Summarize({}).count, 0);
   EXPECT_EQ(Summarize({}).mean, 0);

@@ -140,6 +140,31 @@ TEST(EvaluatePoses, OneCameraAndNoneGiveNothing) {
   EXPECT_EQ(result.num_total, 0);
 }
 
+TEST(EvaluatePoses, NamesSolvedCamerasWithoutTruth) {
+  const Scene solution = RandomScene(5, 8);
+  GroundTruth truth = GroundTruthFromScene(solution);
+  truth.erase(4);
+  const PoseEvaluation result = EvaluatePoses(solution, truth);
+  EXPECT_EQ(result.num_total, 4);
+  EXPECT_THAT(result.without_truth, ElementsAre("image4.jpg"));
+  EXPECT_THAT(ToText(result), HasSubstr("no truth"));
+}
+
+// Rotations are aligned apart from the centres: that all cameras look the wrong
+// way shows in the turn between the two frames alone.
+TEST(EvaluatePoses, CamerasThatLookTheWrongWayAreTold) {
+  const Scene truth = RandomScene(12, 9);
+  Scene solution = truth;
+  const Mat3 turn = RotationFromAngleAxis({0, RadFromDeg(35), 0});
+  for (auto& [id, pose] : solution.poses) pose.rotation *= turn.transpose();
+  const PoseEvaluation result =
+      EvaluatePoses(solution, GroundTruthFromScene(truth));
+  EXPECT_LT(result.position.max, 1e-11);
+  EXPECT_LT(result.rotation_deg.max, 1e-6);
+  EXPECT_NEAR(result.frame_disagreement_deg, 35, 1e-6);
+  EXPECT_THAT(ToText(result), HasSubstr("(degrees): 35"));
+}
+
 TEST(EvaluatePoses, SolvedCentresInOnePlaceGiveRotationsOnly) {
   const Scene truth = RandomScene(5, 8);
   Scene solution = truth;

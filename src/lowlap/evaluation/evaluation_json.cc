@@ -30,7 +30,8 @@ std::string ToJson(const PoseEvaluation& evaluation) {
                {"note", evaluation.note},
                {"num_total", evaluation.num_total},
                {"num_solved", evaluation.num_solved},
-               {"unsolved", evaluation.unsolved}};
+               {"unsolved", evaluation.unsolved},
+               {"without_truth", evaluation.without_truth}};
   if (evaluation.scope == EvaluationScope::kFull) {
     json["position"] = evaluation.position;
     json["scale"] = evaluation.truth_from_solution.scale;

@@ -34,6 +34,9 @@ std::string ToText(const PoseEvaluation& evaluation) {
   for (const std::string& name : evaluation.unsolved) {
     text += Format("%-24s %14s\n", name.c_str(), "not solved");
   }
+  for (const std::string& name : evaluation.without_truth) {
+    text += Format("%-24s %14s\n", name.c_str(), "no truth");
+  }
   text += Format("cameras: %d of %d\n", evaluation.num_solved,
                  evaluation.num_total);
   if (full) {
@@ -42,6 +45,12 @@ std::string ToText(const PoseEvaluation& evaluation) {
   }
   if (evaluation.scope != EvaluationScope::kNothing) {
     text += SummaryLine("rotation error (degrees)", evaluation.rotation_deg);
+  }
+  if (full) {
+    text += Format(
+        "turn between the frames of positions and of rotations (degrees): "
+        "%.6g\n",
+        evaluation.frame_disagreement_deg);
   }
   if (!evaluation.note.empty()) text += "note: " + evaluation.note + "\n";
   return text;

@@ -1,7 +1,10 @@
+#include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <set>
 
 #include "lowlap/evaluation/pose_errors.h"
 
@@ -24,6 +27,56 @@ std::string WithoutExtension(const std::string& name) {
 std::array<std::string, 4> NamesOf(const std::string& path) {
   const std::string base = path.substr(path.find_last_of('/') + 1);
   return {path, base, WithoutExtension(path), WithoutExtension(base)};
+}
+
+// The number that a file name ends in, as that of a frame.
+std::optional<std::uint64_t> NumberOf(const View& view) {
+  const std::string stem = NamesOf(view.filename)[3];
+  const std::size_t before = stem.find_last_not_of("0123456789");
+  const std::string digits =
+      before == std::string::npos ? stem : stem.substr(before + 1);
+  if (digits.empty() || digits.size() > 18) return std::nullopt;
+  return std::stoull(digits);
+}
+
+// The truth of the frames that the files are named by; empty if a name has no
+// number, or shares it.
+GroundTruth GroundTruthByNumber(const GroundTruth& by_id, const Scene& scene) {
+  GroundTruth truth;
+  std::set<std::uint64_t> used;
+  for (const auto& [id, view] : scene.views) {
+    const auto number = NumberOf(view);
+    if (!number || !used.insert(*number).second) return {};
+    if (*number >= kInvalidId) continue;
+    const auto found = by_id.find(static_cast<ViewId>(*number));
+    if (found != by_id.end()) truth.emplace(id, found->second);
+  }
+  return truth;
+}
+
+// Truths whose images have no names: by id, or by the numbers of the files,
+// whichever has more views, as programs count from zero or from one.
+Result<GroundTruth> GroundTruthWithoutNames(const GroundTruth& by_id,
+                                            const Scene& scene) {
+  GroundTruth of_ids;
+  for (const auto& entry : by_id) {
+    if (scene.views.count(entry.first) > 0) of_ids.insert(entry);
+  }
+  GroundTruth of_numbers = GroundTruthByNumber(by_id, scene);
+  if (of_numbers.size() > of_ids.size()) return of_numbers;
+  if (of_numbers.size() == of_ids.size() && of_numbers != of_ids) {
+    const auto differs = std::find_if(
+        scene.views.begin(), scene.views.end(), [](const auto& entry) {
+          return NumberOf(entry.second) != entry.first.value();
+        });
+    return MakeError(
+        ErrorCode::kInvalidScene,
+        "the true poses have no image names, and ids and file names tell "
+        "different views apart: view " +
+            std::to_string(differs->first.value()) + " is '" +
+            differs->second.PathBelowRoot() + "'");
+  }
+  return of_ids;
 }
 
 /// Which name of a view is held against which of a truth, the most exact first.
@@ -108,11 +161,15 @@ Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
     names_are_ids = names_are_ids && name == std::to_string(id.value());
     by_name.emplace(name, pose);
   }
-  if (by_name.empty() || by_name.size() < by_id.size()) return by_id;
+  if (by_name.empty() || by_name.size() < by_id.size()) {
+    return GroundTruthWithoutNames(by_id, scene);
+  }
   auto named = GroundTruthByName(scene, by_name);
   const bool is_nothing_named =
       !named && named.error().code == ErrorCode::kInsufficientData;
-  if (is_nothing_named && names_are_ids) return by_id;
+  if (is_nothing_named && names_are_ids) {
+    return GroundTruthWithoutNames(by_id, scene);
+  }
   return named;
 }
 

@@ -53,7 +53,12 @@ PoseEvaluation EvaluatePoses(const std::map<ViewId, View>& views,
   std::vector<CommonCamera> cameras;
   for (const auto& [id, view] : views) {
     const auto true_pose = truth.find(id);
-    if (true_pose == truth.end()) continue;
+    if (true_pose == truth.end()) {
+      if (poses.count(view.pose_id) > 0) {
+        result.without_truth.push_back(view.PathBelowRoot());
+      }
+      continue;
+    }
     ++result.num_total;
     if (const auto solved = poses.find(view.pose_id); solved != poses.end()) {
       cameras.push_back({&solved->second, &true_pose->second});

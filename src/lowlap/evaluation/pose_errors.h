@@ -28,9 +28,14 @@ Result<GroundTruth> GroundTruthByName(
 /// The poses of a scene (a simulated one, a reference solution) as truth.
 GroundTruth GroundTruthFromScene(const Scene& truth);
 
-/// The same for the views of another scene: by image name (GroundTruthByName),
-/// or by view id if two of its posed views share one, as those without names,
-/// or if no name matches and all are but ids, as timestamps may be.
+/// The same for the views of another scene: by image name (GroundTruthByName).
+/// Where two of its posed views share one, as those without names, or where no
+/// name matches and all are but ids, as timestamps may be, it goes by view id,
+/// or by the number that each file name ends in if that finds more views:
+/// COLMAP counts from one, and a list of poses from zero.
+///
+/// Errors: those of GroundTruthByName; kInvalidScene where ids and numbers find
+/// as many views, but different ones.
 Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
                                          const Scene& scene);
 
@@ -86,6 +91,9 @@ struct PoseEvaluation {
   int num_total = 0;   // views of the scene that have a true pose
   int num_solved = 0;  // of these, with a solved pose
   std::vector<std::string> unsolved;  // names of the others
+  /// Names of the solved views that have no true pose: nothing tells their
+  /// errors.
+  std::vector<std::string> without_truth;
   Similarity truth_from_solution;     // identity unless kFull
   double frame_disagreement_deg = 0;  // 0 unless kFull
   std::vector<ViewPoseError> views;   // the solved ones, by view id

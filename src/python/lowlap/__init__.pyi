@@ -171,6 +171,7 @@ class PoseEvaluation:
     num_total: int
     num_solved: int
     unsolved: List[str]
+    without_truth: List[str]
     truth_from_solution: Similarity
     views: List[ViewPoseError]
     position: ErrorStatistics

@@ -206,6 +206,10 @@ Result<CenteredModel> ModelFromScene(const Scene& scene, RadialForm form,
     const Pose* pose = scene.FindPose(id);
     CenteredCamera camera;
     camera.name = view.PathBelowRoot();
+    // Without gaps, places in the list do not tell ids.
+    if (camera.name.empty() && unsolved == Unsolved::kLeftOut) {
+      camera.name = "image" + std::to_string(id.value());
+    }
     if (pose != nullptr && scene.FindIntrinsic(id) != nullptr) {
       camera.pose = *pose;
       camera.camera = radial_cameras.at(view.intrinsic_id);

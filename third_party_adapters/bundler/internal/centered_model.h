@@ -56,9 +56,10 @@ Result<Scene> SceneFromModel(const CenteredModel& model, SceneNotes* notes);
 enum class Unsolved { kKept, kLeftOut };
 
 /// The cameras in the order of their ids and the points with their
-/// observations by solved views. Errors: kInvalidScene, and kUnsupported with
-/// the intrinsic that cannot be held (RadialFromIntrinsic); `notes` says how
-/// well the others are.
+/// observations by solved views. Where unsolved views are left out, each image
+/// has a name: image and the id of its view, where it has none. Errors:
+/// kInvalidScene, and kUnsupported with the intrinsic that cannot be held
+/// (RadialFromIntrinsic); `notes` says how well the others are.
 Result<CenteredModel> ModelFromScene(const Scene& scene, RadialForm form,
                                      Unsolved unsolved, SceneNotes* notes);
 

@@ -113,11 +113,9 @@ Result<CenteredModel> ParseNvm(std::string_view text, const std::string& file,
 
 Result<std::string> FormatNvm(const CenteredModel& model) {
   std::string text = "NVM_V3\n\n" + std::to_string(model.cameras.size()) + "\n";
-  for (std::size_t n = 0; n < model.cameras.size(); ++n) {
-    const CenteredCamera& camera = model.cameras[n];
+  for (const CenteredCamera& camera : model.cameras) {
     LOWLAP_RETURN_IF_ERROR(CheckListedName(camera.name));
-    text += (camera.name.empty() ? "image" + std::to_string(n) : camera.name) +
-            Format(" %.17g ", camera.camera.focal_px) +
+    text += camera.name + Format(" %.17g ", camera.camera.focal_px) +
             NumberText(QuaternionOf(camera.pose->rotation)) + " " +
             NumberText(camera.pose->center) +
             Format(" %.17g 0\n", camera.camera.k[0]);

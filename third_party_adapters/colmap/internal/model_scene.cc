@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <unordered_set>
 #include <utility>
 
 #include "lowlap/geometry/rigid_transform.h"
@@ -129,6 +130,21 @@ void AddImages(const Model& model, Scene* scene, SceneNotes* notes) {
   }
 }
 
+// A text that was cut between two lines looks whole.
+void CheckPointsAreThere(const Model& model) {
+  std::unordered_set<std::uint64_t> ids;
+  for (const Point3D& point : model.points) ids.insert(point.id);
+  for (const Image& image : model.images) {
+    for (std::size_t n = 0; n < image.points.size(); ++n) {
+      const std::uint64_t id = image.points[n].point3d;
+      if (id == kNoPoint3D || ids.count(id) > 0) continue;
+      FailInvalid(Numbered("image", image.id) + ": its point " +
+                  std::to_string(n) + " belongs to point " +
+                  std::to_string(id) + ", which is not there");
+    }
+  }
+}
+
 void AddPoints(const Model& model, Scene* scene, SceneNotes* notes) {
   std::map<ViewId, const Image*> images;
   for (const Image& image : model.images) images[image.id] = &image;
@@ -168,6 +184,7 @@ void AddPoints(const Model& model, Scene* scene, SceneNotes* notes) {
       FailInvalid(Numbered("point", point.id) + " is listed twice");
     }
   }
+  CheckPointsAreThere(model);
   sorter.Note(notes);
   AddNote(num_colored, "colours of points were left out", notes);
 }

@@ -68,12 +68,31 @@ class Exporter {
       : scene_(scene), notes_(*notes), shift_(IdShift(scene)) {}
 
   Model Export() {
+    CheckIds();
     AddImages();
     AddPoints();
     return std::move(model_);
   }
 
  private:
+  // The largest id is reserved, and the shift may reach it.
+  void CheckIds() const {
+    const auto check = [&](const char* what, std::uint32_t largest) {
+      if (shift_ > 0 && largest + shift_ >= kInvalidId) {
+        throw Failure{Error{ErrorCode::kUnsupported,
+                            "its id, counted from one, is reserved",
+                            {},
+                            what + std::to_string(largest)}};
+      }
+    };
+    if (!scene_.views.empty()) {
+      check("view ", scene_.views.rbegin()->first.value());
+    }
+    if (!scene_.intrinsics.empty()) {
+      check("intrinsic ", scene_.intrinsics.rbegin()->first.value());
+    }
+  }
+
   void AddImages() {
     std::size_t num_unposed = 0;
     for (const auto& [id, view] : scene_.views) {
@@ -100,7 +119,7 @@ class Exporter {
       image.camera_id = camera_id;
       image.name = view.PathBelowRoot();
       // A text without a name could not be read.
-      if (image.name.empty()) image.name = "image" + std::to_string(image.id);
+      if (image.name.empty()) image.name = "image" + std::to_string(id.value());
       if (const auto features = scene_.features.find(id);
           features != scene_.features.end()) {
         for (const Vec2& pixel : features->second.points_px) {
