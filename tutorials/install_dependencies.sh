@@ -9,7 +9,7 @@ set -euo pipefail
 packages=(
   g++ cmake ninja-build
   libeigen3-dev libceres-dev libsuitesparse-dev coinor-libclp-dev
-  libopencv-dev libopencv-contrib-dev libexif-dev
+  libopencv-dev libopencv-contrib-dev libexif-dev libjpeg-dev
   libflann-dev liblz4-dev
   nlohmann-json3-dev libcereal-dev libcli11-dev libexpected-dev
   zlib1g-dev libxxhash-dev libsqlite3-dev

@@ -20,7 +20,8 @@ void AddCommonFlags(CLI::App* command, CommonFlags* flags) {
       .Must(Check::WholeNumber())
       .ShowDefault();
   AddFlag(command, "-v,--verbose", flags->verbose, "Say more while working");
-  AddFlag(command, "-q,--quiet", flags->quiet, "No progress, no notes");
+  AddFlag(command, "-q,--quiet", flags->quiet,
+          "No progress, no notes; warnings remain");
 }
 
 RunContext MakeContext(const CommonFlags& flags) {
@@ -28,7 +29,8 @@ RunContext MakeContext(const CommonFlags& flags) {
   context.num_threads = flags.threads;
   context.seed = flags.seed;
   context.log = [flags](LogLevel level, const std::string& message) {
-    if (flags.quiet || (level == LogLevel::kDebug && !flags.verbose)) return;
+    if (flags.quiet && level != LogLevel::kWarning) return;
+    if (level == LogLevel::kDebug && !flags.verbose) return;
     const char* prefix = level == LogLevel::kWarning ? "warning: " : "";
     std::fprintf(stderr, "%s%s\n", prefix, Printable(message).c_str());
   };

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "cli/command.h"
+#include "cli/flags/distinct_files.h"
 #include "cli/flags/scene_input.h"
 #include "cli/flags/solve_flags.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
@@ -24,6 +25,8 @@ struct DiagnoseFlags {
 };
 
 Result<int> RunDiagnose(const DiagnoseFlags& flags) {
+  LOWLAP_RETURN_IF_ERROR(CheckDistinct({{"the scene", flags.input.scene}},
+                                       {{"--json", flags.json}}));
   const RunContext context = MakeContext(flags.common);
   LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeScaleOptions(flags.scale));
   LOWLAP_RETURN_IF_ERROR(flags.diagnosis.Validate());

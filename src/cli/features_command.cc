@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "cli/flags/distinct_files.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/features/internal/features.h"
 #include "lowlap/features/internal/overlay.h"
@@ -30,6 +31,8 @@ class Stopwatch {
 };
 
 Result<int> Features(const FeaturesFlags& flags) {
+  LOWLAP_RETURN_IF_ERROR(
+      CheckDistinct({{"the image", flags.image}}, {{"--draw", flags.draw}}));
   const bool both = flags.points == flags.lines;
   LOWLAP_ASSIGN_OR_RETURN(const auto image, ReadGrayImage(flags.image));
   const double megapixels = 1e-6 * image.width * image.height;

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cli/command.h"
+#include "cli/flags/distinct_files.h"
 #include "cli/flags/scene_input.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/atomic_file.h"
@@ -93,6 +94,8 @@ void PrintGroups(const RigidityReport& report, const Scene& scene) {
 }
 
 Result<int> Inspect(const InspectFlags& flags) {
+  LOWLAP_RETURN_IF_ERROR(CheckDistinct({{"the scene", flags.input.scene}},
+                                       {{"--json", flags.json}}));
   const RunContext context = MakeContext(flags.common);
   StageLog stages;
   LOWLAP_ASSIGN_OR_RETURN(const auto loaded,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/flags/distinct_files.h"
 #include "cli/flags/scene_input.h"
 #include "cli/flags/solve_flags.h"
 #include "cli/flags/truth.h"
@@ -110,6 +111,9 @@ void PrintTable(const std::vector<ScaleRatio>& ratios) {
 }
 
 Result<int> Scales(const ScalesFlags& flags) {
+  LOWLAP_RETURN_IF_ERROR(
+      CheckDistinct({{"the scene", flags.input.scene}},
+                    {{"--json", flags.json}, {"--profile", flags.profile}}));
   const RunContext context = MakeContext(flags.common);
   LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeScaleOptions(flags.scale));
   StageLog stages;

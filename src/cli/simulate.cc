@@ -1,9 +1,8 @@
 #include <cstdio>
-#include <filesystem>
 #include <memory>
-#include <system_error>
 
 #include "cli/command.h"
+#include "cli/flags/distinct_files.h"
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/synthetic/synthetic_scene.h"
@@ -28,25 +27,25 @@ Result<int> RunSimulation(const SimulateFlags& flags) {
                          "'; known: room, corridor, ring, cloud, planar, "
                          "collinear, pure_rotation, twins");
   }
-  std::error_code ignored;
-  const auto place = [&](const std::string& path) {
-    return std::filesystem::weakly_canonical(path, ignored);
-  };
-  if (!flags.truth.empty() && place(flags.truth) == place(flags.output)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "--truth and --output name one file", flags.truth);
-  }
+  LOWLAP_RETURN_IF_ERROR(CheckDistinct(
+      {}, {{"--truth", flags.truth}, {"--output", flags.output}}));
   SyntheticOptions options = flags.options;
   options.kind = *kind;
   options.seed = flags.common.seed;
   LOWLAP_ASSIGN_OR_RETURN(const auto synthetic, Simulate(options));
   FileSet files;
-  LOWLAP_RETURN_IF_ERROR(WriteScene(synthetic.scene, flags.output, {}, &files));
+  LOWLAP_ASSIGN_OR_RETURN(
+      const SceneNotes notes,
+      WriteScene(synthetic.scene, flags.output, {}, &files));
   if (!flags.truth.empty()) {
     LOWLAP_RETURN_IF_ERROR(
         WriteScene(TrueSolution(synthetic), flags.truth, {}, &files));
   }
   LOWLAP_RETURN_IF_ERROR(files.Commit());
+  const RunContext context = MakeContext(flags.common);
+  for (const std::string& note : notes) {
+    context.Log(LogLevel::kWarning, note);
+  }
   std::printf(
       "%zu views, %zu pairs, %zu point tracks, %zu line tracks\n",
       synthetic.scene.views.size(), synthetic.scene.relative_poses.size(),

@@ -18,8 +18,10 @@ find_package(SQLite3 3.40 REQUIRED)
 # xxHash is compiled into core from its header.
 find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
 # libexif and Clp have no CMake package; they are linked by their names, as
-# -lexif and -lClp.
+# -lexif and -lClp, and so is libjpeg, whose target the installed package would
+# have to find again.
 find_library(LIBEXIF_LIBRARY exif REQUIRED)
+find_library(LIBJPEG_LIBRARY jpeg REQUIRED)
 find_library(CLP_LIBRARY Clp REQUIRED)
 find_library(COINUTILS_LIBRARY CoinUtils REQUIRED)
 # Neither has SuiteSparse: -lcholmod.
@@ -43,4 +45,4 @@ endif()
 set(LOWLAP_DEVELOPMENT_PACKAGES
     libeigen3-dev libceres-dev libsuitesparse-dev coinor-libclp-dev
     libopencv-dev libopencv-contrib-dev libflann-dev libexif-dev libexpected-dev
-    zlib1g-dev libsqlite3-dev)
+    libjpeg-dev zlib1g-dev libsqlite3-dev)

@@ -72,6 +72,14 @@ TEST_F(BadInput, OptionsThatWouldBeIgnored) {
   ExpectRefused(
       "simulate -o " + Path("out") + " --truth " + folder_.string() + "/./out",
       "name one file");
+  // Nothing is written over what is read.
+  for (const char* command : {"inspect ", "scales ", "diagnose "}) {
+    ExpectRefused(command + Room() + " --json " + Room(), "name one file");
+  }
+  ExpectRefused("scales " + Room() + " --json " + Path("out") + " --profile " +
+                    folder_.string() + "/./out",
+                "--json and --profile name one file");
+  ExpectRefused("features " + Room() + " --draw " + Room(), "name one file");
   // The other studies have their own strategies and simulations.
   for (const char* study : {"--trust", "--look-alikes"}) {
     for (const char* of_curves : {"--strategies lud", "--seeds 3",

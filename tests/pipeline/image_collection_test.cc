@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -364,6 +365,21 @@ TEST_F(ImageCollection, ViewsAreFoundByNameStemOrId) {
   ASSERT_TRUE(views);
   EXPECT_EQ(*views, (std::vector<ViewId>{0, 1, 2}));
   EXPECT_FALSE(FindViews(*scene, {"d"}));
+}
+
+TEST_F(ImageCollection, AFocalLengthInMillimetresIsToldFromPixels) {
+  AddImage("a.png", 120, 80);
+  AddImage("b.png", 120, 80);
+  for (const auto& [focal_px, is_told] : std::map<double, bool>{
+           {20, true}, {24, false}, {3600, false}, {3700, true}}) {
+    std::vector<std::string> notes;
+    ASSERT_TRUE(SceneFromImages(folder_.string(), Focal(focal_px), {}, &notes));
+    const bool is_there =
+        std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+          return note.find("millimetres") != std::string::npos;
+        });
+    EXPECT_EQ(is_there, is_told) << focal_px;
+  }
 }
 
 }  // namespace

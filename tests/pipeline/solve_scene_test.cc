@@ -143,6 +143,21 @@ TEST(SolveScene, InvalidOptionsAreRefusedBeforeAnythingChanges) {
   EXPECT_TRUE(synthetic.scene == original);
 }
 
+TEST(SolveScene, NamesViewsWithoutAnIntrinsic) {
+  SyntheticScene synthetic = *Simulate(SyntheticOptions());
+  synthetic.scene.views.at(1).intrinsic_id = kInvalidId;
+  std::vector<std::string> warnings;
+  RunContext context;
+  context.log = [&](LogLevel level, const std::string& message) {
+    if (level == LogLevel::kWarning) warnings.push_back(message);
+  };
+  StageLog stages;
+  ASSERT_TRUE(SolveScene(&synthetic.scene, SolveOptions(), context, &stages));
+  EXPECT_THAT(warnings, ::testing::Contains(::testing::AllOf(
+                            ::testing::HasSubstr("no intrinsic"),
+                            ::testing::HasSubstr(synthetic.scene.NameOf(1)))));
+}
+
 TEST(SolveScene, CancellingStopsTheRun) {
   SyntheticScene synthetic = *Simulate(SyntheticOptions());
   RunContext context;

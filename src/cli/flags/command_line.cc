@@ -86,7 +86,8 @@ Option Option::ShowType(const std::string& text) {
 }
 
 Option Option::SeparatedBy(char separator) {
-  option_->delimiter(separator);
+  // One word; the next is another argument.
+  option_->delimiter(separator)->allow_extra_args(false);
   return *this;
 }
 

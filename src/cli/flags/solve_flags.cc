@@ -356,6 +356,11 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
     std::printf("and the scene to %s\n", output.scene_file.c_str());
   }
   const PoseSummary& poses = summary.solve->poses;
+  if (poses.num_placed == 0) {
+    return MakeError(ErrorCode::kInsufficientData,
+                     "no camera is placed; report.html says what is missing",
+                     input);
+  }
   return flags.strict && CountFirm(poses) < poses.num_views ? kNotFirm : 0;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
+#include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/believed_evidence.h"
 #include "lowlap/pipeline/internal/check_directions.h"
@@ -52,6 +53,23 @@ RatioSummary SummarizeRatios(const std::vector<ScaleRatio>& ratios) {
 }
 
 namespace {
+
+// Nothing else would say why these take no part: a scene without intrinsics is
+// a good one for poses that do not need them.
+void WarnOfMissingIntrinsics(const Scene& scene, const RunContext& context) {
+  std::vector<ViewId> missing;
+  for (const auto& [id, view] : scene.views) {
+    if (scene.FindIntrinsic(id) == nullptr) missing.push_back(id);
+  }
+  if (missing.empty()) return;
+  context.Log(LogLevel::kWarning,
+              std::to_string(missing.size()) + " of " +
+                  std::to_string(scene.views.size()) +
+                  " views have no intrinsic, so that nothing that they see "
+                  "counts: " +
+                  Joined(missing, ", ",
+                         [&](ViewId view) { return scene.NameOf(view); }));
+}
 
 // The triplets of the relative poses that are believed: the others have no
 // part in the solution, so their ratios would be computed for nothing.
@@ -144,6 +162,7 @@ StructurePositions PositionsOf(const Scene& scene) {
 Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
                                  const RunContext& context, StageLog* stages) {
   const StageLog::Scope scope(stages, "rotations");
+  WarnOfMissingIntrinsics(*scene, context);
   SolveStart start;
   LOWLAP_ASSIGN_OR_RETURN(auto matches,
                           CheckDirections(scene, options.poses, context));

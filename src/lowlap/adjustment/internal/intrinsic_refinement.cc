@@ -36,7 +36,7 @@ std::string Changes(const Intrinsic& before, const Intrinsic& after) {
                 {before.principal_point_px.x(), before.principal_point_px.y()},
                 {after.principal_point_px.x(), after.principal_point_px.y()},
                 "%.2f") +
-         Change("distortion", coefficients, after.distortion, "%.5f");
+         Change("distortion", coefficients, after.distortion, "%.3g");
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/features/internal/image_head.h"
+#include "lowlap/features/internal/jpeg_damage.h"
 #include "lowlap/features/internal/opencv.h"
 
 namespace lowlap {
@@ -65,6 +66,10 @@ Result<GrayImage> ReadGrayImage(const std::string& path) {
 Result<GrayImage> DecodeGrayImage(const std::string& bytes,
                                   const std::string& path) {
   LOWLAP_RETURN_IF_ERROR(CheckedSize(bytes, path));
+  if (const auto damage = JpegDamage(bytes)) {
+    return MakeError(ErrorCode::kParse,
+                     "a part of the image is lost: " + *damage, path);
+  }
   return ReadWithOpenCv(path, [&]() -> Result<GrayImage> {
     GrayImage image;
     LOWLAP_ASSIGN_OR_RETURN(const cv::Mat pixels,

@@ -81,6 +81,11 @@ bool HasShapeOf(const ImageSize& size, const ImageSize& of) {
          fits(static_cast<double>(size.height_px) / of.height_px);
 }
 
+bool IsPlausibleFocal(double focal_px, const ImageSize& size) {
+  const int longer_px = std::max(size.width_px, size.height_px);
+  return focal_px >= 0.2 * longer_px && focal_px <= 30 * longer_px;
+}
+
 double PrincipalPointOffset(const Intrinsic& intrinsic, const ImageSize& size) {
   const Vec2 middle(0.5 * (size.width_px - 1), 0.5 * (size.height_px - 1));
   const Vec2 offset = intrinsic.principal_point_px - middle;

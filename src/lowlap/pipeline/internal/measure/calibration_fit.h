@@ -22,6 +22,11 @@ std::optional<Intrinsic> Turned(const Intrinsic& intrinsic, QuarterTurn turn);
 /// Whether `size` is `of` shrunk or enlarged: the same shape to within a pixel.
 bool HasShapeOf(const ImageSize& size, const ImageSize& of);
 
+/// Whether a focal length is one of a lens without distortion: 136 degrees of
+/// view at most along the longer side, and two at least. Millimetres are not,
+/// nor are lengths from the resolution of a print.
+bool IsPlausibleFocal(double focal_px, const ImageSize& size);
+
 /// How far a principal point lies from the middle of an image, as a share of
 /// its width or height, whichever is more.
 double PrincipalPointOffset(const Intrinsic& intrinsic, const ImageSize& size);

@@ -9,6 +9,7 @@
 
 #include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/measure/calibration_fit.h"
 
 namespace lowlap {
 namespace {
@@ -43,13 +44,6 @@ std::optional<double> PositiveNumber(ExifData* data, ExifTag tag,
   }
   if (!(value > 0)) return std::nullopt;
   return value;
-}
-
-// Resolutions of a print, say, are no sensor's: 136 degrees of view at most,
-// and two at least.
-bool IsPlausible(double focal_px, const ImageSize& size) {
-  const int longer_px = std::max(size.width_px, size.height_px);
-  return focal_px >= 0.2 * longer_px && focal_px <= 30 * longer_px;
 }
 
 // Millimetres per unit of the focal plane's resolution; inches unless told.
@@ -99,7 +93,8 @@ Result<ExifGeometry> ReadExif(const std::string& path, const ImageSize& size) {
       &exif_data_unref);
   if (data == nullptr) return geometry;
   const auto plausible = [&](std::optional<double> focal_px) {
-    return focal_px && IsPlausible(*focal_px, size) ? focal_px : std::nullopt;
+    return focal_px && IsPlausibleFocal(*focal_px, size) ? focal_px
+                                                         : std::nullopt;
   };
   geometry.focal_px = plausible(FocalFromSensor(data.get(), size));
   if (const auto film_px = plausible(FocalFromFilm(data.get(), size));

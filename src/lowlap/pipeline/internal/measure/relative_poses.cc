@@ -26,11 +26,14 @@ Result<std::map<ViewId, ViewMeasurements>> MeasureViews(
   std::vector<ViewId> views;
   for (const auto& entry : measurements) {
     const ViewId view = entry.first;
-    if (scene.FindIntrinsic(view) == nullptr ||
-        scene.features.count(view) == 0) {
+    const char* missing = scene.FindIntrinsic(view) == nullptr ? "intrinsic"
+                          : scene.features.count(view) == 0    ? "features"
+                                                               : nullptr;
+    if (missing != nullptr) {
       return MakeError(ErrorCode::kInvalidArgument,
-                       "view " + std::to_string(view.value()) +
-                           " is matched but has no intrinsic or no features");
+                       scene.NameOf(view) + " (view " +
+                           std::to_string(view.value()) +
+                           ") is matched but has no " + missing);
     }
     views.push_back(view);
   }
