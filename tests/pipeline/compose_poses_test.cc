@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "lowlap/core/internal/random.h"
@@ -109,6 +110,31 @@ TEST(ComposePoses, KeepsARelativePoseThatIsALittleOffIfItFixesAScale) {
   ASSERT_TRUE(summary);
   EXPECT_EQ(summary->num_placed, 9);
   EXPECT_TRUE(summary->outlier_edges.empty());
+}
+
+// Both attempts can be stopped; neither takes the other's place then.
+TEST(ComposePoses, IsCancelledWheneverTheHostStops) {
+  const MadeScene made = RingWithATriangle();
+  const PoseOptions options;
+  const auto rotations =
+      AverageSceneRotations(made.scene, options, RunContext());
+  ASSERT_TRUE(rotations);
+  int num_asked = 0;
+  for (int stop_at = 0;; ++stop_at) {
+    num_asked = 0;
+    RunContext context;
+    context.progress = [&](const std::string&, std::size_t, std::size_t) {
+      return num_asked++ < stop_at;
+    };
+    Scene scene = made.scene;
+    StageLog stages;
+    const auto summary =
+        ComposePoses(&scene, *rotations, options, context, &stages);
+    if (num_asked <= stop_at) break;  // it was never stopped
+    ASSERT_FALSE(summary) << stop_at;
+    EXPECT_EQ(summary.error().code, ErrorCode::kCancelled);
+  }
+  EXPECT_GT(num_asked, 10);
 }
 
 }  // namespace

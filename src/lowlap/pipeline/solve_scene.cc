@@ -207,10 +207,16 @@ Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
   PoseOptions strict = options;
   strict.least_false_deg = 0;
   auto fewer = AverageSceneRotations(*scene, strict, context);
-  if (!fewer) return all;
+  if (!fewer) {
+    if (fewer.error().code == ErrorCode::kCancelled) {
+      return tl::unexpected<Error>(fewer.error());
+    }
+    return all;
+  }
   AddMatchVerdicts(rotations.matches, &*fewer);
   const std::map<PoseId, Pose> poses = scene->poses;
   auto solved = SolveScenePoses(scene, *fewer, strict, context);
+  if (!solved && solved.error().code == ErrorCode::kCancelled) return solved;
   if (solved && solved->num_placed >= all->num_placed &&
       solved->IsDoubtful() <= all->IsDoubtful() &&
       CountScaleParts(*scene, *solved) <= CountScaleParts(*scene, *all)) {
