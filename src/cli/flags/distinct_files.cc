@@ -11,8 +11,10 @@ namespace fs = std::filesystem;
 bool IsSameFile(const std::string& a, const std::string& b) {
   if (a.empty() || b.empty()) return false;
   std::error_code ignored;
-  return fs::equivalent(a, b, ignored) ||
-         fs::weakly_canonical(a, ignored) == fs::weakly_canonical(b, ignored);
+  if (fs::equivalent(a, b, ignored)) return true;
+  // Files that are not there yet.
+  const fs::path place = fs::weakly_canonical(a, ignored);
+  return !place.empty() && place == fs::weakly_canonical(b, ignored);
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ struct NamedFile {
   std::string path;
 };
 
-/// That nothing is written over an input, nor twice. Names differ where files
-/// do: links and "." are followed. Error: kInvalidArgument.
+/// That nothing is written over an input, nor twice. What counts is the file,
+/// not its name: links and "." are followed. Error: kInvalidArgument.
 Status CheckDistinct(const std::vector<NamedFile>& inputs,
                      const std::vector<NamedFile>& outputs);
 
