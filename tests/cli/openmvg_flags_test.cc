@@ -67,14 +67,6 @@ TEST_F(OpenMvgFlags, MeanWhatLowlapsOwnMean) {
   EXPECT_NE(all, adjusted);
 }
 
-TEST_F(OpenMvgFlags, ListsLeaveTheNextArgumentAlone) {
-  for (const char* list : {"--exclude 0 ", "--features points,lines "}) {
-    const Outcome solved =
-        Lowlap("solve " + std::string(list) + Room() + " -o " + Path("out"));
-    EXPECT_EQ(solved.exit_code, 0) << solved.output;
-  }
-}
-
 TEST_F(OpenMvgFlags, NameASceneFileOfOpenMvgToWrite) {
   const std::string file = Path("out/solved.bin");
   const Outcome solved =

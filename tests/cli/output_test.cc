@@ -151,5 +151,37 @@ TEST_F(Output, StrictIsForWhatIsNotBeyondDoubt) {
   EXPECT_EQ(FilesIn("parts"), 5u);
 }
 
+TEST_F(Output, ListsLeaveTheNextArgumentAlone) {
+  for (const std::string list :
+       {"inspect --exclude 0 ", "scales --features points,lines "}) {
+    const Outcome outcome = Lowlap(list + Path("room.lowlap"));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  }
+}
+
+TEST_F(Output, QuietLeavesWarnings) {
+  for (const std::string& command :
+       {"convert " + Path("room.lowlap") + " " + Path("room.ply"),
+        "simulate --views 4 --points 20 --lines 20 -o " + Path("room.bin")}) {
+    const Outcome quiet = Lowlap(command + " -q");
+    EXPECT_EQ(quiet.exit_code, 0) << quiet.output;
+    EXPECT_THAT(quiet.output, HasSubstr("cannot hold")) << command;
+  }
+}
+
+// Directions alone do not say how long the steps of a chain are.
+TEST_F(Output, ASolutionWithoutCamerasIsAFailure) {
+  ASSERT_EQ(
+      Lowlap("simulate --views 4 --pairs chain --points 20 --lines 20 -o " +
+             Path("chain.lowlap"))
+          .exit_code,
+      0);
+  const Outcome solved = Lowlap("solve " + Path("chain.lowlap") +
+                                " --strategy lud -o " + Path("out"));
+  EXPECT_EQ(solved.exit_code, 1);
+  EXPECT_THAT(solved.output, HasSubstr("chain.lowlap: no camera is placed"));
+  EXPECT_TRUE(fs::exists(Path("out/report.html")));
+}
+
 }  // namespace
 }  // namespace lowlap

@@ -8,6 +8,7 @@
 #include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/scene/validation.h"
+#include "third_party_adapters/internal/image_name.h"
 #include "third_party_adapters/internal/landmarks.h"
 
 namespace lowlap::bundler {
@@ -205,11 +206,9 @@ Result<CenteredModel> ModelFromScene(const Scene& scene, RadialForm form,
   for (const auto& [id, view] : scene.views) {
     const Pose* pose = scene.FindPose(id);
     CenteredCamera camera;
-    camera.name = view.PathBelowRoot();
-    // Without gaps, places in the list do not tell ids.
-    if (camera.name.empty() && unsolved == Unsolved::kLeftOut) {
-      camera.name = "image" + std::to_string(id.value());
-    }
+    // Where views are left out, places in the list do not tell ids.
+    camera.name = unsolved == Unsolved::kLeftOut ? ImageName(id, view)
+                                                 : view.PathBelowRoot();
     if (pose != nullptr && scene.FindIntrinsic(id) != nullptr) {
       camera.pose = *pose;
       camera.camera = radial_cameras.at(view.intrinsic_id);

@@ -8,6 +8,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/io/internal/failure.h"
 #include "third_party_adapters/colmap/internal/model_scene.h"
+#include "third_party_adapters/internal/image_name.h"
 #include "third_party_adapters/internal/landmarks.h"
 
 namespace lowlap::colmap {
@@ -117,9 +118,7 @@ class Exporter {
       image.id = id.value() + shift_;
       image.cam_from_world = StablePose(*pose);
       image.camera_id = camera_id;
-      image.name = view.PathBelowRoot();
-      // A text without a name could not be read.
-      if (image.name.empty()) image.name = "image" + std::to_string(id.value());
+      image.name = ImageName(id, view);
       if (const auto features = scene_.features.find(id);
           features != scene_.features.end()) {
         for (const Vec2& pixel : features->second.points_px) {

@@ -11,6 +11,7 @@
 #include "third_party_adapters/colmap/internal/model_scene.h"
 #include "third_party_adapters/colmap/internal/scene_format.h"
 #include "third_party_adapters/internal/file_lines.h"
+#include "third_party_adapters/internal/image_name.h"
 #include "third_party_adapters/internal/landmarks.h"
 #include "third_party_adapters/limap/internal/folder_layout.h"
 #include "third_party_adapters/limap/internal/line_folder.h"
@@ -111,7 +112,7 @@ class LineFolderWriter {
     std::string text =
         "number of images, " + std::to_string(scene_.views.size()) + "\n";
     for (const auto& [id, view] : scene_.views) {
-      const std::string name = view.PathBelowRoot();
+      const std::string name = ImageName(id, view);
       LOWLAP_RETURN_IF_ERROR(colmap::CheckImageName(
           FileId(id), name, {"\r\n\0", 3}, (folder_ / kImageList).string()));
       text += std::to_string(FileId(id)) + ", " + name + "\n";

@@ -12,7 +12,8 @@ namespace lowlap {
 namespace {
 
 constexpr int kMaxScans = 100;
-// Some writers leave as many bytes between the image and its end.
+// Writers leave a few bytes between the image and its end; an image that damage
+// completes too early leaves far more.
 constexpr int kFewBytes = 64;
 
 // What libjpeg calls back; it knows the parts alone. Nothing with a destructor
