@@ -1,5 +1,6 @@
 #include "lowlap/pipeline/solve_scene.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -140,16 +140,16 @@ class Refiner {
     for (const std::size_t e : edges_) {
       const std::size_t a = block_of_view_[problem_.edges[e].first];
       const std::size_t b = block_of_view_[problem_.edges[e].second];
-      places.push_back({a, a});
-      places.push_back({b, b});
-      places.push_back({std::max(a, b), std::min(a, b)});
+      places.emplace_back(a, a);
+      places.emplace_back(b, b);
+      places.emplace_back(std::max(a, b), std::min(a, b));
     }
     for (const RatioMeasurement* ratio : ratios_) {
       for (const std::size_t view_a : ViewsOf(*ratio)) {
         for (const std::size_t view_b : ViewsOf(*ratio)) {
           const std::size_t a = block_of_view_[view_a];
           const std::size_t b = block_of_view_[view_b];
-          if (a >= b) places.push_back({a, b});
+          if (a >= b) places.emplace_back(a, b);
         }
       }
     }
