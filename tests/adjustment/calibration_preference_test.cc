@@ -111,6 +111,30 @@ TEST(CalibrationPreferenceTest, NamesThePartThatIsWrongAndByHowMuch) {
   }
 }
 
+// To first order the images may want a focal length below zero.
+TEST(CalibrationPreferenceTest, WhatIsPreferredIsALens) {
+  int num_preferences = 0;
+  for (const double factor : {0.3, 0.5, 2.0, 4.0}) {
+    TestScene test = MakeTestScene(RichScene());
+    Intrinsic& held = test.scene.intrinsics.at(kIntrinsic);
+    held.fx_px *= factor;
+    held.fy_px *= factor;
+    const auto summary = Adjusted(&test.scene, {});
+    for (const auto& preference : summary.calibration_preferences) {
+      ++num_preferences;
+      const Intrinsic& preferred = preference.preferred;
+      EXPECT_GE(preferred.fx_px, 0.499 * held.fx_px) << factor;
+      EXPECT_GE(preferred.fy_px, 0.249 * held.fy_px) << factor;
+      EXPECT_LE(preferred.fx_px, 2.001 * held.fx_px) << factor;
+      EXPECT_LE(preferred.fy_px, 4.001 * held.fy_px) << factor;
+      EXPECT_LE((preferred.principal_point_px - held.principal_point_px).norm(),
+                0.36 * held.ImageDiagonal())
+          << factor;
+    }
+  }
+  EXPECT_GT(num_preferences, 0);
+}
+
 TEST(CalibrationPreferenceTest, PinholesAreTestedForADistortion) {
   TestSceneOptions options = RichScene();
   options.model = CameraModel::kRadialK1;

@@ -178,6 +178,36 @@ TEST(CenterCovariances, OneThatIsHardlyKnownBlursNoOther) {
   }
 }
 
+// Two points leave a valley along which nothing holds the view.
+TEST(CenterCovariances, OneThatNothingHoldsBlursNoOther) {
+  TestScene test = MakeTestScene(NoisyScene());
+  test.scene.relative_poses.clear();
+  test.scene.scale_ratios.clear();
+  test.scene.line_tracks.clear();
+  TestScene poor = test;
+  const ViewId last = poor.scene.views.rbegin()->first;
+  int kept = 0;
+  for (auto& [id, track] : poor.scene.point_tracks) {
+    track.erase(std::remove_if(track.begin(), track.end(),
+                               [&](const FeatureRef& seen) {
+                                 return seen.view == last &&
+                                        (track.size() < 4 || ++kept > 2);
+                               }),
+                track.end());
+  }
+  BuildAndAdjust(&test.scene);
+  BuildAndAdjust(&poor.scene);
+  const PoseId of_last = poor.scene.views.at(last).pose_id;
+  for (const auto& [id, pose] : poor.scene.poses) {
+    const double before = Stddev(test.scene.poses.at(id));
+    if (id == of_last) {
+      EXPECT_GT(Stddev(pose), 100 * before);
+    } else {
+      EXPECT_LT(Stddev(pose), 3 * before);
+    }
+  }
+}
+
 TEST(CenterCovariances, NoneWithoutAThirdPoseOrIfNotAskedFor) {
   TestSceneOptions options = NoisyScene();
   options.num_views = 2;

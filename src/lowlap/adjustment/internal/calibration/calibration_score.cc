@@ -121,10 +121,12 @@ bool ComputeScore(const LinearisedProblem& linearised,
 }  // namespace
 
 void ChangePart(IntrinsicPart part, const VecX& change, Intrinsic* intrinsic) {
-  if (part == &IntrinsicRefinement::focal) intrinsic->fx_px *= 1 + change(0);
+  if (part == &IntrinsicRefinement::focal) {
+    intrinsic->fx_px *= std::exp(change(0));
+  }
   if (part == &IntrinsicRefinement::focal ||
       part == &IntrinsicRefinement::aspect_ratio) {
-    intrinsic->fy_px *= 1 + change(0);
+    intrinsic->fy_px *= std::exp(change(0));
   } else if (part == &IntrinsicRefinement::principal_point) {
     intrinsic->principal_point_px += intrinsic->ImageDiagonal() * change;
   } else {

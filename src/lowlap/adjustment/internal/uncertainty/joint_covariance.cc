@@ -96,18 +96,24 @@ std::vector<Mat3> CovariancesWithoutGauge(const JointCovariance& joint,
   const Motions motions = MotionsBySimilarity(centers);
   Eigen::VectorXd weights = Eigen::VectorXd::Ones(motions.rows());
   std::vector<Mat3> free;
-  constexpr int kIterations = 5;
-  for (int iteration = 0; iteration < kIterations; ++iteration) {
+  constexpr int kMaxIterations = 100;
+  constexpr double kSettled = 1e-3;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     free = WithoutSimilarity(joint, blocks, motions, weights);
     std::vector<double> variances;
     variances.reserve(free.size());
     for (const Mat3& block : free) variances.push_back(block.trace());
     const double typical = Median(variances);
     if (!(typical > 0)) break;
+    Eigen::VectorXd next = weights;
     for (std::size_t n = 0; n < free.size(); ++n) {
-      weights.segment<3>(3 * static_cast<Eigen::Index>(n))
+      next.segment<3>(3 * static_cast<Eigen::Index>(n))
           .setConstant(typical / (typical + variances[n]));
     }
+    const double change =
+        ((next - weights).array() / next.array()).abs().maxCoeff();
+    weights = std::move(next);
+    if (change < kSettled) break;
   }
   return free;
 }
