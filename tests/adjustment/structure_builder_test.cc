@@ -351,6 +351,23 @@ TEST(StructureBuilderTest, SameForAnyNumberOfThreads) {
   EXPECT_TRUE(one.scene == many.scene);
 }
 
+TEST(StructureBuilderTest, SameInAnyUnitOfTheWorld) {
+  TestSceneOptions options;
+  options.noise_px = 0.3;
+  TestScene test = MakeTestScene(options);
+  const auto summary = BuildStructure(&test.scene, {}, {});
+  ASSERT_THAT(summary, IsOk());
+  ASSERT_GT(summary->lines.landmarks, 0u);
+  for (const double scale : {1e-6, 1e6}) {
+    Scene scaled =
+        test::Transformed(test.scene, {scale, Mat3::Identity(), Vec3::Zero()});
+    const auto of_scaled = BuildStructure(&scaled, {}, {});
+    ASSERT_THAT(of_scaled, IsOk());
+    EXPECT_EQ(of_scaled->points.landmarks, summary->points.landmarks) << scale;
+    EXPECT_EQ(of_scaled->lines.landmarks, summary->lines.landmarks) << scale;
+  }
+}
+
 TEST(StructureBuilderTest, DistortedAndPanoramicViews) {
   for (const auto& [model, distortion] :
        {std::pair(CameraModel::kBrownT2,

@@ -102,8 +102,8 @@ class FacetFinder {
     for (int n = 0; n < kNumHypotheses; ++n) Draw(&random);
   }
 
-  // Members only become fewer, and a score only worse: one that is computed
-  // anew and still the least is the least of all.
+  // Members only become fewer, and a score hardly ever better: one that is
+  // computed anew and still the least is taken for the least of all.
   std::vector<Facet> Run() {
     std::vector<PlaneScore> scores;
     for (const Hypothesis& hypothesis : hypotheses_) {

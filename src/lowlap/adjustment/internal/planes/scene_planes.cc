@@ -130,6 +130,7 @@ class PlaneBuilder {
     state->thickness = thickest;
     state->log10_nfa = facets.front()->log10_nfa;
     std::vector<PlaneMember> tied;
+    std::vector<int> indices;
     const auto add = [&](int index, double looseness) {
       if (taken_[index] != 0) return;
       taken_[index] = 1;
@@ -138,13 +139,17 @@ class PlaneBuilder {
           .push_back({landmark.index, looseness});
       state->anchor += landmark.Center();
       tied.push_back({&landmark, looseness * thickest});
+      indices.push_back(index);
     };
     for (const Facet* facet : facets) {
       const double off = std::hypot(facet->thickness,
                                     DistanceBetween(landmarks_, *facet, plane));
       for (const int member : facet->members) add(member, off / thickest);
     }
-    if (tied.size() < kMinTies) return false;
+    if (tied.size() < kMinTies) {
+      for (const int index : indices) taken_[index] = 0;
+      return false;
+    }
     const std::size_t part = PartOf(*facets.front(), parts_);
     for (std::size_t n = 0; n < landmarks_.size(); ++n) {
       if (parts_[n] != part) continue;

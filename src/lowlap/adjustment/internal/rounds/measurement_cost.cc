@@ -37,7 +37,8 @@ Result<double> KindCost(const CameraSet& cameras, const NoiseScale& noise,
     }
     if (!track.IsLandmark()) squares -= outside;
   }
-  return squares / (noise.stddev_px * noise.stddev_px);
+  return Track::kResidualsPerError * squares /
+         (noise.stddev_px * noise.stddev_px);
 }
 
 }  // namespace

@@ -173,7 +173,9 @@ void ProblemBuilder::AddPoints() {
 }
 
 void ProblemBuilder::AddLines() {
-  ceres::LossFunction* loss = MakeLoss(request_.noise.lines, 1);
+  NoiseScale noise = request_.noise.lines;
+  noise.threshold_px *= std::sqrt(LineTrackState::kResidualsPerError);
+  ceres::LossFunction* loss = MakeLoss(noise, 1);
   for (const int n : selection_.lines) {
     for (const LineCandidate& candidate : state_->lines[n].candidates) {
       if (!candidate.used) continue;
@@ -289,17 +291,24 @@ void ProblemBuilder::SplitBlocks() {
     keep(DirectionBlock(n));
   }
   // Two lines of a pair share residuals: only one of them may be eliminated.
+  // More can be where those with few pairs come first.
   std::vector<std::vector<int>> partners(state_->lines.size());
   for (const int n : selection_.pairs) {
     const PairState& pair = state_->pairs[n];
     partners[pair.first].push_back(pair.second);
     partners[pair.second].push_back(pair.first);
   }
+  std::vector<int> by_degree = selection_.lines;
+  std::stable_sort(by_degree.begin(), by_degree.end(), [&](int a, int b) {
+    return partners[a].size() < partners[b].size();
+  });
   std::vector<char> is_eliminated(state_->lines.size(), 0);
-  for (const int n : selection_.lines) {
+  for (const int n : by_degree) {
     is_eliminated[n] =
         std::none_of(partners[n].begin(), partners[n].end(),
                      [&](int partner) { return is_eliminated[partner]; });
+  }
+  for (const int n : selection_.lines) {
     if (is_eliminated[n]) {
       eliminated_.push_back(LineBlock(n));
       eliminated_lines_.push_back(n);

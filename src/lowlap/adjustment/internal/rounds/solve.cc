@@ -47,8 +47,8 @@ ceres::Solver::Options SolverOptions(const AdjustmentOptions& options,
     solver.linear_solver_ordering->AddElementToGroup(block, 1);
     reduced_size += builder->problem().ParameterBlockTangentSize(block);
   }
-  // The dense reduced system of a hundred cameras factorises in milliseconds.
-  constexpr int kMaxDenseSize = 600;
+  // The dense reduced system of fifty cameras factorises in a millisecond.
+  constexpr int kMaxDenseSize = 300;
   solver.linear_solver_type =
       reduced_size <= kMaxDenseSize ? ceres::DENSE_SCHUR : ceres::SPARSE_SCHUR;
   solver.max_num_iterations = options.max_iterations;

@@ -224,16 +224,22 @@ double TwoViewOverlap(const CameraSet& cameras, const LineTrackState& track) {
   return common / std::min(a.high - a.low, b.high - b.low);
 }
 
+// Two of the unknowns are lengths in the unit of the world, two are angles: each
+// is measured by what it alone would do.
 std::optional<Eigen::Matrix4d> UnitCovariance(
     const std::vector<LineMeasurement>& measurements, const SpaceLine& line) {
+  const Eigen::Matrix4d hessian =
+      LineNormalEquations(measurements, line).hessian;
+  const Vec4 units = hessian.diagonal().cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(
-      LineNormalEquations(measurements, line).hessian);
+      units.asDiagonal() * hessian * units.asDiagonal());
   if (!(eigen.eigenvalues()(0) > 1e-15 * eigen.eigenvalues()(3))) {
     return std::nullopt;
   }
-  return Eigen::Matrix4d(eigen.eigenvectors() *
-                         eigen.eigenvalues().cwiseInverse().asDiagonal() *
-                         eigen.eigenvectors().transpose());
+  const Eigen::Matrix4d half =
+      units.asDiagonal() * eigen.eigenvectors() *
+      eigen.eigenvalues().cwiseInverse().cwiseSqrt().asDiagonal();
+  return Eigen::Matrix4d(half * half.transpose());
 }
 
 // Standard deviation of the line across itself, over the distance from the

@@ -10,7 +10,7 @@ namespace lowlap {
 /// of the kind is no longer believed.
 struct NoiseScale {
   double stddev_px = 0;     // of one component of the residual
-  double threshold_px = 0;  // of its length
+  double threshold_px = 0;  // of the error
 };
 
 struct NoiseBounds {

@@ -19,6 +19,8 @@ struct PointCandidate : TrackCandidate {
 
 struct PointTrackState : TrackState<PointTrackId, PointCandidate> {
   static constexpr int kUnknowns = 3;
+  /// Squared lengths of the residual in one squared ErrorPx.
+  static constexpr int kResidualsPerError = 1;
   Vec3 position = Vec3::Zero();
 };
 
