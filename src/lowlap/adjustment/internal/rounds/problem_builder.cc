@@ -173,9 +173,7 @@ void ProblemBuilder::AddPoints() {
 }
 
 void ProblemBuilder::AddLines() {
-  NoiseScale noise = request_.noise.lines;
-  noise.threshold_px *= std::sqrt(LineTrackState::kResidualsPerError);
-  ceres::LossFunction* loss = MakeLoss(noise, 1);
+  ceres::LossFunction* loss = MakeLoss(request_.noise.lines, 1);
   for (const int n : selection_.lines) {
     for (const LineCandidate& candidate : state_->lines[n].candidates) {
       if (!candidate.used) continue;
