@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <vector>
+
 #include "lowlap/core/internal/random.h"
 #include "lowlap/core/internal/union_find.h"
 
@@ -52,7 +55,12 @@ TEST(SolveDifferences, LoopIsTheWeightedLeastSquares) {
 TEST(MinimumSpanningForest, PrefersLowCostsAndWalksFromTheRoot) {
   const std::vector<DifferenceEdge> edges = {{0, 1}, {1, 2}, {0, 2}, {3, 4}};
   const auto walk = MinimumSpanningForest(5, edges, {5, 1, 2, 9});
-  EXPECT_EQ(walk, (std::vector<std::size_t>{2, 1, 3}));
+  std::vector<std::array<std::size_t, 3>> steps;
+  for (const ForestStep& step : walk) {
+    steps.push_back({step.edge, step.from, step.to});
+  }
+  EXPECT_EQ(steps, (std::vector<std::array<std::size_t, 3>>{
+                       {2, 0, 2}, {1, 2, 1}, {3, 3, 4}}));
 }
 
 TEST(UnionFind, LabelsFollowFirstAppearance) {

@@ -66,7 +66,7 @@ Result<Eigen::MatrixXd> SolveDifferences(
   return solution;
 }
 
-std::vector<std::size_t> MinimumSpanningForest(
+std::vector<ForestStep> MinimumSpanningForest(
     std::size_t num_nodes, const std::vector<DifferenceEdge>& edges,
     const std::vector<double>& costs) {
   std::vector<std::size_t> order(edges.size());
@@ -82,7 +82,7 @@ std::vector<std::size_t> MinimumSpanningForest(
     incident[edges[e].second].push_back(e);
   }
 
-  std::vector<std::size_t> walk;
+  std::vector<ForestStep> walk;
   std::vector<bool> visited(num_nodes, false);
   for (std::size_t root = 0; root < num_nodes; ++root) {
     if (visited[root]) continue;
@@ -96,7 +96,7 @@ std::vector<std::size_t> MinimumSpanningForest(
             edges[e].first == node ? edges[e].second : edges[e].first;
         if (visited[other]) continue;
         visited[other] = true;
-        walk.push_back(e);
+        walk.push_back({e, node, other});
         open.push(other);
       }
     }

@@ -28,10 +28,18 @@ Result<Eigen::MatrixXd> SolveDifferences(
     const Eigen::VectorXd& weights, const Eigen::MatrixXd& measurements,
     SparseSolver* solver = nullptr);
 
-/// The spanning forest that prefers edges of low cost (Kruskal; ties by index):
-/// indices of its edges in the order in which a walk from the first node of
-/// every component meets them, so that each edge has one visited end.
-std::vector<std::size_t> MinimumSpanningForest(
+/// One edge of a forest, walked away from the root.
+struct ForestStep {
+  std::size_t edge = 0;
+  std::size_t from = 0;
+  std::size_t to = 0;
+};
+
+/// The spanning forest that prefers edges of low cost (Kruskal; ties by index),
+/// in the order in which a walk from the first node of every component meets
+/// its edges: no step goes to that node, and one goes to each other node,
+/// before any goes from there.
+std::vector<ForestStep> MinimumSpanningForest(
     std::size_t num_nodes, const std::vector<DifferenceEdge>& edges,
     const std::vector<double>& costs);
 

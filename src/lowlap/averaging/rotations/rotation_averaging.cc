@@ -27,20 +27,14 @@ std::vector<Mat3> ComposeAlongForest(
     const std::vector<DifferenceEdge>& edges,
     const std::vector<double>& costs) {
   std::vector<Mat3> rotations(num_views, Mat3::Identity());
-  std::vector<bool> known(num_views, false);
-  for (const std::size_t e : MinimumSpanningForest(num_views, edges, costs)) {
-    const RotationMeasurement& m = measurements[e];
-    // The walk starts every component at a view that stays the identity.
-    if (!known[m.first] && !known[m.second]) {
-      known[std::min(m.first, m.second)] = true;
-    }
-    if (known[m.first]) {
+  for (const ForestStep& step :
+       MinimumSpanningForest(num_views, edges, costs)) {
+    const RotationMeasurement& m = measurements[step.edge];
+    if (step.from == m.first) {
       rotations[m.second] = m.second_from_first * rotations[m.first];
-      known[m.second] = true;
     } else {
       rotations[m.first] =
           m.second_from_first.transpose() * rotations[m.second];
-      known[m.first] = true;
     }
   }
   return rotations;

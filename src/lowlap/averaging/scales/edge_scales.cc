@@ -130,22 +130,12 @@ EdgeScales ChainEdgeScales(const TranslationProblem& problem) {
     costs.push_back(ratio.log10_nfa);
   }
   scales.component = components.Labels();
-  std::vector<bool> known(num_edges, false);
-  for (const std::size_t r :
+  for (const ForestStep& step :
        MinimumSpanningForest(num_edges, RatioGraph(problem), costs)) {
-    const RatioMeasurement& ratio = problem.ratios[r];
-    if (!known[ratio.reference] && !known[ratio.target]) {
-      known[std::min(ratio.reference, ratio.target)] = true;
-    }
-    if (known[ratio.reference]) {
-      scales.log_length[ratio.target] =
-          scales.log_length[ratio.reference] + ratio.log_ratio;
-      known[ratio.target] = true;
-    } else {
-      scales.log_length[ratio.reference] =
-          scales.log_length[ratio.target] - ratio.log_ratio;
-      known[ratio.reference] = true;
-    }
+    const RatioMeasurement& ratio = problem.ratios[step.edge];
+    scales.log_length[step.to] =
+        scales.log_length[step.from] +
+        (step.from == ratio.reference ? ratio.log_ratio : -ratio.log_ratio);
   }
   UpdateResiduals(problem, &scales);
   return scales;

@@ -29,22 +29,14 @@ Result<TranslationSolution> ScaleChainAverager::Solve(
       costs.push_back(problem.edges[e].stddev_rad);
     }
     std::vector<Vec3> centers(num_views, Vec3::Zero());
-    std::vector<bool> known(num_views, false);
-    for (const std::size_t n : MinimumSpanningForest(num_views, graph, costs)) {
-      const std::size_t e = group.edges[n];
+    for (const ForestStep& step :
+         MinimumSpanningForest(num_views, graph, costs)) {
+      const std::size_t e = group.edges[step.edge];
       const DirectionEdge& edge = problem.edges[e];
-      if (!known[edge.first] && !known[edge.second]) {
-        known[std::min(edge.first, edge.second)] = true;
-      }
-      const Vec3 step =
-          std::exp(scales.log_length[e]) * edge.direction_in_world;
-      if (known[edge.first]) {
-        centers[edge.second] = centers[edge.first] + step;
-        known[edge.second] = true;
-      } else {
-        centers[edge.first] = centers[edge.second] - step;
-        known[edge.first] = true;
-      }
+      const double length = std::exp(scales.log_length[e]);
+      centers[step.to] =
+          centers[step.from] + (step.from == edge.first ? length : -length) *
+                                   edge.direction_in_world;
     }
     std::vector<Vec3> of_group;
     for (const std::size_t view : group.views) {
