@@ -14,6 +14,11 @@ constexpr double kReachOfLength = 0.05;
 constexpr double kReachOfFocal = 0.01;
 constexpr int kMaxPerMatch = 4;
 
+// How far from its ends a segment may be crossed.
+double ReachOf(double length) {
+  return kReachOfLength * length + kReachOfFocal;
+}
+
 // How far a point of its support line lies beyond the segment's ends; 0 inside.
 double Beyond(const NormalizedSegment& s, const Vec2& point) {
   const Vec2 start = s.start.head<2>();
@@ -49,8 +54,7 @@ std::optional<Crossing> Cross(const NormalizedSegment& a,
   const Vec3 x = a.normal.cross(b.normal);
   const Vec2 point = x.head<2>() / x.z();
   const double gap_a = Beyond(a, point), gap_b = Beyond(b, point);
-  if (gap_a > kReachOfLength * length_a + kReachOfFocal ||
-      gap_b > kReachOfLength * length_b + kReachOfFocal) {
+  if (gap_a > ReachOf(length_a) || gap_b > ReachOf(length_b)) {
     return std::nullopt;
   }
   // Both lines hold the point across themselves: N dx = (e_a, e_b).
@@ -65,6 +69,37 @@ std::optional<Crossing> Cross(const NormalizedSegment& a,
       {point.x(), point.y(), 1}, covariance, std::max(gap_a, gap_b)};
 }
 
+// What holds every point where a segment may be crossed.
+struct Box {
+  std::size_t match;
+  Vec2 low, high;
+};
+
+// Couples of matches, the first first, whose boxes in the first view overlap.
+template <class Visit>
+void ForEachNeighbors(const NormalizedFeatures& features1,
+                      const std::vector<FeatureMatch>& line_matches,
+                      const Visit& visit) {
+  std::vector<Box> boxes;
+  for (std::size_t n = 0; n < line_matches.size(); ++n) {
+    const NormalizedSegment& s = features1.segments[line_matches[n].first];
+    if (!s.IsValid()) continue;
+    const Vec2 start = s.start.head<2>(), end = s.end.head<2>();
+    // A little more, for what rounding does.
+    const double reach = 1e-6 + ReachOf((end - start).norm());
+    boxes.push_back({n, start.cwiseMin(end).array() - reach,
+                     start.cwiseMax(end).array() + reach});
+  }
+  std::sort(boxes.begin(), boxes.end(),
+            [](const Box& p, const Box& q) { return p.low.x() < q.low.x(); });
+  for (auto p = boxes.begin(); p != boxes.end(); ++p) {
+    for (auto q = p + 1; q != boxes.end() && q->low.x() <= p->high.x(); ++q) {
+      if (q->low.y() > p->high.y() || q->high.y() < p->low.y()) continue;
+      visit(std::min(p->match, q->match), std::max(p->match, q->match));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<LineCrossing> FindLineCrossings(
@@ -77,27 +112,25 @@ std::vector<LineCrossing> FindLineCrossings(
     LineCrossing crossing;
   };
   std::vector<Candidate> candidates;
-  for (std::size_t a = 0; a < line_matches.size(); ++a) {
-    for (std::size_t b = a + 1; b < line_matches.size(); ++b) {
-      const FeatureMatch &ma = line_matches[a], &mb = line_matches[b];
-      const auto in1 =
-          Cross(features1.segments[ma.first], features1.segments[mb.first]);
-      if (!in1) continue;
-      const auto in2 =
-          Cross(features2.segments[ma.second], features2.segments[mb.second]);
-      if (!in2) continue;
-      candidates.push_back({std::max(in1->gap * features1.focal_px,
-                                     in2->gap * features2.focal_px),
-                            in1->covariance.trace() + in2->covariance.trace(),
-                            a,
-                            b,
-                            {in1->point,
-                             in2->point,
-                             in1->covariance,
-                             in2->covariance,
-                             {static_cast<int>(a), static_cast<int>(b)}}});
-    }
-  }
+  ForEachNeighbors(features1, line_matches, [&](std::size_t a, std::size_t b) {
+    const FeatureMatch &ma = line_matches[a], &mb = line_matches[b];
+    const auto in1 =
+        Cross(features1.segments[ma.first], features1.segments[mb.first]);
+    if (!in1) return;
+    const auto in2 =
+        Cross(features2.segments[ma.second], features2.segments[mb.second]);
+    if (!in2) return;
+    candidates.push_back(
+        {std::max(in1->gap * features1.focal_px, in2->gap * features2.focal_px),
+         in1->covariance.trace() + in2->covariance.trace(),
+         a,
+         b,
+         {in1->point,
+          in2->point,
+          in1->covariance,
+          in2->covariance,
+          {static_cast<int>(a), static_cast<int>(b)}}});
+  });
   std::sort(candidates.begin(), candidates.end(),
             [](const Candidate& p, const Candidate& q) {
               return std::tie(p.gap, p.variance, p.a, p.b) <
