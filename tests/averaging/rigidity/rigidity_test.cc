@@ -112,6 +112,30 @@ TEST(AnalyzeTripletRigidity, TripletsThatShareOneViewKeepTheirOwnScale) {
   EXPECT_EQ(report.articulation_views.size(), 3u);
 }
 
+// A step for every three views of each track would take an hour.
+TEST(AnalyzeTripletRigidity, TracksMayRunThroughAllViews) {
+  constexpr std::uint32_t kNumViews = 2000;
+  std::vector<ViewPair> edges;
+  for (std::uint32_t n = 0; n + 1 < kNumViews; ++n) {
+    edges.push_back({n, n + 1});
+    if (n + 2 < kNumViews) edges.push_back({n, n + 2});
+  }
+  Scene scene = SceneWithEdges(kNumViews, edges);
+  for (std::uint32_t id = 0; id < 30; ++id) {
+    for (std::uint32_t view = 0; view < kNumViews; ++view) {
+      if (id == 0 && view == 1000) continue;
+      scene.point_tracks[id].push_back({view, id});
+    }
+  }
+  EXPECT_EQ(AnalyzeTripletRigidity(scene, 29).groups.size(), 1u);
+  // Without the three triangles at view 1000, one view joins nothing.
+  const RigidityReport report = AnalyzeTripletRigidity(scene, 30);
+  ASSERT_EQ(report.groups.size(), 2u);
+  EXPECT_EQ(report.groups[0].views.size(), 1000u);
+  EXPECT_EQ(report.groups[1].views.size(), 999u);
+  EXPECT_EQ(report.isolated_views, std::vector<ViewId>{1000});
+}
+
 TEST(AnalyzeRigidity, AnEmptyGraphHasNothing) {
   const RigidityReport report = AnalyzeRigidity(ViewGraph());
   EXPECT_TRUE(report.groups.empty());

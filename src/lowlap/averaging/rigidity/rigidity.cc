@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <set>
 #include <utility>
@@ -115,24 +116,64 @@ bool MergePartsBut(const std::vector<FlatTriangle>& flat,
   return any;
 }
 
-// Number of point tracks that each triangle's three views share.
-std::vector<int> SharedTracks(const Scene& scene,
-                              const std::vector<ViewTriangle>& triangles) {
-  std::map<ViewTriangle, std::size_t> index;
-  for (std::size_t n = 0; n < triangles.size(); ++n) index[triangles[n]] = n;
-  std::vector<int> counts(triangles.size(), 0);
+// The triangles whose three views share `least` point tracks or more; once one
+// does, no further track is asked. Time: a step for every two views of a track,
+// and for every triangle that still lacks tracks at the two.
+std::vector<ViewTriangle> TrianglesOnTracks(const Scene& scene,
+                                            const ViewGraph& graph, int least) {
+  const std::vector<ViewTriangle> triangles = FindTriangles(graph);
+  struct Open {
+    ViewId last;
+    int missing;  // tracks
+    std::size_t triangle;
+  };
+  std::map<ViewPair, std::vector<Open>> open;  // by the first two views
+  std::vector<bool> is_held(triangles.size(), least <= 0);
+  for (std::size_t n = 0; n < triangles.size(); ++n) {
+    const auto& [first, second, last] = triangles[n];
+    if (!is_held[n]) open[{first, second}].push_back({last, least, n});
+  }
+  const auto count = [&](Track::const_iterator from, Track::const_iterator end,
+                         std::vector<Open>* of_pair) {
+    bool any_held = false;
+    auto next = of_pair->begin();
+    while (from != end && next != of_pair->end()) {
+      if (from->view < next->last) {
+        from = std::lower_bound(
+            from, end, next->last,
+            [](const FeatureRef& f, ViewId view) { return f.view < view; });
+      } else if (next->last < from->view) {
+        next = std::lower_bound(
+            next, of_pair->end(), from->view,
+            [](const Open& o, ViewId view) { return o.last < view; });
+      } else {
+        if (--next->missing == 0) any_held = is_held[next->triangle] = true;
+        ++next;
+        ++from;
+      }
+    }
+    return any_held;
+  };
   for (const auto& [id, track] : scene.point_tracks) {
-    for (std::size_t a = 0; a < track.size(); ++a) {
-      for (std::size_t b = a + 1; b < track.size(); ++b) {
-        for (std::size_t c = b + 1; c < track.size(); ++c) {
-          const auto found =
-              index.find({track[a].view, track[b].view, track[c].view});
-          if (found != index.end()) ++counts[found->second];
-        }
+    for (auto a = track.begin(); a != track.end(); ++a) {
+      for (auto b = std::next(a); b != track.end(); ++b) {
+        const auto found = open.find({a->view, b->view});
+        if (found == open.end()) continue;
+        std::vector<Open>& of_pair = found->second;
+        if (!count(std::next(b), track.end(), &of_pair)) continue;
+        of_pair.erase(
+            std::remove_if(of_pair.begin(), of_pair.end(),
+                           [](const Open& o) { return o.missing == 0; }),
+            of_pair.end());
+        if (of_pair.empty()) open.erase(found);
       }
     }
   }
-  return counts;
+  std::vector<ViewTriangle> held;
+  for (std::size_t n = 0; n < triangles.size(); ++n) {
+    if (is_held[n]) held.push_back(triangles[n]);
+  }
+  return held;
 }
 
 // The report on edges in the sets of `sets`.
@@ -198,14 +239,10 @@ RigidityReport AnalyzeRigidity(const ViewGraph& graph,
 RigidityReport AnalyzeTripletRigidity(const Scene& scene,
                                       int min_shared_tracks) {
   const ViewGraph graph(scene);
-  const std::vector<ViewTriangle> triangles = FindTriangles(graph);
-  const std::vector<int> shared = SharedTracks(scene, triangles);
-  std::vector<ViewTriangle> counted;
+  const std::vector<ViewTriangle> counted =
+      TrianglesOnTracks(scene, graph, min_shared_tracks);
   std::vector<ViewPair> held;
-  for (std::size_t n = 0; n < triangles.size(); ++n) {
-    if (shared[n] < min_shared_tracks) continue;
-    const ViewTriangle& t = triangles[n];
-    counted.push_back(t);
+  for (const ViewTriangle& t : counted) {
     held.insert(held.end(), {{t[0], t[1]}, {t[0], t[2]}, {t[1], t[2]}});
   }
   const ViewGraph covered(std::move(held), graph.views());
