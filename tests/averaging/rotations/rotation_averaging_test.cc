@@ -5,6 +5,8 @@
 #include <algorithm>
 
 #include "averaging/random_problem.h"
+#include "averaging/rotations/random_rotation_graph.h"
+#include "lowlap/averaging/rotations/internal/rotation_cost.h"
 
 namespace lowlap {
 namespace {
@@ -107,6 +109,61 @@ TEST(AverageRotations, DoesNotDependOnTheOrderOfMeasurements) {
     EXPECT_LT(RotationAngleBetween(forward->cam_from_world[n],
                                    backward->cam_from_world[n]),
               1e-7);
+  }
+}
+
+// Every view is measured to six others or so, any of which may be false.
+RotationGraph AnyGraph(double false_share, std::uint64_t seed) {
+  constexpr std::uint32_t kNumViews = 20;
+  RotationGraph graph;
+  Random random(seed);
+  graph.truth = RandomRotations(kNumViews, &random);
+  const auto add = [&](std::size_t first, std::size_t second) {
+    const bool is_false = random.Uniform() < false_share;
+    const Vec3 noise = GaussianVector(&random, 0.003);
+    graph.Add(first, second, is_false ? RandomVector(&random, 1.8) : noise,
+              is_false);
+    graph.measurements.back().cost = -random.Uniform(10, 100);
+  };
+  for (std::uint32_t n = 1; n < kNumViews; ++n) add(random.Index(n), n);
+  while (graph.measurements.size() < 3 * kNumViews) {
+    const std::size_t first = random.Index(kNumViews);
+    const std::size_t second = random.Index(kNumViews);
+    if (first != second) add(first, second);
+  }
+  return graph;
+}
+
+TEST(AverageRotations, IsNoWorseThanTheTruthWhereTwoInFiveAreFalse) {
+  int worse = 0;
+  for (std::uint64_t seed = 0; seed < 40; ++seed) {
+    const RotationGraph graph = AnyGraph(0.4, seed);
+    const auto result =
+        AverageRotations(graph.truth.size(), graph.measurements);
+    std::vector<RotationMeasurement> right;
+    for (std::size_t e = 0; e < graph.measurements.size(); ++e) {
+      if (!graph.is_false[e]) right.push_back(graph.measurements[e]);
+    }
+    const auto expected = AverageRotations(graph.truth.size(), right);
+    ASSERT_TRUE(result && expected);
+    worse += RobustCost(graph.measurements, result->cam_from_world) >
+             RobustCost(graph.measurements, expected->cam_from_world) + 1;
+  }
+  EXPECT_LE(worse, 1);
+}
+
+TEST(AverageRotations, IsTheSameToTheByteInAnyOrder) {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    const RotationGraph graph = AnyGraph(0.4, seed);
+    std::vector<RotationMeasurement> measurements = graph.measurements;
+    const auto forward = AverageRotations(graph.truth.size(), measurements);
+    std::reverse(measurements.begin(), measurements.end());
+    const auto backward = AverageRotations(graph.truth.size(), measurements);
+    ASSERT_TRUE(forward && backward);
+    EXPECT_EQ(forward->cam_from_world, backward->cam_from_world);
+    std::vector<double> residuals_rad = backward->residuals_rad;
+    std::reverse(residuals_rad.begin(), residuals_rad.end());
+    EXPECT_EQ(forward->residuals_rad, residuals_rad);
   }
 }
 

@@ -2,25 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <utility>
 
 #include "lowlap/averaging/internal/cancellation.h"
 #include "lowlap/averaging/internal/difference_solver.h"
 #include "lowlap/averaging/internal/sparse_solver.h"
+#include "lowlap/averaging/rotations/internal/branch_turns.h"
 #include "lowlap/averaging/rotations/internal/cycle_support.h"
+#include "lowlap/averaging/rotations/internal/rotation_cost.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/robust/internal/robust_loss.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
-
-Vec3 Residual(const RotationMeasurement& m,
-              const std::vector<Mat3>& rotations) {
-  return AngleAxisFromRotation(rotations[m.second].transpose() *
-                               m.second_from_first * rotations[m.first]);
-}
 
 std::vector<Mat3> ComposeAlongForest(
     std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
@@ -46,7 +45,7 @@ std::vector<double> NormalisedResiduals(
   std::vector<double> normalised;
   normalised.reserve(measurements.size());
   for (const RotationMeasurement& m : measurements) {
-    normalised.push_back(Residual(m, rotations).norm() / m.stddev_rad);
+    normalised.push_back(RotationResidual(m, rotations).norm() / m.stddev_rad);
   }
   return normalised;
 }
@@ -70,8 +69,37 @@ double ScaleWithin(const std::vector<double>& normalised, double reach,
       1.0, *middle / (quartile ? kLowerQuartileOfNorm<3> : kMedianOfNorm<3>));
 }
 
-double EvidenceWeight(const RotationMeasurement& m) {
-  return 1 + std::log1p(std::max(0.0, -m.cost));
+ViewPair ViewsOf(const RotationMeasurement& m) {
+  return OrderedPair(static_cast<ViewId>(m.first),
+                     static_cast<ViewId>(m.second));
+}
+
+// An order of measurements that depends on them alone.
+bool IsBefore(const RotationMeasurement& a, const RotationMeasurement& b) {
+  const auto key = [](const RotationMeasurement& m) {
+    return std::make_tuple(ViewsOf(m), m.first, m.cost, m.stddev_rad,
+                           m.trusted);
+  };
+  if (key(a) != key(b)) return key(a) < key(b);
+  const Mat3 &p = a.second_from_first, &q = b.second_from_first;
+  return std::lexicographical_compare(p.data(), p.data() + p.size(), q.data(),
+                                      q.data() + q.size());
+}
+
+// The costs, each times a number in [0, 1) that is drawn for its views: other
+// measurements do not change it. Those of the same views draw one by one.
+std::vector<double> Shake(const std::vector<RotationMeasurement>& measurements,
+                          std::uint64_t seed, std::size_t start,
+                          std::vector<double> costs) {
+  Random random(seed);
+  for (std::size_t e = 0; e < costs.size(); ++e) {
+    const ViewPair views = ViewsOf(measurements[e]);
+    if (e == 0 || views != ViewsOf(measurements[e - 1])) {
+      random = Random(PairSeed(seed, views), start);
+    }
+    costs[e] *= random.Uniform();
+  }
+  return costs;
 }
 
 /// Where a search begins. L1 finds one optimum from everywhere, and trusts the
@@ -105,10 +133,7 @@ std::vector<Start> MakeStarts(
   const std::size_t count =
       std::min<std::size_t>(affordable, options.max_starts);
   for (std::size_t n = starts.size(); n < count; ++n) {
-    Random random(options.seed, n);
-    std::vector<double> shaken = joint;
-    for (double& cost : shaken) cost *= random.Uniform();
-    starts.push_back({std::move(shaken), false});
+    starts.push_back({Shake(measurements, options.seed, n, joint), false});
   }
   if (starts.size() > count) starts.resize(count);
   return starts;
@@ -135,7 +160,7 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
         AskToGoOn(context, iteration, options.max_iterations));
     std::vector<double> normalised(measurements.size());
     for (Eigen::Index e = 0; e < count; ++e) {
-      steps.row(e) = Residual(measurements[e], rotations);
+      steps.row(e) = RotationResidual(measurements[e], rotations);
       normalised[e] = steps.row(e).norm() / measurements[e].stddev_rad;
     }
     switch (phase) {
@@ -186,20 +211,6 @@ Status Refine(const std::vector<RotationMeasurement>& measurements,
   return {};
 }
 
-// What a start is judged by. Evidence weighs, but only with its logarithm: a
-// relative pose of thousands of matches may be wrong as well.
-double RobustCost(const std::vector<RotationMeasurement>& measurements,
-                  const std::vector<Mat3>& rotations) {
-  const std::vector<double> normalised =
-      NormalisedResiduals(measurements, rotations);
-  double cost = 0;
-  for (std::size_t e = 0; e < measurements.size(); ++e) {
-    cost += EvidenceWeight(measurements[e]) *
-            std::log1p(normalised[e] * normalised[e]);
-  }
-  return cost;
-}
-
 }  // namespace
 
 Status RotationAveragingOptions::Validate() const {
@@ -212,18 +223,22 @@ Status RotationAveragingOptions::Validate() const {
 }
 
 Result<RotationAveragingResult> AverageRotations(
-    std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
+    std::size_t num_views, const std::vector<RotationMeasurement>& measured,
     const RotationAveragingOptions& options, const RunContext& context) {
   LOWLAP_RETURN_IF_ERROR(options.Validate());
-  std::vector<DifferenceEdge> edges;
-  edges.reserve(measurements.size());
-  for (const RotationMeasurement& m : measurements) {
+  for (const RotationMeasurement& m : measured) {
     if (m.first >= num_views || m.second >= num_views || m.first == m.second ||
         !(m.stddev_rad > 0)) {
       return MakeError(ErrorCode::kInvalidArgument,
                        "rotation averaging: a measurement needs two different "
                        "views and a positive standard deviation");
     }
+  }
+  std::vector<RotationMeasurement> measurements = measured;
+  std::sort(measurements.begin(), measurements.end(), IsBefore);
+  std::vector<DifferenceEdge> edges;
+  edges.reserve(measurements.size());
+  for (const RotationMeasurement& m : measurements) {
     edges.push_back({m.first, m.second});
   }
 
@@ -235,6 +250,7 @@ Result<RotationAveragingResult> AverageRotations(
     RotationAveragingResult result;
     result.cam_from_world =
         ComposeAlongForest(num_views, measurements, edges, start.costs);
+    if (!start.with_l1) TurnBranches(measurements, &result.cam_from_world);
     LOWLAP_RETURN_IF_ERROR(
         Refine(measurements, edges, options, start.with_l1, context, &result));
     const double cost = RobustCost(measurements, result.cam_from_world);
@@ -244,8 +260,9 @@ Result<RotationAveragingResult> AverageRotations(
       best = std::move(result);
     }
   }
-  for (const RotationMeasurement& m : measurements) {
-    best.residuals_rad.push_back(Residual(m, best.cam_from_world).norm());
+  for (const RotationMeasurement& m : measured) {
+    best.residuals_rad.push_back(
+        RotationResidual(m, best.cam_from_world).norm());
   }
   return best;
 }

@@ -37,19 +37,22 @@ struct RotationAveragingResult {
 ///   min sum_e rho( |log(R_j^T R_ij R_i)| / sigma_e ).
 ///
 /// Starts: composed spanning forests that prefer low cost, the support of
-/// cycles (ScoreCycles), both, and both at random. Each is followed by
-/// iteratively reweighted Gauss-Newton on SO(3) (Chatterjee and Govindu 2013):
-/// first, from one of them, L1, which a few wrong measurements do not move as
-/// long as their stated deviations are honest, then the Geman-McClure
+/// cycles (ScoreCycles), both, and both at random. From one of them, L1 goes
+/// on, which a few wrong measurements do not move as long as their stated
+/// deviations are honest; the branches of the others are turned to measurements
+/// that fit better (TurnBranches). Each is followed by iteratively reweighted
+/// Gauss-Newton on SO(3) (Chatterjee and Govindu 2013) with the Geman-McClure
 /// weight, whose scale comes from the lower quartile of the residuals in its
 /// own reach, and so tightens until wrong measurements are forgotten, and in
-/// the end from their median. The solution with the least
-///   sum_e (1 + log(1 + max(0, -cost_e))) log(1 + (r_e / sigma_e)^2)
-/// is returned. Each step is a graph Laplacian in the tangent space
-/// (SolveDifferences). Gauge: one rotation of every connected component is the
-/// identity. A tree is reproduced exactly. Errors: kInvalidArgument (options, a
-/// measurement without two views or a positive deviation), kNumerical,
-/// kCancelled.
+/// the end from their median. The solution of the least RobustCost is returned.
+/// It is the same, to the byte, for any order of the measurements. Gauge: one
+/// rotation of every connected component is the identity. A tree is reproduced
+/// exactly.
+///
+/// Time, for each of 2 to max_starts starts: up to max_iterations solutions of
+/// a graph Laplacian in the tangent space (SolveDifferences), next to which the
+/// rest is little. Errors: kInvalidArgument (options, a measurement without two
+/// views or a positive deviation), kNumerical, kCancelled.
 Result<RotationAveragingResult> AverageRotations(
     std::size_t num_views, const std::vector<RotationMeasurement>& measurements,
     const RotationAveragingOptions& options = {},
