@@ -16,10 +16,10 @@ namespace {
 constexpr int kMaxRounds = 10;
 constexpr std::size_t kMaxAcross = 256;
 constexpr std::size_t kMaxProposals = 16;
-/// Standard deviations up to which a measurement is met.
+// Standard deviations up to which a measurement is met.
 constexpr double kMeets = 5.0;
 
-/// The branches of a spanning forest: each view with all that lies beyond it.
+// The branches of a spanning forest: each view with all that lies beyond it.
 class Branches {
  public:
   Branches(const std::vector<RotationMeasurement>& measurements,
@@ -51,8 +51,8 @@ class Branches {
     for (std::size_t e = 0; e < edges.size(); ++e) AddToBranches(e, edges[e]);
   }
 
-  /// The measurements with one view in the branch; where there are more than
-  /// kMaxAcross, one more than that.
+  // The measurements with one view in the branch; where there are more than
+  // kMaxAcross, one more than that.
   const std::vector<std::size_t>& Across(std::size_t branch) const {
     return across_[branch];
   }
