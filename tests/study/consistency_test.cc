@@ -89,5 +89,21 @@ TEST(Consistency, MissingCamerasAndCoincidingCentres) {
   EXPECT_EQ(nothing.reprojection_rmse_px, 0);
 }
 
+TEST(Consistency, ErrorsInAPanoramaGoTheShortWayRound) {
+  Scene scene;
+  Intrinsic& panorama = scene.intrinsics[0];
+  panorama.model = CameraModel::kSpherical;
+  panorama.width_px = 1000;
+  panorama.height_px = 500;
+  scene.views[0].intrinsic_id = 0;
+  scene.views[0].pose_id = 0;
+  scene.poses[0] = Pose();
+  // Behind the camera is the seam, at 0 and at 1000 px.
+  const Vec3 behind(0.001, 0, -1);
+  const Vec2 pixel_px = panorama.Project(behind) + Vec2(0.5 - 1000, 0);
+  scene.structure[0] = {behind, {{0, 0, pixel_px}}};
+  EXPECT_NEAR(EvaluateConsistency(scene, {}).reprojection_rmse_px, 0.5, 1e-9);
+}
+
 }  // namespace
 }  // namespace lowlap

@@ -4,6 +4,8 @@
 #include <functional>
 #include <utility>
 
+#include "lowlap/adjustment/internal/costs/projection.h"
+#include "lowlap/adjustment/internal/costs/segment_rays.h"
 #include "lowlap/core/internal/median.h"
 #include "lowlap/report/internal/page_parts.h"
 
@@ -63,7 +65,7 @@ Stage BeforeAdjustment(const Scene& scene, const ReportStage& before) {
   return stage;
 }
 
-// Distance of the observed pixel from the projected point.
+// Distance of the observed pixel from the projected point, in the photograph.
 std::vector<Residual> PointResiduals(const Scene& scene, const Stage& stage) {
   std::vector<Residual> residuals;
   for (const auto& [id, landmark] : scene.structure) {
@@ -73,20 +75,16 @@ std::vector<Residual> PointResiduals(const Scene& scene, const Stage& stage) {
       const Pose* pose = stage.pose(seen.view);
       const Intrinsic* intrinsic = stage.intrinsic(seen.view);
       if (pose == nullptr || intrinsic == nullptr) continue;
-      const Vec3 point_in_cam = pose->CamFromWorld() * *point;
-      if (point_in_cam.z() <= 0 &&
-          intrinsic->model != CameraModel::kSpherical) {
-        continue;
-      }
-      residuals.push_back(
-          {seen.view,
-           (intrinsic->Project(point_in_cam) - seen.pixel_px).norm()});
+      const auto error_px = ProjectionErrorPx(
+          *intrinsic, pose->CamFromWorld() * *point, seen.pixel_px);
+      if (error_px) residuals.push_back({seen.view, error_px->norm()});
     }
   }
   return residuals;
 }
 
-// Root mean square distance of the ends of the segment from the projected line.
+// Root mean square distance of the ends of the segment from the image of the
+// line, in the photograph.
 std::vector<Residual> LineResiduals(const Scene& scene, const Stage& stage) {
   std::vector<Residual> residuals;
   for (const auto& [id, landmark] : scene.line_structure) {
@@ -101,16 +99,17 @@ std::vector<Residual> LineResiduals(const Scene& scene, const Stage& stage) {
           seen.feature >= features->second.segments.size()) {
         continue;
       }
-      const NormalizedSegment segment =
-          NormalizeSegment(features->second.segments[seen.feature], *intrinsic);
-      const Vec3 image_line = (pose->CamFromWorld() * *line).moment;
-      const double length = image_line.head<2>().norm();
-      if (!segment.IsValid() || length == 0) continue;
-      const double start = segment.start.dot(image_line) / length;
-      const double end = segment.end.dot(image_line) / length;
+      IntrinsicState camera;
+      camera.value = *intrinsic;
+      const auto rays = MakeSegmentRays(features->second.segments[seen.feature],
+                                        camera, false);
+      if (!rays) continue;
+      const Vec3 normal = (pose->CamFromWorld() * *line).moment;
       residuals.push_back(
-          {seen.view, intrinsic->MeanFocalPx() *
-                          std::sqrt(0.5 * (start * start + end * end))});
+          {seen.view,
+           std::hypot(EndPointDistancePx(rays->ends[0], normal, nullptr),
+                      EndPointDistancePx(rays->ends[1], normal, nullptr)) /
+               std::sqrt(2.0)});
     }
   }
   return residuals;
@@ -134,10 +133,12 @@ struct Histogram {
     sum_squares += error_px * error_px;
   }
   PageJson ToJson() const {
-    return {{"counts", counts},
-            {"beyond", beyond},
-            {"total", total},
-            {"rmse_px", total > 0 ? std::sqrt(sum_squares / total) : 0.0}};
+    PageJson json = {{"counts", counts},
+                     {"beyond", beyond},
+                     {"total", total},
+                     {"rmse_px", nullptr}};
+    if (total > 0) json["rmse_px"] = std::sqrt(sum_squares / total);
+    return json;
   }
 };
 
@@ -152,7 +153,8 @@ PageJson StageJson(const std::vector<Residual>& residuals, double bin_px) {
     errors.push_back(residual.error_px);
   }
   PageJson json = histogram.ToJson();
-  json["median_px"] = errors.empty() ? 0.0 : Median(std::move(errors));
+  json["median_px"] = nullptr;
+  if (!errors.empty()) json["median_px"] = Median(std::move(errors));
   return json;
 }
 

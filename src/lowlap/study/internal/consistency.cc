@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/adjustment/internal/costs/projection.h"
 #include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
@@ -77,14 +78,10 @@ Consistency EvaluateConsistency(const Scene& scene,
       const Pose* pose = scene.FindPose(seen.view);
       const Intrinsic* intrinsic = scene.FindIntrinsic(seen.view);
       if (pose == nullptr || intrinsic == nullptr) continue;
-      const Vec3 point_in_cam =
-          pose->rotation * (landmark.position - pose->center);
-      if (intrinsic->model != CameraModel::kSpherical &&
-          !(point_in_cam.z() > 0)) {
-        continue;
-      }
-      sum_of_squares +=
-          (intrinsic->Project(point_in_cam) - seen.pixel_px).squaredNorm();
+      const auto error_px = ProjectionErrorPx(
+          *intrinsic, pose->CamFromWorld() * landmark.position, seen.pixel_px);
+      if (!error_px) continue;
+      sum_of_squares += error_px->squaredNorm();
       ++count;
     }
   }

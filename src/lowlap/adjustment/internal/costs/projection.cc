@@ -58,6 +58,15 @@ void WrapPanorama(const Intrinsic& shape, Vec2* difference_px) {
   difference_px->x() -= turn * std::round(difference_px->x() / turn);
 }
 
+std::optional<Vec2> ProjectionErrorPx(const Intrinsic& intrinsic,
+                                      const Vec3& x_cam, const Vec2& pixel_px) {
+  if (!IsProjectable(intrinsic.model, x_cam)) return std::nullopt;
+  Vec2 difference_px = intrinsic.Project(x_cam) - pixel_px;
+  WrapPanorama(intrinsic, &difference_px);
+  if (!difference_px.allFinite()) return std::nullopt;
+  return difference_px;
+}
+
 Vec2 ProjectPoint(const Intrinsic& shape, const double* parameters,
                   const Vec3& x_cam) {
   Vec2 pixel_px;

@@ -19,6 +19,12 @@ inline bool IsProjectable(CameraModel model, const Vec3& x_cam) {
 /// A panorama is 2 pi round: the difference of two pixels across its seam.
 void WrapPanorama(const Intrinsic& shape, Vec2* difference_px);
 
+/// The projection of a point less the pixel at which it is observed, of a
+/// panorama the short way round; nullopt for a point that the camera cannot
+/// see.
+std::optional<Vec2> ProjectionErrorPx(const Intrinsic& intrinsic,
+                                      const Vec3& x_cam, const Vec2& pixel_px);
+
 /// Pixel of a point in camera coordinates (as Intrinsic::Project), from the
 /// solver's parameters; of `shape` the model and the size of the image count.
 Vec2 ProjectPoint(const Intrinsic& shape, const double* parameters,

@@ -23,14 +23,9 @@ struct Observation {
 
 std::optional<Vec2> DifferencePx(const Observation& observation,
                                  const Vec3& position) {
-  const Vec3 x_cam = observation.cam_from_world * position;
-  const Intrinsic& intrinsic = observation.intrinsic.value;
-  if (!IsProjectable(intrinsic.model, x_cam)) return std::nullopt;
-  Vec2 difference_px =
-      intrinsic.Project(x_cam) - observation.candidate.pixel_px;
-  WrapPanorama(intrinsic, &difference_px);
-  if (!difference_px.allFinite()) return std::nullopt;
-  return difference_px;
+  return ProjectionErrorPx(observation.intrinsic.value,
+                           observation.cam_from_world * position,
+                           observation.candidate.pixel_px);
 }
 
 double WhitenedErrorPx(const Observation& observation, const Vec3& position) {
@@ -166,6 +161,13 @@ std::optional<Vec2> PointDifferencePx(const CameraSet& cameras,
                                       const PointCandidate& candidate,
                                       const Vec3& position) {
   return DifferencePx(Observation(cameras, candidate), position);
+}
+
+double DistancePx(const CameraSet& cameras, const PointTrackState& track,
+                  const PointCandidate& candidate) {
+  const std::optional<Vec2> difference_px =
+      PointDifferencePx(cameras, candidate, track.position);
+  return difference_px ? difference_px->norm() : kInfinity;
 }
 
 double ErrorPx(const CameraSet& cameras, const PointTrackState& track,

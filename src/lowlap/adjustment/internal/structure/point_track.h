@@ -30,8 +30,12 @@ std::optional<Vec2> PointDifferencePx(const CameraSet& cameras,
                                       const PointCandidate& candidate,
                                       const Vec3& position);
 
-/// Whitened distance of the projection from the observed pixel; infinity for a
-/// point that the view cannot see.
+/// Distance of the projection from the observed pixel, in pixels of the
+/// photograph; infinity for a point that the view cannot see.
+double DistancePx(const CameraSet& cameras, const PointTrackState& track,
+                  const PointCandidate& candidate);
+
+/// The same, whitened.
 double ErrorPx(const CameraSet& cameras, const PointTrackState& track,
                const PointCandidate& candidate);
 
