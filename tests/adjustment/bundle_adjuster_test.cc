@@ -318,5 +318,55 @@ TEST(BundleAdjusterTest, SummaryTellsEverySolve) {
   EXPECT_EQ(summary.final_cost, summary.solves.back().final_cost);
 }
 
+// Of the distances in the photographs, whatever weighs the errors.
+TEST(BundleAdjusterTest, TheRmseHasNoWeights) {
+  TestSceneOptions options;
+  options.noise_px = 0.5;
+  TestScene test = MakeTestScene(options);
+  test.scene.intrinsics.at(7).fy_px = 800;
+  for (auto& [view, features] : test.scene.features) {
+    for (std::size_t n = 0; n < features.segments.size(); ++n) {
+      features.segments[n].stddev_px = n % 2 == 0 ? 0.3 : 1.2;
+    }
+    features.point_covariances.assign(features.points_px.size(), Vec3(9, 0, 1));
+  }
+  const AdjustmentSummary summary = BuildAndAdjust(&test.scene);
+  const Scene& scene = test.scene;
+  const Intrinsic& intrinsic = scene.intrinsics.at(7);
+  double points = 0, ends = 0;
+  for (const auto& [id, landmark] : scene.structure) {
+    for (const PointObservation& seen : landmark.observations) {
+      points += (intrinsic.Project(scene.FindPose(seen.view)->CamFromWorld() *
+                                   landmark.position) -
+                 seen.pixel_px)
+                    .squaredNorm();
+    }
+  }
+  for (const auto& [id, line] : scene.line_structure) {
+    for (const FeatureRef& seen : line.observations) {
+      const LineSegment& segment =
+          scene.features.at(seen.view).segments[seen.feature];
+      const Vec3 normal =
+          (scene.FindPose(seen.view)->CamFromWorld() * line.line).moment;
+      for (const Vec2& end_px : {segment.start_px, segment.end_px}) {
+        const double distance =
+            intrinsic.Normalize(end_px)->homogeneous().dot(normal) /
+            normal.head<2>().norm();
+        ends += std::pow(intrinsic.fx_px * distance, 2);
+      }
+    }
+  }
+  ASSERT_TRUE(summary.points.final_rmse_px && summary.lines.final_rmse_px);
+  EXPECT_NEAR(
+      *summary.points.final_rmse_px,
+      std::sqrt(points / static_cast<double>(summary.points.observations_used)),
+      1e-6);
+  EXPECT_NEAR(*summary.lines.final_rmse_px,
+              std::sqrt(ends / (2.0 * static_cast<double>(
+                                          summary.lines.observations_used))),
+              1e-6);
+  EXPECT_FALSE(summary.coplanar.final_rmse_px);
+}
+
 }  // namespace
 }  // namespace lowlap

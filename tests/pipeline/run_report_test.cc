@@ -10,6 +10,7 @@
 
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/pipeline/internal/output/summary_json.h"
+#include "lowlap/report/internal/page_data.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "support/matchers.h"
 
@@ -55,6 +56,18 @@ TEST_F(MakeReportTest, TheSummaryHasTheDeviationOfEveryCentre) {
     EXPECT_LE(stddev * stddev, trace * (1 + 1e-12));
     EXPECT_GE(stddev * stddev, trace / 3);
   }
+}
+
+// The figure at the top is that of the plots.
+TEST_F(MakeReportTest, ThePageHasOneRmse) {
+  const auto report = MakeReport(summary_, scene_, {});
+  ASSERT_THAT(report, IsOk());
+  const auto page = nlohmann::json::parse(PageData(scene_, *report));
+  const AdjustmentSummary& adjustment = *summary_.solve->adjustment;
+  EXPECT_NEAR(page["residuals"]["points"]["after"]["rmse_px"],
+              *adjustment.points.final_rmse_px, 1e-6);
+  EXPECT_NEAR(page["residuals"]["lines"]["after"]["rmse_px"],
+              *adjustment.lines.final_rmse_px, 1e-6);
 }
 
 TEST_F(MakeReportTest, TheSummaryHasTheRatiosThatWereLeftOut) {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,9 +51,12 @@ struct KindAdjustment {
   std::size_t observations_dropped = 0;  // candidates not in use at the end
   /// Pairs that agree with the rest, but were not needed.
   std::size_t observations_surplus = 0;
-  /// Of the observations in use: at the start, and at the end.
-  double initial_rmse_px = 0;
-  double final_rmse_px = 0;
+  /// Root mean square, without weights, of the distances in the photographs'
+  /// own pixels: of points from their projections, of the ends of segments from
+  /// the images of the lines. Of what is in use; nullopt: nothing is.
+  std::optional<double> initial_rmse_px;
+  std::optional<double> final_rmse_px;
+  // Of errors weighted by the shapes of points and the noise of segments.
   double stddev_px = 0;     // robust noise level; weight = 1 / stddev^2
   double threshold_px = 0;  // a contrario
 };
@@ -106,8 +110,7 @@ struct AdjustmentSummary {
   /// Those that held rotations.
   std::size_t directions = 0;
 
-  /// How far the errors of points follow their shapes (0: they are round). The
-  /// errors of points are whitened with it, here and in `points`.
+  /// How far the errors of points follow their shapes (0: they are round).
   double point_shape_exponent = 0;
 
   std::size_t poses_adjusted = 0;

@@ -272,8 +272,8 @@ class KindAdjustment:
     landmarks: int
     observations_used: int
     observations_dropped: int
-    initial_rmse_px: float
-    final_rmse_px: float
+    initial_rmse_px: Optional[float]
+    final_rmse_px: Optional[float]
     stddev_px: float
     threshold_px: float
 

@@ -92,6 +92,5 @@ function drawResiduals(tab) {
                .map(name => plotHistogram(name, view, width, height)),
            plotRmseOfViews(width)),
       make('p', { class: 'note', style: 'padding: 0 10px' },
-           'Distances in the photographs. The adjustment weighs points by the ' +
-           'shape of their errors, so the RMSE at the top is another one.'));
+           'Distances in the photographs, of what is in use.'));
 }

@@ -15,7 +15,10 @@ class RootMeanSquare {
     sum_ += error * error;
     ++count_;
   }
-  double Value() const { return count_ > 0 ? std::sqrt(sum_ / count_) : 0; }
+  std::optional<double> Value() const {
+    if (count_ == 0) return std::nullopt;
+    return std::sqrt(sum_ / count_);
+  }
 
  private:
   double sum_ = 0;
@@ -23,12 +26,13 @@ class RootMeanSquare {
 };
 
 template <class Track>
-double Rmse(const CameraSet& cameras, const std::vector<Track>& tracks) {
+std::optional<double> Rmse(const CameraSet& cameras,
+                           const std::vector<Track>& tracks) {
   RootMeanSquare mean;
   for (const Track& track : tracks) {
     if (!track.IsLandmark()) continue;
     for (const auto& candidate : track.candidates) {
-      if (candidate.used) mean.Add(ErrorPx(cameras, track, candidate));
+      if (candidate.used) mean.Add(DistancePx(cameras, track, candidate));
     }
   }
   return mean.Value();

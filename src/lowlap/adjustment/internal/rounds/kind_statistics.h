@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "lowlap/adjustment/adjustment_options.h"
@@ -10,8 +11,8 @@
 
 namespace lowlap {
 
-/// Root mean square error of points, lines and coplanar pairs, in pixels.
-using KindRmse = std::array<double, 3>;
+/// Of points, lines and coplanar pairs, as KindAdjustment has them.
+using KindRmse = std::array<std::optional<double>, 3>;
 
 /// Of the candidates in use whose error is finite.
 KindRmse ComputeRmse(const CameraSet& cameras, const StructureState& state,

@@ -126,8 +126,9 @@ std::optional<double> Lift(const RigidTransform& cam_from_world,
   return arm.cross(unit_ray).dot(n) / n2;
 }
 
-double SegmentErrorPx(const CameraSet& cameras, const LineCandidate& candidate,
-                      const SpaceLine& line) {
+double SegmentDistancePx(const CameraSet& cameras,
+                         const LineCandidate& candidate,
+                         const SpaceLine& line) {
   const RigidTransform cam_from_world =
       cameras.PoseOf(candidate.view).CamFromWorld();
   const Vec3 normal =
@@ -141,8 +142,13 @@ double SegmentErrorPx(const CameraSet& cameras, const LineCandidate& candidate,
     Lift(cam_from_world, end.ray, line, 1e-6, &depth);
     if (!(depth > 0)) return kInfinity;
   }
-  const double error = candidate.weight * std::sqrt(0.5 * squares);
-  return std::isfinite(error) ? error : kInfinity;
+  const double distance_px = std::sqrt(0.5 * squares);
+  return std::isfinite(distance_px) ? distance_px : kInfinity;
+}
+
+double SegmentErrorPx(const CameraSet& cameras, const LineCandidate& candidate,
+                      const SpaceLine& line) {
+  return candidate.weight * SegmentDistancePx(cameras, candidate, line);
 }
 
 // For FitLandmark.
@@ -269,6 +275,11 @@ double RelativeLineStddev(const std::vector<LineMeasurement>& measurements,
 }
 
 }  // namespace
+
+double DistancePx(const CameraSet& cameras, const LineTrackState& track,
+                  const LineCandidate& candidate) {
+  return SegmentDistancePx(cameras, candidate, {track.point, track.direction});
+}
 
 double ErrorPx(const CameraSet& cameras, const LineTrackState& track,
                const LineCandidate& candidate) {

@@ -29,8 +29,12 @@ struct LineTrackState : TrackState<LineTrackId, LineCandidate> {
 };
 
 /// Root mean square of the distances of the segment's two end points from the
-/// image of the line, in pixels; infinity where the segment, lifted onto the
-/// line, lies behind the camera.
+/// image of the line, in pixels of the photograph; infinity where the segment,
+/// lifted onto the line, lies behind the camera.
+double DistancePx(const CameraSet& cameras, const LineTrackState& track,
+                  const LineCandidate& candidate);
+
+/// The same on the scale of the reference: times the weight of the candidate.
 double ErrorPx(const CameraSet& cameras, const LineTrackState& track,
                const LineCandidate& candidate);
 

@@ -30,13 +30,11 @@ void AddSolve(const SolveResult& solve, const Scene& scene,
                                 std::to_string(scene.coplanar_pairs.size()));
   if (solve.adjustment) {
     const AdjustmentSummary& adjustment = *solve.adjustment;
-    if (adjustment.points.observations_used > 0) {
-      content->figures.emplace_back(
-          "point RMSE", Format("%.2f px", adjustment.points.final_rmse_px));
+    if (const auto rmse_px = adjustment.points.final_rmse_px) {
+      content->figures.emplace_back("point RMSE", Format("%.2f px", *rmse_px));
     }
-    if (adjustment.lines.observations_used > 0) {
-      content->figures.emplace_back(
-          "line RMSE", Format("%.2f px", adjustment.lines.final_rmse_px));
+    if (const auto rmse_px = adjustment.lines.final_rmse_px) {
+      content->figures.emplace_back("line RMSE", Format("%.2f px", *rmse_px));
     }
     for (std::string& note : DescribeCalibrationPreferences(adjustment)) {
       content->notes.push_back(std::move(note));

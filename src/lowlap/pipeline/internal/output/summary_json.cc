@@ -3,6 +3,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/averaging/internal/view_grades.h"
@@ -42,12 +43,16 @@ Json RatioJson(const ScaleRatio& ratio) {
   return json;
 }
 
+Json RmseJson(const std::optional<double>& rmse_px) {
+  return rmse_px ? Json(*rmse_px) : Json();
+}
+
 Json AdjustedKindJson(const KindAdjustment& kind) {
   return {{"landmarks", kind.landmarks},
           {"observations_used", kind.observations_used},
           {"observations_dropped", kind.observations_dropped},
-          {"initial_rmse_px", kind.initial_rmse_px},
-          {"final_rmse_px", kind.final_rmse_px},
+          {"initial_rmse_px", RmseJson(kind.initial_rmse_px)},
+          {"final_rmse_px", RmseJson(kind.final_rmse_px)},
           {"threshold_px", kind.threshold_px}};
 }
 
