@@ -49,6 +49,7 @@ Result<int> Adjust(const AdjustFlags& flags) {
                           LoadGroundTruth(flags.ground_truth, scene));
   RunSummary summary;
   summary.command = "adjust";
+  summary.has_given_poses = true;
   if (truth) {
     summary.evaluation_before_adjustment = EvaluatePoses(scene, *truth);
   }

@@ -138,6 +138,8 @@ void BindSummaries(py::module_& module) {
       .def_readonly("observations_used", &KindAdjustment::observations_used)
       .def_readonly("observations_dropped",
                     &KindAdjustment::observations_dropped)
+      .def_readonly("observations_surplus",
+                    &KindAdjustment::observations_surplus)
       .def_readonly("initial_rmse_px", &KindAdjustment::initial_rmse_px)
       .def_readonly("final_rmse_px", &KindAdjustment::final_rmse_px)
       .def_readonly("stddev_px", &KindAdjustment::stddev_px)

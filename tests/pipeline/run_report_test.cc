@@ -58,6 +58,32 @@ TEST_F(MakeReportTest, TheSummaryHasTheDeviationOfEveryCentre) {
   }
 }
 
+TEST_F(MakeReportTest, TheSummaryIsOfWhatWasDone) {
+  summary_.solve->adjustment->coplanar.observations_surplus = 7;
+  summary_.solve->adjustment->lines = {};
+  auto solve = nlohmann::json::parse(ToJson(summary_, scene_))["solve"];
+  const auto& adjustment = solve["adjustment"];
+  EXPECT_EQ(adjustment["coplanar"]["observations_surplus"], 7);
+  EXPECT_TRUE(adjustment["points"]["final_rmse_px"].is_number());
+  EXPECT_TRUE(adjustment["lines"]["final_rmse_px"].is_null());
+  EXPECT_TRUE(adjustment["lines"]["initial_rmse_px"].is_null());
+  EXPECT_TRUE(solve["poses"].contains("doubtful"));
+  EXPECT_TRUE(solve.contains("structure"));
+
+  summary_.has_given_poses = true;
+  summary_.solve->structure.reset();
+  solve = nlohmann::json::parse(ToJson(summary_, scene_))["solve"];
+  EXPECT_EQ(solve["poses"]["placed"], 6);
+  for (const char* name : {"doubtful", "grades", "contests", "components",
+                           "median_rotation_residual_deg"}) {
+    EXPECT_FALSE(solve["poses"].contains(name)) << name;
+  }
+  for (const char* name :
+       {"ambiguous_motions", "reconsidered_poses", "structure"}) {
+    EXPECT_FALSE(solve.contains(name)) << name;
+  }
+}
+
 // The figure at the top is that of the plots.
 TEST_F(MakeReportTest, ThePageHasOneRmse) {
   const auto report = MakeReport(summary_, scene_, {});

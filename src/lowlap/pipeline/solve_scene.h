@@ -70,7 +70,8 @@ struct SolveResult {
   std::vector<ReconsideredPose> reconsidered;  // by views
   RatioSummary ratios;
   PoseSummary poses;
-  StructureSummary structure;
+  /// nullopt: none was built.
+  std::optional<StructureSummary> structure;
   std::optional<AdjustmentSummary> adjustment;
   /// Poses before the adjustment, for comparison, and, if there was one, the
   /// structure.

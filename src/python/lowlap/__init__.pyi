@@ -272,6 +272,7 @@ class KindAdjustment:
     landmarks: int
     observations_used: int
     observations_dropped: int
+    observations_surplus: int
     initial_rmse_px: Optional[float]
     final_rmse_px: Optional[float]
     stddev_px: float

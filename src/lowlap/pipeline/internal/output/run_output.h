@@ -26,6 +26,9 @@ struct RunSummary {
   /// What a command has to say beyond that, for people.
   std::vector<std::string> notes;
   std::optional<SolveResult> solve;
+  /// The poses of `solve` came with the scene: how they were found, and how far
+  /// each can be trusted, is not known.
+  bool has_given_poses = false;
   std::optional<PoseEvaluation> evaluation_before_adjustment;
   std::optional<PoseEvaluation> evaluation;
   /// What the two are made against.

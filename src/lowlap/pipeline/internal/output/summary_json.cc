@@ -56,6 +56,12 @@ Json AdjustedKindJson(const KindAdjustment& kind) {
           {"threshold_px", kind.threshold_px}};
 }
 
+Json AdjustedPairsJson(const KindAdjustment& pairs) {
+  Json json = AdjustedKindJson(pairs);
+  json["observations_surplus"] = pairs.observations_surplus;
+  return json;
+}
+
 Json TriangulationJson(const TriangulationSummary& kind) {
   return {{"tracks", kind.tracks},
           {"landmarks", kind.landmarks},
@@ -189,25 +195,16 @@ Json MotionsJson(const std::vector<HypothesisDecision>& motions) {
           {"decisions", std::move(decisions)}};
 }
 
-Json SolveJson(const SolveResult& solve, const Scene& scene) {
-  Json json;
-  json["ambiguous_motions"] = MotionsJson(solve.motions);
-  json["reconsidered_poses"] = Json::array();
+// How the poses were found.
+void AddComposition(const SolveResult& solve, const Scene& scene, Json* json) {
+  (*json)["ambiguous_motions"] = MotionsJson(solve.motions);
+  Json& reconsidered = (*json)["reconsidered_poses"] = Json::array();
   for (const ReconsideredPose& pose : solve.reconsidered) {
-    json["reconsidered_poses"].push_back(
-        {{"views", pose.views},
-         {"rotation_deg", pose.rotation_deg},
-         {"gained_digits", pose.gained_digits}});
+    reconsidered.push_back({{"views", pose.views},
+                            {"rotation_deg", pose.rotation_deg},
+                            {"gained_digits", pose.gained_digits}});
   }
-  json["ratios"] = {{"triplets", solve.ratios.num_triplets},
-                    {"meaningful", solve.ratios.num_meaningful},
-                    {"not_meaningful", solve.ratios.num_not_meaningful},
-                    {"without_candidates", solve.ratios.num_without_candidates},
-                    {"rejected_negative", solve.ratios.num_rejected_negative}};
-  Json& poses = json["poses"];
-  poses["views"] = solve.poses.num_views;
-  poses["placed"] = solve.poses.num_placed;
-  poses["unplaced"] = solve.poses.unplaced;
+  Json& poses = (*json)["poses"];
   poses["components"] = solve.poses.components;
   poses["grades"] = GradesJson(solve.poses, scene);
   poses["outlier_edges"] = OutliersJson(solve.poses.outlier_edges);
@@ -222,9 +219,25 @@ Json SolveJson(const SolveResult& solve, const Scene& scene) {
   AddDoubts(solve.poses, &poses);
   poses["median_rotation_residual_deg"] =
       solve.poses.median_rotation_residual_deg;
-  json["structure"] = {{"points", TriangulationJson(solve.structure.points)},
-                       {"lines", TriangulationJson(solve.structure.lines)},
-                       {"coplanar_pairs", solve.structure.coplanar_pairs}};
+}
+
+Json SolveJson(const RunSummary& summary, const Scene& scene) {
+  const SolveResult& solve = *summary.solve;
+  Json json;
+  json["ratios"] = {{"triplets", solve.ratios.num_triplets},
+                    {"meaningful", solve.ratios.num_meaningful},
+                    {"not_meaningful", solve.ratios.num_not_meaningful},
+                    {"without_candidates", solve.ratios.num_without_candidates},
+                    {"rejected_negative", solve.ratios.num_rejected_negative}};
+  json["poses"] = {{"views", solve.poses.num_views},
+                   {"placed", solve.poses.num_placed},
+                   {"unplaced", solve.poses.unplaced}};
+  if (!summary.has_given_poses) AddComposition(solve, scene, &json);
+  if (solve.structure) {
+    json["structure"] = {{"points", TriangulationJson(solve.structure->points)},
+                         {"lines", TriangulationJson(solve.structure->lines)},
+                         {"coplanar_pairs", solve.structure->coplanar_pairs}};
+  }
   if (solve.adjustment) {
     const AdjustmentSummary& a = *solve.adjustment;
     json["adjustment"] = {
@@ -238,7 +251,7 @@ Json SolveJson(const SolveResult& solve, const Scene& scene) {
         {"poses_without_observations", a.poses_without_observations},
         {"points", AdjustedKindJson(a.points)},
         {"lines", AdjustedKindJson(a.lines)},
-        {"coplanar", AdjustedKindJson(a.coplanar)},
+        {"coplanar", AdjustedPairsJson(a.coplanar)},
         {"planes", a.planes},
         {"landmarks_on_planes", a.landmarks_on_planes},
         {"directions", a.directions},
@@ -275,7 +288,7 @@ std::string ToJson(const RunSummary& summary, const Scene& scene) {
                                        {"reason", view.reason}});
   }
   if (!summary.notes.empty()) json["notes"] = summary.notes;
-  if (summary.solve) json["solve"] = SolveJson(*summary.solve, scene);
+  if (summary.solve) json["solve"] = SolveJson(summary, scene);
   if (summary.evaluation_before_adjustment) {
     json["evaluation_before_adjustment"] =
         Json::parse(ToJson(*summary.evaluation_before_adjustment));

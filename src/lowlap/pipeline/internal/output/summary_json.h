@@ -10,7 +10,8 @@
 namespace lowlap {
 
 /// The content of summary.json. Times and memory are in "cost", apart from
-/// everything that is the same in every run.
+/// everything that is the same in every run. What the command did not do has no
+/// entry; what there is nothing to compute from is null.
 std::string ToJson(const RunSummary& summary, const Scene& scene);
 
 /// The ratios as JSON: one object per triplet.
