@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <string>
+#include <vector>
 
 #include "cli/cli_fixture.h"
 #include "lowlap/core/internal/atomic_file.h"
@@ -48,6 +49,17 @@ class ReportPage : public Cli {
       shade += 15;
     }
     scene->root_path = Path("images");
+  }
+
+  // The scene, and its views in the truth.
+  void WriteWithTruth(const Scene& scene, const std::string& name) {
+    ASSERT_TRUE(
+        WriteFileAtomically(Path(name), FormatSceneBinary(scene).value()));
+    auto truth = ReadSceneBinary(Path("truth.lowlap"));
+    ASSERT_TRUE(truth);
+    truth->views = scene.views;
+    ASSERT_TRUE(WriteFileAtomically(Path("truth.lowlap"),
+                                    FormatSceneBinary(*truth).value()));
   }
 
   // Solves the scene and runs the self test on its page.
@@ -132,19 +144,28 @@ TEST_F(ReportPage, TakesHostileNamesAndNoPhotographs) {
     view.filename = "</script><script>throw 'bad'</script>" +
                     std::to_string(n++) + "\"'&.png";
   }
-  ASSERT_TRUE(WriteFileAtomically(Path("hostile.lowlap"),
-                                  FormatSceneBinary(*scene).value()));
-  auto truth = ReadSceneBinary(Path("truth.lowlap"));
-  ASSERT_TRUE(truth);
-  truth->views = scene->views;
-  ASSERT_TRUE(WriteFileAtomically(Path("truth.lowlap"),
-                                  FormatSceneBinary(*truth).value()));
+  WriteWithTruth(*scene, "hostile.lowlap");
   const json seen = Test("hostile.lowlap");
   EXPECT_EQ(seen["errors"], json::array()) << seen;
   EXPECT_EQ(seen["scripts"], 5);  // data, three.js, the page's, the test's two
   EXPECT_EQ(seen["thumbnails"], 8);
   EXPECT_GT(seen["photographColors"], 5);  // outline and features
   EXPECT_GT(seen["matchColors"], 50);
+}
+
+TEST_F(ReportPage, TellsViewsOfOneNameApart) {
+  auto scene = ReadSceneBinary(Path("room.lowlap"));
+  ASSERT_TRUE(scene);
+  const std::vector<std::string> names = {"a/1.jpg", "b/1.jpg",   "a/2.jpg",
+                                          "a/2.png", "x/c/3.jpg", "y/c/3.jpg",
+                                          "c/4.jpg", "5.jpg"};
+  auto name = names.begin();
+  for (auto& [id, view] : scene->views) view.filename = *name++;
+  WriteWithTruth(*scene, "named.lowlap");
+  const json seen = Test("named.lowlap");
+  EXPECT_EQ(seen["errors"], json::array()) << seen;
+  EXPECT_EQ(seen["nodeNames"],
+            json({"a/1", "b/1", "2.jpg", "2.png", "x/c/3", "y/c/3", "4", "5"}));
 }
 
 }  // namespace

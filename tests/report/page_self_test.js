@@ -90,7 +90,10 @@ async function testPage() {
 
   press(one('#tab-graph'));
   outcome.edges = document.querySelectorAll('#tab [data-pair]').length;
-  outcome.nodes = document.querySelectorAll('#tab [data-node]').length;
+  const nodes = [...document.querySelectorAll('#tab [data-node]')];
+  outcome.nodes = nodes.length;
+  outcome.nodeNames = nodes.map(
+      node => (node.querySelector('text') || {}).textContent);
   const arc = one('#tab [data-triplet]');
   if (arc) {
     press(arc);

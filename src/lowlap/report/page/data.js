@@ -79,9 +79,27 @@ function decodePage(raw) {
 const page = decodePage(
     JSON.parse(document.getElementById('data').textContent));
 
-function shortName(view) {
-  return page.views[view].name.replace(/^.*\//, '').replace(/\.[^.]*$/, '');
+// The least of each path, from its end, that no other view has: without the
+// extension or with it, with more and more folders.
+function shortestNames(names) {
+  const shortest = names.map(() => undefined);
+  const depth = Math.max(0, ...names.map(name => name.split('/').length));
+  for (let kept = 1; kept <= depth; ++kept) {
+    const ends = names.map(name => name.split('/').slice(-kept).join('/'));
+    const stems = ends.map(end => end.replace(/\.[^./]*$/, ''));
+    for (const parts of [stems, ends]) {
+      const count = new Map();
+      for (const part of parts) count.set(part, (count.get(part) || 0) + 1);
+      parts.forEach((part, n) => {
+        if (count.get(part) === 1) shortest[n] = shortest[n] || part;
+      });
+    }
+  }
+  return names.map((name, n) => shortest[n] || name);
 }
+
+const shortNames = shortestNames(page.views.map(view => view.name));
+const shortName = view => shortNames[view];
 
 function pairOf(a, b) {
   return page.views[a].pairs.find(
