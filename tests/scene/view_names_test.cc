@@ -64,5 +64,30 @@ TEST(ViewNames, AWordThatSeveralViewsFitIsRefused) {
   }
 }
 
+TEST(ViewNames, TheRefusalSaysHowToNameEach) {
+  const auto why = [](const Scene& scene, const char* word) {
+    return ViewNames(scene).Find(word).error().message;
+  };
+  Scene scene = SceneWith({{0, "b.jpg"}, {1, "b.jpg"}, {7, "c.jpg"}});
+  scene.views.at(0).local_path = "left";
+  scene.views.at(1).local_path = "right";
+  EXPECT_EQ(why(scene, "b.jpg"),
+            "several views are named \"b.jpg\": left/b.jpg, right/b.jpg; use "
+            "one of these names");
+  // A longer name would not help.
+  scene.views.at(0).local_path = "right";
+  EXPECT_EQ(why(scene, "right/b.jpg"),
+            "several views are named \"right/b.jpg\": nothing tells them apart "
+            "but their ids, 0, 1");
+  scene = Scene();
+  for (std::uint32_t id = 0; id < 9; ++id) {
+    scene.views[id].local_path = std::to_string(id);
+    scene.views[id].filename = "a.jpg";
+  }
+  EXPECT_EQ(why(scene, "a"),
+            "several views are named \"a\": 0/a.jpg, 1/a.jpg, 2/a.jpg, "
+            "3/a.jpg, ...; use one of these names");
+}
+
 }  // namespace
 }  // namespace lowlap

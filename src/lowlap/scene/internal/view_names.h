@@ -22,12 +22,13 @@ class ViewNames {
  public:
   explicit ViewNames(const Scene& scene);
 
-  /// kInvalidArgument: no view, or several.
+  /// kInvalidArgument: no view, or several, which are named.
   Result<ViewId> Find(const std::string& word) const;
 
  private:
   using Index = std::map<std::string, std::vector<ViewId>>;
 
+  std::map<ViewId, std::string> whole_names_;
   std::vector<Index> indices_;  // in the order of precedence
 };
 
