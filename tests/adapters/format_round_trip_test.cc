@@ -57,6 +57,9 @@ Scene ExampleScene() {
   scene.views.at(1).center_prior = CenterPrior{{1, 1, 1}, {1, 2, 3}};
   scene.given_intrinsics[0] = intrinsic;
   scene.poses.begin()->second.center_covariance = 2 * Mat3::Identity();
+  // Two cameras of a rig; LIMAP has no matches of views at one place.
+  scene.poses.erase(scene.views.at(4).pose_id);
+  scene.views.at(4).pose_id = scene.views.at(0).pose_id;
   scene.control_points[4].position = {1, 2, 3};
   auto& covariances = scene.features.at(0).point_covariances;
   covariances.assign(scene.features.at(0).points_px.size(), Vec3(1, 0, 2));

@@ -49,6 +49,14 @@ class Inventory {
   }
 
   void AddViews() {
+    if (Holds(SceneContent::kSharedPoses)) {
+      std::map<PoseId, double> views;
+      for (const auto& [id, view] : scene_.views) ++views[view.pose_id];
+      SceneItem item{"views of a pose", {}};
+      for (const auto& [pose, count] : views) item.numbers.push_back(count);
+      std::sort(item.numbers.begin(), item.numbers.end());
+      items_.push_back(item);
+    }
     for (const auto& [id, view] : scene_.views) {
       if (Holds(SceneContent::kNames)) {
         items_.push_back({"view " + view.PathBelowRoot(), {}});

@@ -1,6 +1,7 @@
 #include "lowlap/io/scene_content.h"
 
 #include <algorithm>
+#include <map>
 
 namespace lowlap {
 namespace {
@@ -11,6 +12,14 @@ std::size_t Sum(const Map& map, const Size& size) {
   std::size_t sum = 0;
   for (const auto& entry : map) sum += size(entry.second);
   return sum;
+}
+
+/// Poses that several views have in common.
+std::size_t CountSharedPoses(const Scene& scene) {
+  std::map<PoseId, std::size_t> views;
+  for (const auto& entry : scene.views) ++views[entry.second.pose_id];
+  views.erase(kInvalidId);
+  return Sum(views, [](std::size_t count) { return count > 1; });
 }
 
 std::string Joined(const std::vector<std::string>& parts) {
@@ -44,6 +53,7 @@ const std::vector<ContentKind>& ContentKinds() {
        [](const Scene& scene) { return scene.given_intrinsics.size(); }},
       {Content::kPoses, "poses",
        [](const Scene& scene) { return scene.poses.size(); }},
+      {Content::kSharedPoses, "shared poses", CountSharedPoses},
       {Content::kCenterCovariances, "covariances of centres",
        [](const Scene& scene) {
          return Sum(scene.poses, [](const Pose& pose) {

@@ -18,6 +18,7 @@ enum class SceneContent {
   kDistortions,  // of intrinsics that have one
   kGivenIntrinsics,
   kPoses,
+  kSharedPoses,  // that several views have one pose
   kCenterCovariances,
   kCenterPriors,
   kKeypoints,

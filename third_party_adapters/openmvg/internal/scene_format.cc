@@ -46,9 +46,9 @@ auto WritePrepared(FormatScene format) {
 const SceneContents kHeld = {
     SceneContent::kNames,        SceneContent::kIntrinsics,
     SceneContent::kFrames,       SceneContent::kDistortions,
-    SceneContent::kPoses,        SceneContent::kCenterPriors,
-    SceneContent::kPoints,       SceneContent::kObservations,
-    SceneContent::kControlPoints};
+    SceneContent::kPoses,        SceneContent::kSharedPoses,
+    SceneContent::kCenterPriors, SceneContent::kPoints,
+    SceneContent::kObservations, SceneContent::kControlPoints};
 
 }  // namespace
 
