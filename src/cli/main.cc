@@ -7,8 +7,10 @@
 #include <new>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include "cli/command.h"
+#include "cli/flags/solve_flags.h"
 #include "cli/interrupts.h"
 
 namespace {
@@ -102,7 +104,13 @@ int main(int argc, char** argv) {
                  argv[1]);
     return static_cast<int>(CLI::ExitCodes::ExtrasError);
   }
-  CLI11_PARSE(program, argc, argv);
+  const std::vector<std::string> arguments =
+      lowlap::cli::WithRefinedParts({argv, argv + argc});
+  std::vector<const char*> words;
+  for (const std::string& argument : arguments) {
+    words.push_back(argument.c_str());
+  }
+  CLI11_PARSE(program, argc, words.data());
   lowlap::cli::CatchInterrupts();
   std::set_new_handler(OnNoMemory);
   std::set_terminate(OnTerminate);

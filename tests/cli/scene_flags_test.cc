@@ -1,6 +1,8 @@
 // What commands on a solved or measured scene do with it.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -8,6 +10,9 @@
 
 namespace lowlap {
 namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
 
 class SceneFlags : public Cli {
  protected:
@@ -22,6 +27,27 @@ class SceneFlags : public Cli {
   std::string Room() const { return Path("room.lowlap"); }
   std::string Truth() const { return Path("truth.lowlap"); }
 };
+
+TEST_F(SceneFlags, TheSceneMayFollowRefineIntrinsics) {
+  const auto solved = [&](const std::string& arguments) {
+    fs::remove_all(Path("out"));
+    const Outcome outcome = Lowlap(arguments + " -o " + Path("out"));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return ReadText(Path("out/scene.lowlap"));
+  };
+  EXPECT_EQ(
+      solved("solve --refine-intrinsics " + Room()),
+      solved("solve " + Room() + " --refine-intrinsics focal,distortion"));
+  EXPECT_EQ(
+      solved("adjust --refine-intrinsics " + Truth()),
+      solved("adjust " + Truth() + " --refine-intrinsics focal,distortion"));
+  EXPECT_EQ(solved("solve --refine-intrinsics focal " + Room()),
+            solved("solve " + Room() + " --refine-intrinsics=focal"));
+  const Outcome wrong = Lowlap("solve --refine-intrinsics shape " + Room() +
+                               " -o " + Path("wrong"));
+  EXPECT_NE(wrong.exit_code, 0);
+  EXPECT_THAT(wrong.output, HasSubstr("no part 'shape'"));
+}
 
 TEST_F(SceneFlags, TheSummaryOfAdjustHasNoGrades) {
   const auto summary_of = [&](const std::string& command) {

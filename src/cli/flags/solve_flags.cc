@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <map>
+#include <system_error>
 #include <utility>
 
 #include "cli/command.h"
@@ -21,6 +22,9 @@
 
 namespace lowlap::cli {
 namespace {
+
+constexpr char kRefinementFlag[] = "--refine-intrinsics";
+constexpr char kRefinedWithoutList[] = "focal,distortion";
 
 int CountFirm(const PoseSummary& poses) {
   int count = 0;
@@ -222,15 +226,26 @@ void AddStrictFlag(CLI::App* command, bool* strict) {
 }
 
 Option AddRefinementFlag(CLI::App* command, std::string* parts) {
-  return AddOption(command, "--refine-intrinsics", *parts,
+  return AddOption(command, kRefinementFlag, *parts,
                    "Free these parts of every intrinsic in the bundle "
                    "adjustment, and hold the rest: a list of focal, aspect "
                    "(fy / fx), principal-point, distortion (of a pinhole: "
-                   "k1), or all; without a list: focal,distortion. Without "
-                   "this flag all is held, and said if the images contradict "
-                   "it")
+                   "k1), or all; without a list, or before the name of a "
+                   "file: focal,distortion. Without this flag all is held, and "
+                   "said if the images contradict it")
       .ValueIsOptional()
-      .ShowDefault("focal,distortion");
+      .ShowDefault(kRefinedWithoutList);
+}
+
+std::vector<std::string> WithRefinedParts(std::vector<std::string> arguments) {
+  for (std::size_t n = 0; n + 1 < arguments.size(); ++n) {
+    std::error_code ignored;
+    if (arguments[n] == kRefinementFlag && !ParseRefinement(arguments[n + 1]) &&
+        std::filesystem::exists(arguments[n + 1], ignored)) {
+      arguments[n] += std::string("=") + kRefinedWithoutList;
+    }
+  }
+  return arguments;
 }
 
 Status SetRefinement(const std::string& parts, Scene* scene,

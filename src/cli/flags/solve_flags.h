@@ -63,6 +63,10 @@ Option AddStrategiesFlag(CLI::App* command,
 
 /// --refine-intrinsics [focal,aspect,principal-point,distortion|all]
 Option AddRefinementFlag(CLI::App* command, std::string* parts);
+/// The arguments of the program, where that flag has the parts that it stands
+/// for without a list ("=focal,distortion") if the word after it is no list but
+/// the name of a file: this is an argument of its own.
+std::vector<std::string> WithRefinedParts(std::vector<std::string> arguments);
 /// Sets the options for every intrinsic of the scene (RefineAllIntrinsics).
 Status SetRefinement(const std::string& parts, Scene* scene,
                      AdjustmentOptions* options);
