@@ -49,6 +49,27 @@ TEST_F(SceneFlags, TheSceneMayFollowRefineIntrinsics) {
   EXPECT_THAT(wrong.output, HasSubstr("no part 'shape'"));
 }
 
+TEST_F(SceneFlags, SolveWritesNothingOverItsInput) {
+  fs::create_directory(Path("matches"));
+  const std::string listing = Path("matches/sfm_data.json");
+  ASSERT_EQ(Lowlap("convert " + Room() + " " + listing).exit_code, 0);
+  ASSERT_EQ(Lowlap("convert " + Room() + " " + Path("room.json")).exit_code, 0);
+  const std::string text = ReadText(listing);
+  for (const std::string& arguments :
+       {"-i " + listing + " -o " + Path("matches"),
+        "-i " + listing + " -m " + Path("matches") + " -o " + Path("matches"),
+        // The listing that is there is not the one that is read.
+        "-i " + Path("room.json") + " -m " + Path("matches") + " -o " +
+            Path("matches/."),
+        "-i " + Path("room.json") + " -o " + Path("room.json")}) {
+    const Outcome outcome = Lowlap("solve " + arguments);
+    EXPECT_EQ(outcome.exit_code, 1) << arguments;
+    EXPECT_THAT(outcome.output, HasSubstr("name one file")) << arguments;
+    EXPECT_EQ(FilesIn("matches"), 1u) << arguments;
+    EXPECT_EQ(ReadText(listing), text) << arguments;
+  }
+}
+
 TEST_F(SceneFlags, TheSummaryOfAdjustHasNoGrades) {
   const auto summary_of = [&](const std::string& command) {
     const Outcome outcome = Lowlap(command + " -o " + Path("out"));

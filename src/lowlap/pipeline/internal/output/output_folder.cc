@@ -55,6 +55,15 @@ Status PrepareOutputFolder(const std::string& folder) {
   return {};
 }
 
+std::vector<std::string> OutputFiles(const std::string& folder) {
+  std::vector<std::string> paths;
+  for (const char* name : {"sfm_data.json", "scene.lowlap", "cloud.ply",
+                           "report.html", "summary.json"}) {
+    paths.push_back((fs::path(folder) / name).string());
+  }
+  return paths;
+}
+
 Status WriteOutputs(Scene scene, const RunSummary& summary,
                     const RunContext& context, const std::string& folder,
                     const std::function<Status(const Scene&)>& before_commit) {

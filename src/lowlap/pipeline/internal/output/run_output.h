@@ -43,6 +43,9 @@ struct RunSummary {
 /// file is in the way or a folder cannot be written to.
 Status CheckOutputFolder(const std::string& folder);
 
+/// The paths of what WriteOutputs writes.
+std::vector<std::string> OutputFiles(const std::string& folder);
+
 /// Makes the folder and writes what every solving command leaves, as a FileSet:
 /// sfm_data.json (OpenMVG loads it), scene.lowlap (everything), cloud.ply
 /// (points, lines, cameras), report.html (for a person) and summary.json (for
