@@ -6,6 +6,7 @@
 
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"
+#include "lowlap/pipeline/internal/measure/calibration_fit.h"
 #include "lowlap/pipeline/internal/measure/matched_points.h"
 #include "third_party_adapters/colmap/internal/database.h"
 #include "third_party_adapters/openmvg/internal/import.h"
@@ -20,6 +21,12 @@ Result<std::vector<ViewId>> ExcludedViews(const Scene& scene,
   auto excluded = FindViews(scene, input.exclude);
   if (!excluded) excluded.error().file = input.scene;
   return excluded;
+}
+
+void WarnOfFocals(const Scene& scene, const RunContext& context) {
+  if (const auto warning = ImplausibleFocals(scene)) {
+    context.Log(LogLevel::kWarning, *warning);
+  }
 }
 
 // Features and point matches of another program.
@@ -77,6 +84,7 @@ Result<LoadedScene> EstimatePoses(const SceneInput& input,
       }
     }
   }
+  WarnOfFocals(loaded.scene, context);
   if (check) LOWLAP_RETURN_IF_ERROR(check(loaded.scene));
   PhotographUse use = PhotographUse::kNone;
   if (!input.images.empty()) {
@@ -98,6 +106,7 @@ Result<LoadedScene> ReadOwnScene(const SceneInput& input,
   for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
   LOWLAP_ASSIGN_OR_RETURN(const auto excluded, ExcludedViews(scene, input));
   if (!excluded.empty()) scene = WithoutViews(scene, excluded);
+  WarnOfFocals(scene, context);
   if (check) LOWLAP_RETURN_IF_ERROR(check(scene));
   return LoadedScene{std::move(scene), {}};
 }

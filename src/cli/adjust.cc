@@ -8,6 +8,7 @@
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/measure/calibration_fit.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
 #include "third_party_adapters/scene_formats.h"
 
@@ -45,6 +46,9 @@ Result<int> Adjust(const AdjustFlags& flags) {
                      flags.scene);
   }
   RestoreGivenIntrinsics(&scene);
+  if (const auto warning = ImplausibleFocals(scene)) {
+    context.Log(LogLevel::kWarning, *warning);
+  }
   LOWLAP_ASSIGN_OR_RETURN(const auto truth,
                           LoadGroundTruth(flags.ground_truth, scene));
   RunSummary summary;

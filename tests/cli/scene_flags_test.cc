@@ -5,14 +5,18 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "cli_fixture.h"
+#include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/io/internal/scene_binary.h"
 
 namespace lowlap {
 namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class SceneFlags : public Cli {
  protected:
@@ -67,6 +71,25 @@ TEST_F(SceneFlags, SolveWritesNothingOverItsInput) {
     EXPECT_THAT(outcome.output, HasSubstr("name one file")) << arguments;
     EXPECT_EQ(FilesIn("matches"), 1u) << arguments;
     EXPECT_EQ(ReadText(listing), text) << arguments;
+  }
+}
+
+TEST_F(SceneFlags, FocalLengthsThatNoLensHasGetAWarning) {
+  const std::string words = "not in millimetres";
+  for (const auto& [command, path] :
+       {std::pair<std::string, std::string>("solve --no-adjust", Room()),
+        {"adjust", Truth()}}) {
+    EXPECT_THAT(Lowlap(command + " " + path + " -q -o " + Path("out")).output,
+                Not(HasSubstr(words)));
+    auto scene = ReadSceneBinary(path);
+    ASSERT_TRUE(scene);
+    for (auto& [id, intrinsic] : scene->intrinsics) {
+      intrinsic.fx_px = intrinsic.fy_px = 4.5;
+    }
+    ASSERT_TRUE(WriteFileAtomically(path, FormatSceneBinary(*scene).value()));
+    EXPECT_THAT(Lowlap(command + " " + path + " -q -o " + Path("out")).output,
+                HasSubstr(words))
+        << command;
   }
 }
 

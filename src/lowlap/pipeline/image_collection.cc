@@ -221,25 +221,6 @@ IntrinsicId Add(const Intrinsic& intrinsic, IntrinsicId wanted, Scene* scene) {
   return id;
 }
 
-// They may be millimetres. Fisheye lenses see more; panoramas have none.
-void NoteImplausibleFocals(const Scene& scene,
-                           std::vector<std::string>* notes) {
-  for (const auto& [id, intrinsic] : scene.intrinsics) {
-    const ImageSize size = {intrinsic.width_px, intrinsic.height_px};
-    if (intrinsic.model == CameraModel::kFisheye ||
-        intrinsic.model == CameraModel::kSpherical ||
-        IsPlausibleFocal(intrinsic.fx_px, size)) {
-      continue;
-    }
-    notes->push_back(Format(
-        "a focal length of %.4g px for photographs of %d x %d: %.3g degrees of "
-        "view; it is meant in pixels, not in millimetres",
-        intrinsic.fx_px, size.width_px, size.height_px,
-        DegFromRad(2 * std::atan(0.5 * std::max(size.width_px, size.height_px) /
-                                 intrinsic.fx_px))));
-  }
-}
-
 }  // namespace
 
 Result<Scene> SceneFromImages(const std::string& folder,
@@ -332,7 +313,7 @@ Result<Scene> SceneFromImages(const std::string& folder,
                      std::to_string(given_for->num_unlisted()) +
                      " of the photographs: they have its only intrinsic");
   }
-  NoteImplausibleFocals(scene, notes);
+  if (auto note = ImplausibleFocals(scene)) notes->push_back(std::move(*note));
   return scene;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "lowlap/core/internal/format.h"
@@ -84,6 +85,33 @@ bool HasShapeOf(const ImageSize& size, const ImageSize& of) {
 bool IsPlausibleFocal(double focal_px, const ImageSize& size) {
   const int longer_px = std::max(size.width_px, size.height_px);
   return focal_px >= 0.2 * longer_px && focal_px <= 30 * longer_px;
+}
+
+std::optional<std::string> ImplausibleFocals(const Scene& scene) {
+  std::set<IntrinsicId> used;
+  for (const auto& entry : scene.views) used.insert(entry.second.intrinsic_id);
+  std::string first;
+  std::size_t count = 0;
+  for (const auto& [id, intrinsic] : scene.intrinsics) {
+    const ImageSize size = {intrinsic.width_px, intrinsic.height_px};
+    if (used.count(id) == 0 || intrinsic.model == CameraModel::kFisheye ||
+        intrinsic.model == CameraModel::kSpherical) {
+      continue;
+    }
+    const double focal_px = IsPlausibleFocal(intrinsic.fx_px, size)
+                                ? intrinsic.fy_px
+                                : intrinsic.fx_px;
+    if (IsPlausibleFocal(focal_px, size) || ++count > 1) continue;
+    first = Format(
+        "a focal length of %.4g px for photographs of %d x %d: %.3g degrees of "
+        "view; it is meant in pixels, not in millimetres",
+        focal_px, size.width_px, size.height_px,
+        DegFromRad(2 * std::atan(0.5 * std::max(size.width_px, size.height_px) /
+                                 focal_px)));
+  }
+  if (count == 0) return std::nullopt;
+  if (count > 1) first += Format(" (and %zu more such cameras)", count - 1);
+  return first;
 }
 
 double PrincipalPointOffset(const Intrinsic& intrinsic, const ImageSize& size) {

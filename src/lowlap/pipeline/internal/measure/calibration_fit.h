@@ -6,7 +6,7 @@
 
 #include "lowlap/core/result.h"
 #include "lowlap/features/internal/image.h"
-#include "lowlap/scene/intrinsic.h"
+#include "lowlap/scene/scene.h"
 
 namespace lowlap {
 
@@ -26,6 +26,11 @@ bool HasShapeOf(const ImageSize& size, const ImageSize& of);
 /// view at most along the longer side, and two at least. Millimetres are not,
 /// nor are lengths from the resolution of a print.
 bool IsPlausibleFocal(double focal_px, const ImageSize& size);
+
+/// What is wrong with the first focal length of the views that is not
+/// plausible, and with how many more; nullopt: none. Fisheye lenses may see
+/// more; panoramas have none.
+std::optional<std::string> ImplausibleFocals(const Scene& scene);
 
 /// How far a principal point lies from the middle of an image, as a share of
 /// its width or height, whichever is more.
