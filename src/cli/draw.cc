@@ -135,7 +135,8 @@ Result<int> Draw(const DrawFlags& flags) {
   if (!flags.images.empty()) scene.root_path = flags.images;
   LOWLAP_ASSIGN_OR_RETURN(const Selection selection, Select(scene, flags));
 
-  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(flags.output));
+  OutputFolder folder;
+  LOWLAP_RETURN_IF_ERROR(folder.Make(flags.output));
   FileSet files;
   std::mutex files_mutex;
   const std::vector<ViewId> views(selection.views.begin(),

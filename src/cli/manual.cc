@@ -1,11 +1,14 @@
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/flags/command_help.h"
-#include "lowlap/core/internal/atomic_file.h"
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/output/output_folder.h"
 
 namespace lowlap::cli {
 namespace {
@@ -116,14 +119,12 @@ struct ManualFlags {
 Result<int> Print(const CLI::App& program, const ManualFlags& flags) {
   const std::vector<CommandHelp> commands = HelpOfCommands(program);
   if (!flags.folder.empty()) {
-    FileSet files;
-    LOWLAP_RETURN_IF_ERROR(
-        files.Add(flags.folder + "/lowlap.1", PageOfProgram(commands)));
+    std::vector<std::pair<std::string, std::string>> pages = {
+        {"lowlap.1", PageOfProgram(commands)}};
     for (const CommandHelp& command : commands) {
-      LOWLAP_RETURN_IF_ERROR(files.Add(
-          flags.folder + "/lowlap-" + command.name + ".1", PageOf(command)));
+      pages.emplace_back("lowlap-" + command.name + ".1", PageOf(command));
     }
-    LOWLAP_RETURN_IF_ERROR(files.Commit());
+    LOWLAP_RETURN_IF_ERROR(WriteTextFiles(pages, flags.folder));
     return 0;
   }
   std::string page;

@@ -39,7 +39,8 @@ struct RobustnessFlags {
 Result<ResultLog> OpenTrials(
     const RobustnessFlags& flags, const std::string& settings,
     const std::function<bool(const std::string&)>& take) {
-  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(flags.output));
+  OutputFolder folder;
+  LOWLAP_RETURN_IF_ERROR(folder.Make(flags.output));
   return ResultLog::Open(
       (std::filesystem::path(flags.output) / "trials.jsonl").string(), settings,
       take);

@@ -174,7 +174,8 @@ Result<int> Subsets(const SubsetsFlags& flags) {
       ChooseSubsets(scene, flags.drop, flags.sample, flags.common.seed));
   LOWLAP_ASSIGN_OR_RETURN(const auto settings,
                           SettingsText(flags, scene, *truth));
-  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(flags.output));
+  OutputFolder folder;
+  LOWLAP_RETURN_IF_ERROR(folder.Make(flags.output));
   std::map<std::vector<ViewId>, SubsetOutcome> outcomes;
   const auto log = ResultLog::Open(
       (std::filesystem::path(flags.output) / "results.jsonl").string(),

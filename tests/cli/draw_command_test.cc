@@ -61,6 +61,7 @@ TEST_F(DrawCommand, RefusesWhatItCannotDrawAndWritesNothing) {
     EXPECT_EQ(outcome.exit_code, 1) << arguments;
     EXPECT_THAT(outcome.output, HasSubstr(why));
     EXPECT_EQ(FilesIn("drawn"), 0u) << arguments;
+    EXPECT_FALSE(fs::exists(Path("drawn"))) << arguments;
   };
   refused("--views nobody", "nobody");
   refused("--pairs 000000", "joined by a hyphen");

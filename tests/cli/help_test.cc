@@ -72,6 +72,12 @@ TEST_F(Help, TroffReadsThePagesWithoutAWarning) {
   EXPECT_EQ(ReadText(warnings), "");
 }
 
+TEST_F(Help, ManualMakesItsFolder) {
+  const Outcome outcome = Lowlap("manual --output " + Path("new/man1"));
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_EQ(FilesIn("new/man1"), Commands().size() + 1);
+}
+
 TEST_F(Help, ManualOfNoCommandIsAnError) {
   const Outcome outcome = Lowlap("manual slove");
   EXPECT_EQ(outcome.exit_code, 1);

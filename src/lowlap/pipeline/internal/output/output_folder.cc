@@ -42,9 +42,19 @@ Status CheckOutputFolder(const std::string& folder) {
   return {};
 }
 
-Status PrepareOutputFolder(const std::string& folder) {
+OutputFolder::~OutputFolder() {
+  std::error_code is_in_use;
+  for (const std::string& folder : made_) fs::remove(folder, is_in_use);
+}
+
+Status OutputFolder::Make(const std::string& folder) {
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(folder));
   std::error_code error;
+  for (fs::path missing = fs::absolute(folder, error).lexically_normal();
+       !missing.empty() && !fs::exists(missing, error);
+       missing = missing.parent_path()) {
+    made_.push_back(missing.string());
+  }
   fs::create_directories(folder, error);
   if (error || !fs::is_directory(folder, error)) {
     return MakeError(ErrorCode::kIo,
@@ -72,7 +82,8 @@ Status WriteOutputs(Scene scene, const RunSummary& summary,
     const fs::path absolute = fs::absolute(scene.root_path, error);
     if (!error) scene.root_path = absolute.lexically_normal().string();
   }
-  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(folder));
+  OutputFolder made;
+  LOWLAP_RETURN_IF_ERROR(made.Make(folder));
   FileSet files;
   // One after the other, so that one content at a time is in memory.
   const auto add = [&](const char* name,
@@ -94,7 +105,8 @@ Status WriteOutputs(Scene scene, const RunSummary& summary,
 Status WriteTextFiles(
     const std::vector<std::pair<std::string, std::string>>& files,
     const std::string& folder) {
-  LOWLAP_RETURN_IF_ERROR(PrepareOutputFolder(folder));
+  OutputFolder made;
+  LOWLAP_RETURN_IF_ERROR(made.Make(folder));
   FileSet set;
   for (const auto& [name, content] : files) {
     LOWLAP_RETURN_IF_ERROR(
