@@ -50,6 +50,34 @@ TEST(MeasurementCostTest, TracksOfTwoViewsAreNotAsked) {
   EXPECT_EQ(CostOf(MakeTestScene(options).scene), 0);
 }
 
+// With a point's three unknowns, or a line's four, found from the track.
+template <class Tracks>
+double DegreesOfFreedom(const Tracks& tracks, int unknowns) {
+  double sum = 0;
+  for (const auto& [id, track] : tracks) {
+    if (track.size() > 2) sum += 2.0 * track.size() - unknowns;
+  }
+  return sum;
+}
+
+TEST(MeasurementCostTest, IsAChiSquareOfEitherKind) {
+  TestSceneOptions options;
+  options.noise_px = kNoise.stddev_px;
+  options.num_points = 400;
+  options.num_lines = 400;
+  options.pairs_per_triplet = 0;
+  const Scene scene = MakeTestScene(options).scene;
+  Scene points = scene, lines = scene;
+  points.line_tracks.clear();
+  lines.point_tracks.clear();
+  const double of_points = DegreesOfFreedom(scene.point_tracks, 3);
+  const double of_lines = DegreesOfFreedom(scene.line_tracks, 4);
+  ASSERT_GT(of_points, 500);
+  ASSERT_GT(of_lines, 500);
+  EXPECT_NEAR(CostOf(points) / of_points, 1, 0.15);
+  EXPECT_NEAR(CostOf(lines) / of_lines, 1, 0.15);
+}
+
 // However far off they are: what is out counts as such.
 TEST(MeasurementCostTest, DriftCosts) {
   TestSceneOptions options;
