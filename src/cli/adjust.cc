@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "cli/command.h"
+#include "cli/flags/distinct_files.h"
 #include "cli/flags/solve_flags.h"
 #include "cli/flags/truth.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
@@ -38,6 +39,8 @@ Result<int> Adjust(const AdjustFlags& flags) {
   options.principal_point_stddev = flags.principal_point_stddev;
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   // A folder that cannot be written is found before the work.
+  LOWLAP_RETURN_IF_ERROR(
+      CheckInputsStay({{"the scene", flags.scene}}, flags.output));
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
   LOWLAP_ASSIGN_OR_RETURN(auto scene, ReadScene(flags.scene));
   if (scene.poses.empty()) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/flags/distinct_files.h"
 #include "cli/flags/photographs.h"
 #include "cli/flags/scene_input.h"
 #include "cli/flags/solve_flags.h"
@@ -105,6 +106,11 @@ Result<int> Merge(const MergeFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   // Everything that can be refused is refused before the long work.
   LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeSolveOptions(flags.solve));
+  std::vector<NamedFile> inputs = InputFiles(flags.measured);
+  for (const std::string& model : flags.models) {
+    inputs.push_back({"a model", model});
+  }
+  LOWLAP_RETURN_IF_ERROR(CheckInputsStay(inputs, flags.output));
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
   LOWLAP_ASSIGN_OR_RETURN(const auto scenes, ReadModels(flags, context));
   StageLog stages;

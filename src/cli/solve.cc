@@ -151,24 +151,6 @@ Result<SolveFlags> WithHostFlags(SolveFlags solve, const HostFlags& host,
   return solve;
 }
 
-// That no result takes the place of an input. OpenMVG keeps the listing in the
-// matches folder, whichever is named.
-Status CheckInputsStay(const SceneInputFlags& input,
-                       const OutputPlace& output) {
-  std::vector<NamedFile> inputs = {{"the scene", input.scene}};
-  if (!input.matches_dir.empty()) {
-    inputs.push_back(
-        {"the listing of the matches", input.matches_dir + "/sfm_data.json"});
-  }
-  std::vector<std::string> results = OutputFiles(output.folder);
-  results.push_back(output.scene_file);
-  for (const std::string& result : results) {
-    LOWLAP_RETURN_IF_ERROR(
-        CheckDistinct(inputs, {{"a result of --output", result}}));
-  }
-  return {};
-}
-
 Result<int> Solve(const SolveCommandFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   LOWLAP_ASSIGN_OR_RETURN(const SolveFlags solve,
@@ -176,7 +158,8 @@ Result<int> Solve(const SolveCommandFlags& flags) {
   LOWLAP_RETURN_IF_ERROR(MakeSolveOptions(solve));
   // What cannot be written, or evaluated, is found before the work.
   const OutputPlace output = OutputPlaceOf(flags.output);
-  LOWLAP_RETURN_IF_ERROR(CheckInputsStay(flags.input, output));
+  LOWLAP_RETURN_IF_ERROR(CheckInputsStay(InputFiles(flags.input), output.folder,
+                                         output.scene_file));
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(output.folder));
   const auto check = [&](const Scene& views) -> Status {
     LOWLAP_RETURN_IF_ERROR(LoadGroundTruth(solve.ground_truth, views));

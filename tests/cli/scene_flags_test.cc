@@ -74,6 +74,21 @@ TEST_F(SceneFlags, SolveWritesNothingOverItsInput) {
   }
 }
 
+TEST_F(SceneFlags, AdjustAndMergeWriteNothingOverTheirInput) {
+  const std::string scene = Path("scene.lowlap"), folder = Path("");
+  ASSERT_EQ(Lowlap("convert " + Truth() + " " + scene).exit_code, 0);
+  const std::string text = ReadText(scene);
+  for (const std::string& arguments :
+       {"adjust " + scene,
+        "merge " + scene + " " + scene + " --scene " + Room(),
+        "merge " + Truth() + " " + Truth() + " --scene " + scene}) {
+    const Outcome outcome = Lowlap(arguments + " -o " + folder);
+    EXPECT_EQ(outcome.exit_code, 1) << arguments;
+    EXPECT_THAT(outcome.output, HasSubstr("name one file")) << arguments;
+    EXPECT_EQ(ReadText(scene), text) << arguments;
+  }
+}
+
 TEST_F(SceneFlags, FocalLengthsThatNoLensHasGetAWarning) {
   const std::string words = "not in millimetres";
   for (const auto& [command, path] :

@@ -3,6 +3,9 @@
 #include <filesystem>
 #include <system_error>
 
+#include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/output/run_output.h"
+
 namespace lowlap::cli {
 namespace {
 
@@ -31,6 +34,18 @@ Status CheckDistinct(const std::vector<NamedFile>& inputs,
       }
     }
     others.push_back(output);
+  }
+  return {};
+}
+
+Status CheckInputsStay(const std::vector<NamedFile>& inputs,
+                       const std::string& output_folder,
+                       const std::string& scene_file) {
+  std::vector<std::string> results = OutputFiles(output_folder);
+  results.push_back(scene_file);
+  for (const std::string& result : results) {
+    LOWLAP_RETURN_IF_ERROR(
+        CheckDistinct(inputs, {{"a result of --output", result}}));
   }
   return {};
 }

@@ -18,4 +18,10 @@ struct NamedFile {
 Status CheckDistinct(const std::vector<NamedFile>& inputs,
                      const std::vector<NamedFile>& outputs);
 
+/// That neither a result that WriteOutputs writes to the folder nor
+/// `scene_file` takes the place of an input. Error: kInvalidArgument.
+Status CheckInputsStay(const std::vector<NamedFile>& inputs,
+                       const std::string& output_folder,
+                       const std::string& scene_file = {});
+
 }  // namespace lowlap::cli

@@ -24,4 +24,13 @@ void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
       .SeparatedBy(',');
 }
 
+std::vector<NamedFile> InputFiles(const SceneInputFlags& flags) {
+  std::vector<NamedFile> files = {{"the scene", flags.scene}};
+  if (!flags.matches_dir.empty()) {
+    files.push_back(
+        {"the listing of the matches", flags.matches_dir + "/sfm_data.json"});
+  }
+  return files;
+}
+
 }  // namespace lowlap::cli

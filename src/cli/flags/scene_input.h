@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "cli/flags/command_line.h"
+#include "cli/flags/distinct_files.h"
 #include "third_party_adapters/internal/scene_input.h"
 
 namespace lowlap::cli {
@@ -10,5 +13,9 @@ using SceneInputFlags = SceneInput;
 /// The scene, -m, -M, --images and --exclude; OpenMVG's flag names are
 /// understood.
 void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags);
+
+/// The files that they name. OpenMVG keeps the listing in the matches folder,
+/// whichever is named.
+std::vector<NamedFile> InputFiles(const SceneInputFlags& flags);
 
 }  // namespace lowlap::cli
