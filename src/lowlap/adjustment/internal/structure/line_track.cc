@@ -230,8 +230,8 @@ double TwoViewOverlap(const CameraSet& cameras, const LineTrackState& track) {
   return common / std::min(a.high - a.low, b.high - b.low);
 }
 
-// Two of the unknowns are lengths in the unit of the world, two are angles: each
-// is measured by what it alone would do.
+// Two of the unknowns are lengths in the unit of the world, two are angles:
+// each is measured by what it alone would do.
 std::optional<Eigen::Matrix4d> UnitCovariance(
     const std::vector<LineMeasurement>& measurements, const SpaceLine& line) {
   const Eigen::Matrix4d hessian =

@@ -16,6 +16,15 @@
 
 namespace lowlap {
 namespace fs = std::filesystem;
+namespace {
+
+constexpr char kListing[] = "sfm_data.json";
+constexpr char kScene[] = "scene.lowlap";
+constexpr char kCloud[] = "cloud.ply";
+constexpr char kReport[] = "report.html";
+constexpr char kSummary[] = "summary.json";
+
+}  // namespace
 
 Status CheckOutputFolder(const std::string& folder) {
   if (folder.empty()) {
@@ -67,8 +76,7 @@ Status OutputFolder::Make(const std::string& folder) {
 
 std::vector<std::string> OutputFiles(const std::string& folder) {
   std::vector<std::string> paths;
-  for (const char* name : {"sfm_data.json", "scene.lowlap", "cloud.ply",
-                           "report.html", "summary.json"}) {
+  for (const char* name : {kListing, kScene, kCloud, kReport, kSummary}) {
     paths.push_back((fs::path(folder) / name).string());
   }
   return paths;
@@ -91,13 +99,13 @@ Status WriteOutputs(Scene scene, const RunSummary& summary,
     LOWLAP_RETURN_IF_ERROR(content);
     return files.Add((fs::path(folder) / name).string(), *content);
   };
-  LOWLAP_RETURN_IF_ERROR(add("sfm_data.json", FormatSceneJson(scene)));
-  LOWLAP_RETURN_IF_ERROR(add("scene.lowlap", FormatSceneBinary(scene)));
-  LOWLAP_RETURN_IF_ERROR(add("cloud.ply", FormatPly(scene)));
+  LOWLAP_RETURN_IF_ERROR(add(kListing, FormatSceneJson(scene)));
+  LOWLAP_RETURN_IF_ERROR(add(kScene, FormatSceneBinary(scene)));
+  LOWLAP_RETURN_IF_ERROR(add(kCloud, FormatPly(scene)));
   LOWLAP_ASSIGN_OR_RETURN(const auto report,
                           MakeReport(summary, scene, context));
-  LOWLAP_RETURN_IF_ERROR(add("report.html", FormatReport(scene, report)));
-  LOWLAP_RETURN_IF_ERROR(add("summary.json", ToJson(summary, scene) + "\n"));
+  LOWLAP_RETURN_IF_ERROR(add(kReport, FormatReport(scene, report)));
+  LOWLAP_RETURN_IF_ERROR(add(kSummary, ToJson(summary, scene) + "\n"));
   if (before_commit) LOWLAP_RETURN_IF_ERROR(before_commit(scene));
   return files.Commit();
 }
