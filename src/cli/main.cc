@@ -107,6 +107,7 @@ int main(int argc, char** argv) {
   const std::vector<std::string> arguments =
       lowlap::cli::WithRefinedParts({argv, argv + argc});
   std::vector<const char*> words;
+  words.reserve(arguments.size());
   for (const std::string& argument : arguments) {
     words.push_back(argument.c_str());
   }
