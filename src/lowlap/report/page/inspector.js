@@ -196,7 +196,9 @@ function describePage() {
     facts([
       ['photographs', page.views.length],
       ['cameras placed', page.views.filter(view => view.camera).length],
-      ['relative poses in use', `${used} of ${pairs}`],
+      // Not every command knows which are.
+      used < pairs ? ['relative poses in use', `${used} of ${pairs}`]
+                   : ['relative poses', pairs],
       ['meaningful scale ratios', `${meaningful} of ${triplets}`],
       ['coplanar pairs of lines', page.coplanarPairs.length / 2],
     ]),
