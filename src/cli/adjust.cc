@@ -38,7 +38,7 @@ Result<int> Adjust(const AdjustFlags& flags) {
   options.use_directions = flags.directions;
   options.principal_point_stddev = flags.principal_point_stddev;
   LOWLAP_RETURN_IF_ERROR(options.Validate());
-  // A folder that cannot be written is found before the work.
+  // What cannot be written is found before the work.
   LOWLAP_RETURN_IF_ERROR(
       CheckInputsStay({{"the scene", flags.scene}}, flags.output));
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));

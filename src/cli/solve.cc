@@ -4,7 +4,6 @@
 #include <sstream>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "cli/command.h"
 #include "cli/flags/distinct_files.h"

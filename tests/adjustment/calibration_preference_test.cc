@@ -5,6 +5,7 @@
 #include <string>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
+#include "lowlap/adjustment/internal/calibration/calibration_score.h"
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "test_scene.h"
 #include "tests/support/matchers.h"
@@ -133,6 +134,25 @@ TEST(CalibrationPreferenceTest, WhatIsPreferredIsALens) {
     }
   }
   EXPECT_GT(num_preferences, 0);
+}
+
+// One that is hopeless does not hold the other back.
+TEST(CalibrationPreferenceTest, GroupsAreShortenedOnTheirOwn) {
+  CalibrationScore score;
+  score.groups.resize(2);
+  score.parts = {{0, &IntrinsicRefinement::focal, 0, 1},
+                 {0, &IntrinsicRefinement::principal_point, 1, 2},
+                 {1, &IntrinsicRefinement::focal, 3, 1},
+                 {1, &IntrinsicRefinement::distortion, 4, 1}};
+  score.u = Eigen::VectorXd(5);
+  score.u << 10 * std::log(2.0), 0.1, 0, -0.02, 0.3;
+  score.information = Eigen::MatrixXd::Identity(5, 5);
+  const Eigen::VectorXd change = score.Change({0, 1, 2, 3});
+  ASSERT_EQ(change.size(), 5);
+  EXPECT_NEAR(change(0), -std::log(2.0), 1e-12);
+  EXPECT_NEAR(change(1), -0.01, 1e-12);
+  EXPECT_NEAR(change(3), 0.02, 1e-12);
+  EXPECT_EQ(change(4), 0);
 }
 
 TEST(CalibrationPreferenceTest, PinholesAreTestedForADistortion) {

@@ -36,14 +36,13 @@ bool Contradicts(const OutlierEdge& edge, const MatchVerdicts& matches) {
 // Those of the relative poses of placed views; what is contested already is
 // named.
 std::vector<Contest> ContestsAmong(const Scene& scene,
-                                   const SceneCenters& centers,
+                                   const TranslationProblem& problem,
+                                   const std::set<ViewId>& placed,
                                    const PoseSummary& summary) {
-  const TranslationProblem& problem = centers.problem;
   const auto evidence = [&](const ViewPair& views) {
     return 1 + std::max(0.0, -scene.relative_poses.at(views).log10_nfa);
   };
   EvidenceOfPairs in_use, rejected;
-  const std::set<ViewId> placed = PlacedViews(centers);
   const auto is_placed = [&](const ViewPair& views) {
     return placed.count(views.first) > 0 && placed.count(views.second) > 0;
   };
@@ -151,7 +150,7 @@ PoseSummary Summarize(const Scene& scene, const SceneRotations& rotations,
                      RadFromDeg(options.least_false_deg)}));
   summary.reliability_warnings = FindReliabilityWarnings(
       scene, *summary.agreement, {}, &summary.firm_evidence);
-  summary.contests = ContestsAmong(scene, centers, summary);
+  summary.contests = ContestsAmong(scene, centers.problem, placed, summary);
   WarnOfHangingViews(&summary);
   return summary;
 }

@@ -1,6 +1,5 @@
 #include "lowlap/adjustment/internal/calibration/calibration_preference.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -48,27 +47,6 @@ std::vector<char> Choose(const CalibrationScore& score) {
   }
 }
 
-// No lens is farther from another that might have been meant.
-double FarthestChange(IntrinsicPart part) {
-  if (part == &IntrinsicRefinement::principal_point) return 0.25;
-  if (part == &IntrinsicRefinement::distortion) return 1;
-  return std::log(2.0);
-}
-
-// Where little is determined, what is preferred to first order lies where no
-// camera is: it is followed no farther than to where one may be.
-Eigen::VectorXd WithinLenses(const CalibrationScore& score,
-                             Eigen::VectorXd change) {
-  double excess = 1;
-  for (const HeldPart& part : score.parts) {
-    if (part.size == 0) continue;
-    const double farthest =
-        change.segment(part.first, part.size).cwiseAbs().maxCoeff();
-    excess = std::max(excess, farthest / FarthestChange(part.part));
-  }
-  return change / excess;
-}
-
 // A preference for nothing yet.
 CalibrationPreference PreferenceOf(const CalibrationScore::Group& group,
                                    const CameraSet& cameras) {
@@ -94,9 +72,7 @@ std::vector<CalibrationPreference> FindCalibrationPreferences(
   const std::vector<int> columns =
       Columns(*score, [&](std::size_t n) { return chosen[n] != 0; });
   if (columns.empty()) return {};
-  Eigen::VectorXd change = Eigen::VectorXd::Zero(score->u.size());
-  change(columns) = score->Change(columns);
-  change = WithinLenses(*score, std::move(change));
+  const Eigen::VectorXd change = score->Change(columns);
   std::vector<CalibrationPreference> preferences;
   for (std::size_t g = 0; g < score->groups.size(); ++g) {
     const auto of_group = [&](std::size_t n) {

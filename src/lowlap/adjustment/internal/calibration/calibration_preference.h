@@ -12,8 +12,7 @@ namespace lowlap {
 /// state: parts are taken in one after the other, the least probable first,
 /// each given those before it (CalibrationScore), as long as noise explains one
 /// with a probability below 1 % over all that are tested. Pinholes are tested
-/// for a k1. What is preferred is followed as far as focal lengths at most
-/// double or halve and principal points move by a quarter of the diagonal.
+/// for a k1. What is preferred is CalibrationScore::Change.
 ///
 /// Points alone are asked; without them nothing is said. The score of lines has
 /// a mean: with it, 34 of 182 simulated scenes with the true calibration would

@@ -44,6 +44,12 @@ double Unit(IntrinsicPart part, const Intrinsic& intrinsic) {
              : 1;
 }
 
+double FarthestChange(IntrinsicPart part) {
+  if (part == &IntrinsicRefinement::principal_point) return 0.25;
+  if (part == &IntrinsicRefinement::distortion) return 1;
+  return std::log(2.0);
+}
+
 std::vector<Group> MakeGroups(const AdjustmentOptions& options,
                               const CameraSet& cameras) {
   std::vector<Group> groups;
@@ -185,8 +191,20 @@ double CalibrationScore::Statistic(const std::vector<int>& which,
 }
 
 VecX CalibrationScore::Change(const std::vector<int>& which) const {
-  return -TransposedProduct(PseudoInverse(Block(information, which, which)),
-                            Block(u, which, {0}));
+  VecX change = VecX::Zero(u.size());
+  change(which) = -TransposedProduct(
+      PseudoInverse(Block(information, which, which)), Block(u, which, {0}));
+  std::vector<double> excess(groups.size(), 1);
+  for (const HeldPart& part : parts) {
+    const double farthest =
+        change.segment(part.first, part.size).cwiseAbs().maxCoeff();
+    excess[part.group] =
+        std::max(excess[part.group], farthest / FarthestChange(part.part));
+  }
+  for (const HeldPart& part : parts) {
+    change.segment(part.first, part.size) /= excess[part.group];
+  }
+  return change;
 }
 
 std::optional<CalibrationScore> ScoreCalibration(

@@ -56,7 +56,11 @@ struct CalibrationScore {
   double Statistic(const std::vector<int>& which,
                    const std::vector<int>& free) const;
 
-  /// Where the images take the parameters `which` if these are free.
+  /// Where the images take the parameters `which` if these are free; 0 for all
+  /// others. To first order that may be where no camera is, if little is
+  /// determined: the change of a group is shortened until its focal lengths at
+  /// most double or halve, principal points move by a quarter of the diagonal,
+  /// and distortion coefficients by 1.
   Eigen::VectorXd Change(const std::vector<int>& which) const;
 };
 

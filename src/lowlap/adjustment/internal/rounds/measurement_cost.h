@@ -8,9 +8,10 @@ namespace lowlap {
 
 /// How well the cameras explain what more than two views show: the sum over all
 /// candidates of the tracks that have more than two, in use or not,
-///   sum min(|r|^2, t^2) / s^2,
-/// with the residuals r at the landmark that is best for the track, the noise
-/// level s and the threshold t of its kind. Each track is triangulated anew,
+///   sum k min(e^2, t^2) / s^2,
+/// with the errors e at the landmark that is best for the track, the noise
+/// level s and the threshold t of its kind; k is 1 for points and 2 for lines,
+/// whose errors are means over two ends. Each track is triangulated anew,
 /// however well its landmark is determined; one without a landmark keeps one
 /// candidate that would fit any. Two sets of cameras can be compared by it at
 /// the same noise and shapes of points (`point_shape_exponent`, WhitenPoints),

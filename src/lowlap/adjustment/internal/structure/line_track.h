@@ -20,7 +20,7 @@ struct LineCandidate : TrackCandidate {
 /// The landmark: the points p + s d, |d| = 1, s in [low, high].
 struct LineTrackState : TrackState<LineTrackId, LineCandidate> {
   static constexpr int kUnknowns = 4;
-  /// Squared lengths of the residual in one squared ErrorPx, a mean of two.
+  /// Squared length of the residual over squared ErrorPx, a mean of two.
   static constexpr int kResidualsPerError = 2;
   Vec3 point = Vec3::Zero();
   Vec3 direction = Vec3::UnitX();

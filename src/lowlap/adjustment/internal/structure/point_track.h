@@ -19,7 +19,7 @@ struct PointCandidate : TrackCandidate {
 
 struct PointTrackState : TrackState<PointTrackId, PointCandidate> {
   static constexpr int kUnknowns = 3;
-  /// Squared lengths of the residual in one squared ErrorPx.
+  /// Squared length of the residual over squared ErrorPx.
   static constexpr int kResidualsPerError = 1;
   Vec3 position = Vec3::Zero();
 };

@@ -2,6 +2,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <utility>
 
 #include "lowlap/core/internal/median.h"
 #include "lowlap/geometry/internal/rotation.h"
