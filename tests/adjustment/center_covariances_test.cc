@@ -197,10 +197,11 @@ TEST(CenterCovariances, OneThatNothingHoldsBlursNoOther) {
   const ViewId last = poor.scene.views.rbegin()->first;
   int kept = 0;
   for (auto& [id, track] : poor.scene.point_tracks) {
+    const bool is_short = track.size() < 4;
     track.erase(std::remove_if(track.begin(), track.end(),
                                [&](const FeatureRef& seen) {
                                  return seen.view == last &&
-                                        (track.size() < 4 || ++kept > 2);
+                                        (is_short || ++kept > 2);
                                }),
                 track.end());
   }
