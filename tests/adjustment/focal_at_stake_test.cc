@@ -50,15 +50,23 @@ StructureState StateOf(const Scene& scene) {
   return state;
 }
 
-// Of the one focal length of an adjusted scene.
-double FactorAtStake(const Scene& scene, const StructureState& state,
-                     const AdjustmentSummary& summary,
-                     const AdjustmentOptions& options = {}) {
+// Of the focal lengths of an adjusted scene.
+std::vector<double> FactorsAtStake(const Scene& scene,
+                                   const StructureState& state,
+                                   const AdjustmentSummary& summary,
+                                   const AdjustmentOptions& options = {}) {
   NoiseLevels noise;
   noise.points = {summary.points.stddev_px, summary.points.threshold_px};
   noise.lines = {summary.lines.stddev_px, summary.lines.threshold_px};
+  return FocalFactorsAtStake(options, noise, scene, CameraSet(scene), state);
+}
+
+// Of the only one.
+double FactorAtStake(const Scene& scene, const StructureState& state,
+                     const AdjustmentSummary& summary,
+                     const AdjustmentOptions& options = {}) {
   const std::vector<double> factors =
-      FocalFactorsAtStake(options, noise, scene, CameraSet(scene), state);
+      FactorsAtStake(scene, state, summary, options);
   EXPECT_EQ(factors.size(), 1u);
   return factors.front();
 }
@@ -73,6 +81,32 @@ TEST(FocalAtStake, LeadsMostOfTheWayToTheTrueOne) {
         (1 / factor - 1);
     EXPECT_GT(way, 0.5) << factor;
     EXPECT_LT(way, 1.5) << factor;
+  }
+}
+
+TEST(FocalAtStake, OfTwoIntrinsicsIsThatOfTheOneThatIsHeld) {
+  constexpr double kFactor = 0.9;
+  TestScene test = HeldByLines(1, kFactor);
+  Scene& scene = test.scene;
+  const auto [first, intrinsic] = *scene.intrinsics.begin();
+  const IntrinsicId second(first.value() + 1);
+  scene.intrinsics.emplace(second, intrinsic);
+  int count = 0;
+  for (auto& entry : scene.views) {
+    if (count++ % 2 == 1) entry.second.intrinsic_id = second;
+  }
+  const AdjustmentSummary summary = BuildAndAdjust(&scene);
+  const IntrinsicId ids[] = {first, second};
+  for (const std::size_t held : {0, 1}) {
+    AdjustmentOptions options;
+    options.refine_intrinsics[ids[1 - held]].focal = true;
+    const std::vector<double> factors =
+        FactorsAtStake(scene, StateOf(scene), summary, options);
+    ASSERT_EQ(factors.size(), 2u);
+    EXPECT_EQ(factors[1 - held], 1);
+    const double way = (factors[held] - 1) / (1 / kFactor - 1);
+    EXPECT_GT(way, 0.5) << held;
+    EXPECT_LT(way, 1.5) << held;
   }
 }
 

@@ -25,7 +25,7 @@ std::vector<double> FocalFactorsAtStake(const AdjustmentOptions& options,
     const double statistic = score->Statistic({part.first}, {});
     if (!(statistic > 1)) continue;
     const double change =
-        std::sqrt(1 - 1 / statistic) * score->Change({part.first})(0);
+        std::sqrt(1 - 1 / statistic) * score->Change({part.first})(part.first);
     for (const int intrinsic : score->groups[part.group].intrinsics) {
       factors[intrinsic] = 1 + std::clamp(change, -kMaxChange, kMaxChange);
     }
