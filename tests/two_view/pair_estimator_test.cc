@@ -118,6 +118,20 @@ double MostLost(const Mat5& before, const Mat5& after) {
   return 1 - ratio.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
 }
 
+// It has no threshold, which does not mean that its matches are exact.
+TEST(RefinePair, KeepsTheInliersOfAGivenPose) {
+  TwoViewSceneOptions options;
+  options.noise_px = 0.5;
+  const TwoViewScene scene = MakeTwoViewScene(options, 1);
+  const ViewMeasurements first = Measure(scene.features1);
+  const ViewMeasurements second = Measure(scene.features2);
+  const PairEstimate given = TakePair(
+      {3, 8}, first, second, {scene.matches, {}}, options.cam2_from_cam1, {});
+  ASSERT_TRUE(given.pose) << given.reason;
+  const RelativePose refined = RefinePair(*given.pose, first, second, {});
+  EXPECT_GT(refined.point_inliers.size(), 195u);
+}
+
 TEST(RefinePair, StillSaysWhatOnePlaneLeavesOpen) {
   for (int seed = 0; seed < 5; ++seed) {
     TwoViewSceneOptions options;

@@ -165,5 +165,16 @@ TEST(DirectionPenalty, IsCappedByTheMatches) {
   EXPECT_NEAR(DirectionPenalty({pair}, quarter), 10, 1e-12);
 }
 
+// From eight votes on a family comes twice, as its matched lines and as all of
+// its lines; its matches have no more to say for that.
+TEST(DirectionPenalty, CountsTheMatchesOfAFamilyOnce) {
+  const auto scene = MakeLineScene({}, 1);
+  const auto pairs = PairsOf(scene);
+  ASSERT_EQ(NumWholeFamilies(pairs, scene), 6);
+  const Mat3 wrong = RotationFromAngleAxis(Vec3::Constant(RadFromDeg(20))) *
+                     scene.cam2_from_cam1.rotation;
+  EXPECT_DOUBLE_EQ(DirectionPenalty(pairs, wrong), 3 * 10);
+}
+
 }  // namespace
 }  // namespace lowlap

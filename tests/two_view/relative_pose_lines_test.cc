@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lowlap/directions/internal/vanishing_directions.h"
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
 #include "lowlap/two_view/internal/relative_pose_estimator.h"
 #include "support/matchers.h"
@@ -11,11 +12,13 @@ namespace lowlap {
 namespace {
 
 using testing::DirectionErrorDeg;
+using testing::IsOk;
 using testing::LineScene;
 using testing::LineSceneOptions;
 using testing::MakeLineScene;
 using testing::MakeTwoViewScene;
 using testing::RotationErrorDeg;
+using testing::TwoViewScene;
 using testing::TwoViewSceneOptions;
 
 struct WithDirections {
@@ -103,6 +106,42 @@ TEST(RelativePoseFromLines, LinesSharpenTheRotationOfFewNoisyPoints) {
   }
   EXPECT_LT(with_lines, 0.6 * points_only);
   EXPECT_LT(with_lines, 0.1);
+}
+
+// Lines of two directions matched crosswise, as those of shelves or tiles may
+// be: a rotation that brings the false pairs of directions together has nothing
+// against it, nor a point for it.
+TEST(RelativePoseFromLines, FalseDirectionsDoNotHideWhatThePointsSay) {
+  constexpr int kLines = 9;
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    LineSceneOptions line_options;
+    line_options.lines_per_family = kLines;
+    line_options.noise_px = 0.3;
+    const LineScene lines = MakeLineScene(line_options, seed + 100);
+    TwoViewSceneOptions options;
+    options.num_right = 30;
+    options.num_wrong = 40;
+    options.noise_px = 0.5;
+    TwoViewScene scene = MakeTwoViewScene(options, seed);
+    scene.features1.segments = lines.views.features1.segments;
+    scene.features2.segments = lines.views.features2.segments;
+    TwoViewInput input = scene.Input();
+    for (FeatureIndex n = 0; n < 2 * kLines; ++n) {
+      input.line_matches.push_back({n, (n + kLines) % (2 * kLines)});
+    }
+    const auto directions1 = FindVanishingDirections(scene.features1, {});
+    const auto directions2 = FindVanishingDirections(scene.features2, {});
+    input.directions1 = &directions1;
+    input.directions2 = &directions2;
+    const auto result = EstimateRelativePose(input, {}, seed);
+    ASSERT_THAT(result, IsOk());
+    EXPECT_LT(RotationErrorDeg(result->pose.rotation,
+                               options.cam2_from_cam1.rotation),
+              2);
+    EXPECT_LT(DirectionErrorDeg(result->pose.direction,
+                                options.cam2_from_cam1.translation),
+              10);
+  }
 }
 
 TEST(RelativePoseFromLines, RefusesMatchesOfSegmentsThatDoNotExist) {

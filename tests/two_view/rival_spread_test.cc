@@ -29,6 +29,12 @@ TEST(PoseError, IsInTheFramesOfCovariances) {
   EXPECT_LT((error.tail<2>() - across).norm(), 1e-12);
 }
 
+TEST(PoseError, OfTheOppositeDirectionIsHalfATurn) {
+  const RigidTransform pose{Mat3::Identity(), Vec3::UnitZ()};
+  const auto error = PoseError(pose, {Mat3::Identity(), -Vec3::UnitZ()});
+  EXPECT_NEAR(error.tail<2>().norm(), kPi, 1e-12);
+}
+
 TEST(SpreadOfRivals, IsTheMixtureAboutTheBest) {
   const RigidTransform best{Mat3::Identity(), Vec3::UnitZ()};
   EXPECT_TRUE(SpreadOfRivals(best, {}).isZero());

@@ -1,6 +1,5 @@
 #include "lowlap/two_view/internal/informed_pose.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -50,23 +49,18 @@ InformedPose InformPose(const TwoViewInput& input, const RelativePose& pose,
       CommonDirections(input, matches.pairs.size());
   const std::vector<DirectionPair> axes = AxesOf(prior);
   directions.insert(directions.end(), axes.begin(), axes.end());
-  TwoViewOptions options;
-  if (pose.point_threshold_px > 0) {
-    options.max_threshold_px =
-        std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
-  }
   const PoseSearch search(matches.pairs, std::move(directions),
-                          SampsonLaw(input), options);
+                          SampsonLaw(input), BoundedByPose({}, pose));
   const double before = search.ScoreOf(pose.Cam2FromCam1());
   PoseCandidate best = search.Finish(pose.Cam2FromCam1());
   int num_samples = 0;
   if (const auto motion = search.MotionWithRotation(prior.cam2_from_cam1,
                                                     random, num_samples)) {
     PoseCandidate other = search.Finish(*motion);
-    if (other.score > best.score) best = std::move(other);
+    if (IsBetter(other, best)) best = std::move(other);
   }
   // Wrong matches allow any motion, also that of the prior.
-  if (!(best.support.log10_nfa < 0) || !(best.score > before)) {
+  if (!best.IsMeaningful() || !(best.score > before)) {
     return result;
   }
   result.gained_digits = best.score - before;

@@ -118,8 +118,8 @@ std::vector<DirectionPair> PairDirections(
     // which may be but a part that is parallel to itself.
     const VanishingDirection &a1 = directions1[n1], &a2 = directions2[n2];
     if (count < kMinVotesForAll || !AreOne(d1, a1) || !AreOne(d2, a2)) continue;
-    pairs.push_back(
-        {a1.direction, a2.direction, a1.covariance, a2.covariance, count});
+    pairs.push_back({a1.direction, a2.direction, a1.covariance, a2.covariance,
+                     count, true});
   }
   std::stable_sort(pairs.begin(), pairs.end(),
                    [](const DirectionPair& a, const DirectionPair& b) {
@@ -153,7 +153,7 @@ std::vector<DirectionPair> PossibleDirections(
     for (const VanishingDirection& d2 : free2) {
       DirectionPair pair{d1.direction, d2.direction,
                          WidenedCovariance(d1, kWallStddevRad),
-                         WidenedCovariance(d2, kWallStddevRad), 0};
+                         WidenedCovariance(d2, kWallStddevRad)};
       const double stddev =
           std::sqrt((pair.covariance1 + pair.covariance2).trace());
       pair.agreement_digits =
@@ -188,13 +188,16 @@ Vec2 DirectionResidual(const DirectionPair& pair, const Mat3& rotation,
 double DirectionPenalty(const std::vector<DirectionPair>& pairs,
                         const Mat3& rotation) {
   double digits = 0;
+  double of_last = 0;
   for (const DirectionPair& pair : pairs) {
     const double most = pair.num_matches > 0
                             ? std::min(pair.num_matches, kMaxDigits)
                             : pair.agreement_digits;
-    digits += std::min(
+    const double of_pair = std::min(
         DirectionResidual(pair, rotation).squaredNorm() / (2 * std::log(10.0)),
         most);
+    digits += pair.repeats_matches ? std::max(0.0, of_pair - of_last) : of_pair;
+    of_last = of_pair;
   }
   return digits;
 }

@@ -21,6 +21,8 @@ struct DirectionPair {
   Mat3 covariance2 = Mat3::Zero();
   /// Matched lines that run along it in both views.
   int num_matches = 0;
+  /// Of the same matches as the pair before it, seen in more lines.
+  bool repeats_matches = false;
   /// For a possible pair, without matches: how unlikely it is, in decimal
   /// digits, that a wrong rotation brings the two together.
   double agreement_digits = 0;
@@ -64,7 +66,8 @@ Vec2 DirectionResidual(const DirectionPair& pair, const Mat3& rotation,
 
 /// What a rotation has against it, in decimal digits: for every pair
 ///   min(|m|^2 / (2 ln 10), min(num_matches, 10)),
-/// or at most the agreement_digits of a possible one.
+/// or at most the agreement_digits of a possible one; of two pairs of the same
+/// matches, the greater.
 /// A pair whose directions disagree can still be a false one, if all of its
 /// matches are wrong; the chance of one is taken as a tenth, and matches beyond
 /// ten, parallel neighbours as they are, as no further evidence.

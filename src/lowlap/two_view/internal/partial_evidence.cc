@@ -6,6 +6,7 @@
 #include <map>
 #include <utility>
 
+#include "lowlap/two_view/internal/search/pose_from_search.h"
 #include "lowlap/two_view/internal/search/pose_search.h"
 
 namespace lowlap {
@@ -30,10 +31,8 @@ double EvidenceOfSome(const TwoViewInput& input, const ShuffledMatches& matches,
     pairs.covariance1.push_back(matches.pairs.Covariance1(n));
     pairs.covariance2.push_back(matches.pairs.Covariance2(n));
   }
-  TwoViewOptions bounded = options;
-  bounded.max_threshold_px =
-      std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
-  const PoseSearch search(pairs, {}, SampsonLaw(input), bounded);
+  const PoseSearch search(pairs, {}, SampsonLaw(input),
+                          BoundedByPose(options, pose));
   return search.SupportOf(pose.Cam2FromCam1()).log10_nfa;
 }
 

@@ -100,8 +100,7 @@ std::vector<RivalPose> RivalsOf(const PoseCandidate& best,
                                 const std::vector<PoseCandidate>& candidates) {
   std::vector<RivalPose> rivals;
   for (const PoseCandidate& candidate : candidates) {
-    if (candidate.support.log10_nfa < 0 &&
-        !SamePose(candidate.pose, best.pose)) {
+    if (candidate.IsMeaningful() && !SamePose(candidate.pose, best.pose)) {
       rivals.push_back(
           {candidate.pose, RivalWeight(best.score - candidate.score)});
     }
@@ -208,7 +207,7 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
       search.Search(random, result.num_samples);
   std::optional<PoseCandidate> best;
   if (!candidates.empty()) best = candidates.front();
-  if (!best || !(best->support.log10_nfa < 0)) {
+  if (!best || !best->IsMeaningful()) {
     return MakeError(
         ErrorCode::kInsufficientData,
         "relative pose: no motion explains the " +
@@ -229,7 +228,7 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
         search.CoreScore(other->pose, scale_px) +
         std::log(10.0) * (other->direction_penalty - best->direction_penalty);
     // Few matches may leave the other motion none in front of the cameras.
-    const bool meaningful = other->support.log10_nfa < 0;
+    const bool meaningful = other->IsMeaningful();
     if (meaningful && advantage < 0) {
       std::swap(*best, *other);
       plane = DominantPlaneOf(*best, pairs, random);
@@ -282,14 +281,10 @@ RelativePose ImproveRelativePose(const TwoViewInput& input,
   Random random(0);
   const ShuffledMatches matches = ShuffleMatches(input, random);
   if (matches.pairs.size() < kMinMatches) return pose;
-  // The new matches were chosen by the pose: they do not widen its threshold.
-  TwoViewOptions bounded = options;
-  bounded.max_threshold_px =
-      std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
   const PoseSearch search(
       matches.pairs,
       CommonDirections(input, static_cast<int>(matches.pairs.size())),
-      SampsonLaw(input), bounded);
+      SampsonLaw(input), BoundedByPose(options, pose));
   PoseCandidate candidate = search.Finish(pose.Cam2FromCam1());
   if (!std::isfinite(candidate.support.log10_nfa)) return pose;
   if (is_of_one_plane) {

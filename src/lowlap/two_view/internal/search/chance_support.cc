@@ -14,7 +14,8 @@ namespace {
 constexpr int kNumWrongMatches = 200000;
 
 int NumShifts(int num_data) {
-  return std::clamp(kNumWrongMatches / std::max(1, num_data), 1, num_data - 1);
+  return std::clamp(kNumWrongMatches / std::max(1, num_data), 1,
+                    std::max(1, num_data - 1));
 }
 
 class StepOfMatch {

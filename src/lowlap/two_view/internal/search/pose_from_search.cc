@@ -49,6 +49,14 @@ std::vector<DirectionPair> CommonDirections(const TwoViewInput& input,
   return pairs;
 }
 
+TwoViewOptions BoundedByPose(TwoViewOptions options, const RelativePose& pose) {
+  if (pose.point_threshold_px > 0) {
+    options.max_threshold_px =
+        std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
+  }
+  return options;
+}
+
 RelativePose PoseFromSearch(const TwoViewInput& input,
                             const ShuffledMatches& matches,
                             const PoseSearch& search,

@@ -17,6 +17,11 @@ inline constexpr int kMinMatches = 6;
 std::vector<DirectionPair> CommonDirections(const TwoViewInput& input,
                                             int num_points);
 
+/// Matches that were found with a pose do not widen its threshold: at most
+/// twice that of the pose is looked for, unless it has none, as one that was
+/// given.
+TwoViewOptions BoundedByPose(TwoViewOptions options, const RelativePose& pose);
+
 /// The relative pose of a candidate of `search` over `matches`, without line
 /// inliers. `lone_matches`, if not null, are as in TwoViewResult.
 RelativePose PoseFromSearch(const TwoViewInput& input,

@@ -39,6 +39,11 @@ AContrarioLadder MakeLadder(const Kernel& kernel, int max_models,
 
 }  // namespace
 
+bool IsBetter(const PoseCandidate& a, const PoseCandidate& b) {
+  return a.IsMeaningful() != b.IsMeaningful() ? a.IsMeaningful()
+                                              : a.score > b.score;
+}
+
 PoseSearch::PoseSearch(const PointPairs& pairs,
                        std::vector<DirectionPair> directions,
                        const BackgroundLaw& law, const TwoViewOptions& options)
@@ -64,10 +69,7 @@ std::vector<PoseCandidate> PoseSearch::Search(Random& random,
   for (const RigidTransform& motion : motions) {
     candidates.push_back(Finish(motion));
   }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const PoseCandidate& a, const PoseCandidate& b) {
-                     return a.score > b.score;
-                   });
+  std::stable_sort(candidates.begin(), candidates.end(), IsBetter);
   std::vector<PoseCandidate> distinct;
   for (PoseCandidate& candidate : candidates) {
     const bool is_known = std::any_of(

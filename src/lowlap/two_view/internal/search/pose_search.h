@@ -26,7 +26,15 @@ struct PoseCandidate {
   /// What speaks for it, in decimal digits: the core score of the points less
   /// the penalty of the directions.
   double score = 0;
+
+  /// Whether chance does not explain its points.
+  bool IsMeaningful() const { return support.log10_nfa < 0; }
 };
+
+/// Whether a is the better candidate: a meaningful one before one that is not,
+/// whatever speaks for that (false directions may have almost nothing against a
+/// rotation, and no point for it), then the greater score.
+bool IsBetter(const PoseCandidate& a, const PoseCandidate& b);
 
 /// The search for the motion of one pair, from points and common directions.
 class PoseSearch {
@@ -37,8 +45,8 @@ class PoseSearch {
   PoseSearch(const PointPairs& pairs, std::vector<DirectionPair> directions,
              const BackgroundLaw& law, const TwoViewOptions& options);
 
-  /// Motions worth a look, no two of them the same (SamePose), the greatest
-  /// score first: those of five-point samples (a-contrario RANSAC, sharpened),
+  /// Motions worth a look, no two of them the same (SamePose), the best first
+  /// (IsBetter): those of five-point samples (a-contrario RANSAC, sharpened),
   /// and for each rotation that two pairs of directions give, that of two-point
   /// samples. Empty if no sample gave one.
   std::vector<PoseCandidate> Search(Random& random, int& num_samples);

@@ -27,7 +27,8 @@ Eigen::Matrix<double, 5, 1> PoseError(const RigidTransform& pose,
   const Vec2 across = TangentBasis(from).transpose() * to;
   const double sine = across.norm();
   const double angle = std::atan2(sine, to.dot(from));
-  error.tail<2>() = sine > 0 ? Vec2(angle / sine * across) : across;
+  // The opposite direction lies to any side.
+  error.tail<2>() = sine > 0 ? Vec2(angle / sine * across) : Vec2(angle, 0);
   return error;
 }
 
