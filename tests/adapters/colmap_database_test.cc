@@ -349,6 +349,23 @@ TEST_F(ColmapDatabaseFile, FundamentalMatricesAreOfColmapsPixels) {
   EXPECT_LT(std::abs(error) / f.norm(), 1e-9);
 }
 
+TEST_F(ColmapDatabaseFile, SaysThatOtherCamerasStay) {
+  {
+    ColmapDatabase file(Path(), Version::k3_8);
+    Fill(&file);
+  }
+  Scene scene = MeasuredScene(Read().scene);
+  auto notes = WriteRelativePoses(scene, Path());
+  ASSERT_TRUE(notes.has_value()) << notes.error().ToString();
+  EXPECT_THAT(*notes, IsEmpty());
+  const Intrinsic before = scene.intrinsics.at(5);
+  scene.intrinsics.at(5).fx_px *= 1.01;
+  notes = WriteRelativePoses(scene, Path());
+  ASSERT_TRUE(notes.has_value()) << notes.error().ToString();
+  EXPECT_THAT(*notes, ElementsAre(HasSubstr("1 cameras of the database stay")));
+  EXPECT_TRUE(Read().scene.intrinsics.at(5) == before);
+}
+
 TEST_F(ColmapDatabaseFile, PanoramasHaveNoFundamentalMatrix) {
   for (const Version version : {Version::k3_8, Version::k4_0}) {
     std::filesystem::remove(Path());

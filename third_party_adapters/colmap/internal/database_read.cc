@@ -48,15 +48,7 @@ class DatabaseReader {
                   "prior_focal_length FROM cameras",
                   "cameras", "camera_id");
     while (row.Step()) {
-      Camera camera;
-      camera.id = row.Unsigned(0);
-      camera.model = static_cast<int>(row.Unsigned(1));
-      camera.width_px = row.Unsigned(2);
-      camera.height_px = row.Unsigned(3);
-      camera.params = Numbers<double>(row.Blob(4));
-      if (row.Blob(4).size() % sizeof(double) != 0) {
-        row.FailRow("params are cut off", ErrorCode::kParse);
-      }
+      Camera camera = CameraOfRow(row, 0);
       if (row.Integer(5) == 0) guessed_.insert(camera.id);
       cameras_[camera.id] = std::move(camera);
     }

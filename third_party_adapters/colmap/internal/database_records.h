@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "third_party_adapters/colmap/internal/camera.h"
 #include "third_party_adapters/colmap/internal/sqlite.h"
 
 namespace lowlap::colmap {
@@ -56,6 +57,22 @@ std::vector<T> ReadRows(const Statement& row, int column,
                 ErrorCode::kParse);
   }
   return Numbers<T>(blob);
+}
+
+/// The columns camera_id, model, width, height and params, the first of which
+/// is `column`.
+inline Camera CameraOfRow(const Statement& row, int column) {
+  Camera camera;
+  camera.id = row.Unsigned(column);
+  camera.model = static_cast<int>(row.Unsigned(column + 1));
+  camera.width_px = row.Unsigned(column + 2);
+  camera.height_px = row.Unsigned(column + 3);
+  const std::string_view params = row.Blob(column + 4);
+  if (params.size() % sizeof(double) != 0) {
+    row.FailRow("params are cut off", ErrorCode::kParse);
+  }
+  camera.params = Numbers<double>(params);
+  return camera;
 }
 
 /// Keypoints: x and y first, in pixels of COLMAP.

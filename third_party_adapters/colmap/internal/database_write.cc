@@ -1,12 +1,16 @@
+#include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <set>
 #include <utility>
 
 #include "lowlap/core/internal/file_changes.h"
+#include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/io/internal/failure.h"
+#include "lowlap/scene/internal/intrinsic_shift.h"
 #include "third_party_adapters/colmap/internal/camera.h"
 #include "third_party_adapters/colmap/internal/database.h"
 #include "third_party_adapters/colmap/internal/database_records.h"
@@ -20,6 +24,8 @@ namespace {
 constexpr std::int64_t kCalibrated = 2;
 // Databases from 4.0 on say "not set" by NULL, earlier ones by zeros.
 constexpr std::int64_t kFirstWithNull = 3140000;
+// Cameras whose pixels differ by less are one.
+constexpr double kSameCameraPx = 0.01;
 
 struct ImageRow {
   ViewId view;
@@ -58,7 +64,7 @@ class DatabaseWriter {
       : scene_(scene), sqlite_(path, Sqlite::Mode::kReadWrite) {}
 
   SceneNotes Write() {
-    sqlite_.Require({"images", "keypoints", "two_view_geometries"});
+    sqlite_.Require({"cameras", "images", "keypoints", "two_view_geometries"});
     sqlite_.Run("BEGIN IMMEDIATE");
     FindImages();
     CheckKeypoints();
@@ -72,6 +78,7 @@ class DatabaseWriter {
                       " images of the database are not in the scene; their "
                       "pairs stay as they are");
     }
+    AddNoteOfCameras(&notes);
     return notes;
   }
 
@@ -91,6 +98,34 @@ class DatabaseWriter {
       view_of_[found->second] = id;
     }
     num_unused_ = by_name.size() - view_of_.size();
+  }
+
+  // The table of cameras stays as it is.
+  void AddNoteOfCameras(SceneNotes* notes) {
+    Statement row(sqlite_,
+                  "SELECT camera_id, model, width, height, params, image_id "
+                  "FROM images JOIN cameras USING(camera_id)",
+                  "cameras", "camera_id");
+    std::set<std::uint32_t> others;
+    double largest_px = 0;
+    while (row.Step()) {
+      const auto view = view_of_.find(row.Unsigned(5));
+      const Intrinsic* ours =
+          view == view_of_.end() ? nullptr : scene_.FindIntrinsic(view->second);
+      const Camera camera = CameraOfRow(row, 0);
+      const auto theirs = ToIntrinsic(camera);
+      if (ours == nullptr || !theirs) continue;
+      const double shift_px = IntrinsicShiftPx(*theirs, *ours);
+      if (shift_px < kSameCameraPx) continue;
+      others.insert(camera.id);
+      largest_px = std::max(largest_px, shift_px);
+    }
+    if (others.empty()) return;
+    notes->push_back(Format(
+        "%zu cameras of the database stay as they are, though the scene's are "
+        "up to %.1f pixels off them, and its relative poses with them; formats "
+        "colmap and colmap-bin hold the scene's",
+        others.size(), largest_px));
   }
 
   // Inliers are indices of keypoints: of others they would mean nothing.

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include "lowlap/scene/internal/intrinsic_shift.h"
+
 namespace lowlap {
 namespace {
 
@@ -66,16 +68,8 @@ void RestoreGivenIntrinsics(Scene* scene) {
 double LargestIntrinsicShiftPx(const Scene& scene) {
   double largest_px = 0;
   for (const auto& [id, given] : scene.given_intrinsics) {
-    const Intrinsic& now = scene.intrinsics.at(id);
-    for (const double x : {0.0, 0.5, 1.0}) {
-      for (const double y : {0.0, 0.5, 1.0}) {
-        const Vec2 pixel(x * now.width_px, y * now.height_px);
-        const std::optional<Vec3> ray = given.Bearing(pixel);
-        if (ray) {
-          largest_px = std::max(largest_px, (now.Project(*ray) - pixel).norm());
-        }
-      }
-    }
+    largest_px =
+        std::max(largest_px, IntrinsicShiftPx(given, scene.intrinsics.at(id)));
   }
   return largest_px;
 }

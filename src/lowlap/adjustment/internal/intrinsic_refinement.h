@@ -21,9 +21,8 @@ void RefineAllIntrinsics(const IntrinsicRefinement& refinement, Scene* scene,
 /// adjusted scene starts from the calibration as it was given.
 void RestoreGivenIntrinsics(Scene* scene);
 
-/// How far the image of a viewing ray moves, in pixels, from the given
-/// intrinsics to the present ones: the largest value over the corners and the
-/// middles of the sides.
+/// IntrinsicShiftPx from the given intrinsics to the present ones: of all
+/// intrinsics, the largest.
 double LargestIntrinsicShiftPx(const Scene& scene);
 
 /// "focal 2759.5, 2764.2 -> ...; distortion 0 -> -0.02": one line for every
