@@ -44,8 +44,9 @@ if [[ $verdict != 2 ]]; then
 fi
 
 echo
-echo "== three more, taken where diagnose asked for them; features and matches"
-echo "   of the first eight come from the cache"
+echo "== three more: 0003 between the parts, as diagnose asked, 0007 and 0008"
+echo "   between them the other way round; features and matches of the first"
+echo "   eight come from the cache"
 cp "$room"/{0003,0007,0008}.jpg "$out/photographs"
 "$lowlap" run "$out/photographs" --intrinsics "$room/K.txt" \
   --cache "$out/first/cache" --output "$out/all" "${@:3}"

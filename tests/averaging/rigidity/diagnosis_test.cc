@@ -220,6 +220,25 @@ TEST(Diagnose, ATriangleWithoutARatioFloats) {
   EXPECT_EQ(diagnosis.floating[1].near_part, 5u);
 }
 
+// Views 5 to 7 hang together in 6, where no ratio is, and on nothing else.
+TEST(Diagnose, WhatIsJoinedToNothingIsOnePart) {
+  std::vector<ViewPair> edges = kTwoTriangles;
+  edges.push_back({5, 6});
+  edges.push_back({6, 7});
+  Scene scene = SceneWithEdges(8, edges);
+  AddRatio(1, 2, 3, &scene);
+  const Diagnosis diagnosis = DiagnosisOf(scene);
+  ASSERT_EQ(diagnosis.floating.size(), 2u);
+  EXPECT_THAT(diagnosis.floating[0].views, ElementsAre(5, 6, 7));
+  EXPECT_EQ(diagnosis.floating[0].meets_in, kInvalidId);
+  EXPECT_EQ(diagnosis.floating[0].near_group, 4u);
+  EXPECT_EQ(diagnosis.floating[0].near_part, 5u);
+  EXPECT_THAT(diagnosis.floating[1].views, ElementsAre(6, 7));
+  EXPECT_EQ(diagnosis.floating[1].meets_in, 6u);
+  EXPECT_EQ(diagnosis.floating[1].near_group, 5u);
+  EXPECT_EQ(diagnosis.floating[1].near_part, 7u);
+}
+
 TEST(Diagnose, ARatioMakesAHingeOfTheSharedCamera) {
   Scene scene = SceneWithEdges(5, kTwoTriangles);
   AddRatio(0, 2, 1, &scene);  // within a triangle: no news

@@ -11,6 +11,7 @@
 
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {
@@ -118,15 +119,45 @@ void FindNearest(const std::vector<ViewId>& group,
   }
 }
 
+// The views of all groups that cameras join to each group, by the first, and so
+// the largest, of these.
+std::map<std::size_t, std::vector<ViewId>> ViewsOfJoined(
+    const RigidityReport& report) {
+  UnionFind joined(report.groups.size());
+  for (const ArticulationView& articulation : report.articulation_views) {
+    for (const std::size_t group : articulation.groups) {
+      joined.Union(articulation.groups.front(), group);
+    }
+  }
+  std::map<std::size_t, std::size_t> first_of;
+  std::map<std::size_t, std::vector<ViewId>> views;
+  for (std::size_t g = 0; g < report.groups.size(); ++g) {
+    const std::size_t first = first_of.emplace(joined.Find(g), g).first->second;
+    const std::vector<ViewId>& more = report.groups[g].views;
+    views[first].insert(views[first].end(), more.begin(), more.end());
+  }
+  for (auto& [first, all] : views) {
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+  }
+  return views;
+}
+
 std::vector<FloatingPart> FindFloating(const Scene& scene,
                                        const RigidityReport& report) {
   std::vector<FloatingPart> floating;
+  const auto joined = ViewsOfJoined(report);
   for (std::size_t g = 1; g < report.groups.size(); ++g) {
     const RigidGroup& group = report.groups[g];
     FloatingPart part;
+    if (const auto apart = joined.find(g); apart != joined.end()) {
+      part.views = apart->second;
+      FindNearest(report.groups[0].views, part.views, &part);
+      floating.push_back(std::move(part));
+      continue;
+    }
     part.views = group.views;
-    // The largest group that it shares a camera with, a larger one if it can
-    // be.
+    // The largest group that it shares a camera with.
     std::size_t meets = report.groups.size();
     for (const ArticulationView& articulation : report.articulation_views) {
       if (!Holds(group, articulation.view)) continue;
@@ -136,15 +167,10 @@ std::vector<FloatingPart> FindFloating(const Scene& scene,
         part.meets_in = articulation.view;
       }
     }
-    if (part.meets_in == kInvalidId) {
-      FindNearest(report.groups[0].views, group.views, &part);
-    } else {
-      const RigidGroup& other = report.groups[meets];
-      part.near_group = BestNeighbour(scene, other, part.meets_in);
-      part.near_part = BestNeighbour(scene, group, part.meets_in);
-      part.rejected_ratio =
-          BestRejectedRatio(scene, other, group, part.meets_in);
-    }
+    const RigidGroup& other = report.groups[meets];
+    part.near_group = BestNeighbour(scene, other, part.meets_in);
+    part.near_part = BestNeighbour(scene, group, part.meets_in);
+    part.rejected_ratio = BestRejectedRatio(scene, other, group, part.meets_in);
     floating.push_back(std::move(part));
   }
   for (const ViewId view : report.isolated_views) {

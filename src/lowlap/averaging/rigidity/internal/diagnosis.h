@@ -38,7 +38,10 @@ struct ScaleArticulation {
 
 /// Views that share no scale with the largest group.
 struct FloatingPart {
-  std::vector<ViewId> views;  // sorted
+  /// Sorted. Groups that cameras join to one another, and none of them to the
+  /// largest group, are one part, besides which all but their largest are parts
+  /// of their own.
+  std::vector<ViewId> views;
   /// A camera that it shares with another group, the largest if there is a
   /// choice (which may float too). kInvalidId: it shares none.
   ViewId meets_in = kInvalidId;
