@@ -100,9 +100,8 @@ Result<int> Adjust(const AdjustFlags& flags) {
   summary.stages = stages.stages();
   LOWLAP_RETURN_IF_ERROR(WriteOutputs(scene, summary, context, flags.output));
   const AdjustmentSummary& adjustment = *summary.solve->adjustment;
-  std::printf("cost %.6g -> %.6g in %d iterations, %d outlier rounds\n",
-              adjustment.initial_cost, adjustment.final_cost,
-              adjustment.iterations, adjustment.outlier_rounds);
+  std::printf("%d iterations, %d outlier rounds\n", adjustment.iterations,
+              adjustment.outlier_rounds);
   PrintAdjustment(scene, options, adjustment);
   if (summary.evaluation) {
     std::printf("\n%s\n", ToText(*summary.evaluation).c_str());

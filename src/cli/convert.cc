@@ -42,6 +42,12 @@ Result<int> Convert(const ConvertFlags& flags) {
   LOWLAP_ASSIGN_OR_RETURN(const auto written,
                           WriteScene(scene, flags.output, flags.output_format));
   notes.insert(notes.end(), written.begin(), written.end());
+  if (scene.relative_poses.empty() && scene.poses.empty() &&
+      (flags.drop_solution || flags.max_point_matches > 0)) {
+    notes.push_back(
+        "without its solution the scene holds no measurements, only views and "
+        "intrinsics");
+  }
   const RunContext context = MakeContext(flags.common);
   for (const std::string& note : notes) context.Log(LogLevel::kWarning, note);
   return 0;

@@ -44,6 +44,10 @@ Result<std::vector<ViewPair>> ParsePairs(
 
 Result<int> EvaluateMeasurements(const EvaluateFlags& flags, const Scene& scene,
                                  const GroundTruth& truth) {
+  if (scene.relative_poses.empty()) {
+    return MakeError(ErrorCode::kInvalidScene,
+                     "holds no relative poses to judge", flags.solution);
+  }
   PairEvaluationOptions options;
   LOWLAP_ASSIGN_OR_RETURN(options.expected, ParsePairs(flags.expected_pairs));
   LOWLAP_ASSIGN_OR_RETURN(const auto evaluation,

@@ -43,6 +43,21 @@ TEST_F(ConvertCommand, CountsWhatIsLeftOut) {
             0);
 }
 
+TEST_F(ConvertCommand, SaysWhereNothingIsLeft) {
+  Write("00.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n");
+  const std::string poses = Path("00.txt") + " ";
+  for (const char* option : {" --drop-solution", " --max-point-matches 5"}) {
+    const Outcome without =
+        Lowlap("convert " + poses + Path("views.json") + option);
+    EXPECT_EQ(without.exit_code, 0) << without.output;
+    EXPECT_THAT(without.output, HasSubstr("holds no measurements"));
+  }
+  const Outcome judged =
+      Lowlap("evaluate " + poses + poses + "--relative-poses");
+  EXPECT_EQ(judged.exit_code, 1);
+  EXPECT_THAT(judged.output, HasSubstr("no relative poses to judge"));
+}
+
 TEST_F(ConvertCommand, ReadsInTheFormatThatIsNamed) {
   Write("lines", "1 0 0 1 2 0 1 2 4 0 10 20 30 40 9 0 1 2 3 4\n");
   const std::string output = " " + Path("out.json");

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <iterator>
 #include <string>
+#include <utility>
 
 #include "lowlap/core/internal/atomic_file.h"
 #include "support/matchers.h"
@@ -62,6 +63,24 @@ TEST_F(OutputFolderTest, IsNotLeftByARunThatFails) {
                    });
   EXPECT_THAT(refused, IsError(ErrorCode::kCancelled, ""));
   EXPECT_FALSE(fs::exists(folder_ / "out"));
+}
+
+TEST_F(OutputFolderTest, TheRootPathIsAbsoluteIfItIsThere) {
+  const auto written = [&](const std::string& root_path) {
+    Scene scene;
+    scene.root_path = root_path;
+    std::string seen;
+    EXPECT_FALSE(WriteOutputs(std::move(scene), RunSummary(), {},
+                              (folder_ / "out").string(),
+                              [&](const Scene& checked) -> Status {
+                                seen = checked.root_path;
+                                return MakeError(ErrorCode::kIo, "refused");
+                              }));
+    return seen;
+  };
+  EXPECT_EQ(written("."), (fs::current_path() / "").string());
+  // Of a listing elsewhere, perhaps.
+  EXPECT_EQ(written("../no/such/folder"), "../no/such/folder");
 }
 
 TEST_F(OutputFolderTest, OutputFilesAreThoseThatAreWritten) {

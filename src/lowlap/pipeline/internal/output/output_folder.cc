@@ -88,7 +88,10 @@ Status WriteOutputs(Scene scene, const RunSummary& summary,
   if (!scene.root_path.empty()) {
     std::error_code error;
     const fs::path absolute = fs::absolute(scene.root_path, error);
-    if (!error) scene.root_path = absolute.lexically_normal().string();
+    // One that is relative to elsewhere would be lost.
+    if (!error && fs::is_directory(absolute, error)) {
+      scene.root_path = absolute.lexically_normal().string();
+    }
   }
   OutputFolder made;
   LOWLAP_RETURN_IF_ERROR(made.Make(folder));
