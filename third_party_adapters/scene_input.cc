@@ -66,7 +66,8 @@ bool HoldsMatches(const SceneInput& input) {
 
 Result<LoadedScene> EstimatePoses(const SceneInput& input,
                                   const RunContext& context, StageLog* stages,
-                                  const ViewCheck& check) {
+                                  const ViewCheck& check,
+                                  const FirstSolution& first) {
   LoadedScene loaded;
   MatchedPoints points;
   {
@@ -93,7 +94,7 @@ Result<LoadedScene> EstimatePoses(const SceneInput& input,
   }
   LOWLAP_ASSIGN_OR_RETURN(
       loaded.pairs, RelateMatchedPoints(points, use, RelativePoseOptions{},
-                                        context, stages, &loaded.scene));
+                                        first, context, stages, &loaded.scene));
   return loaded;
 }
 
@@ -115,12 +116,15 @@ Result<LoadedScene> ReadOwnScene(const SceneInput& input,
 
 Result<LoadedScene> LoadScene(const SceneInput& input,
                               const RunContext& context, StageLog* stages,
-                              const ViewCheck& check) {
+                              const ViewCheck& check,
+                              const FirstSolution& first) {
   if (input.scene.empty()) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "the scene is missing: first argument, or -i");
   }
-  if (HoldsMatches(input)) return EstimatePoses(input, context, stages, check);
+  if (HoldsMatches(input)) {
+    return EstimatePoses(input, context, stages, check, first);
+  }
   if (!input.images.empty()) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "--images goes with matches: a database of COLMAP, or an "
@@ -132,9 +136,9 @@ Result<LoadedScene> LoadScene(const SceneInput& input,
 
 Result<LoadedScene> LoadMeasuredScene(const SceneInput& input,
                                       const RunContext& context,
-                                      StageLog* stages,
-                                      const ViewCheck& check) {
-  auto loaded = LoadScene(input, context, stages, check);
+                                      StageLog* stages, const ViewCheck& check,
+                                      const FirstSolution& first) {
+  auto loaded = LoadScene(input, context, stages, check, first);
   if (!loaded) return loaded;
   if (loaded->scene.relative_poses.empty()) {
     return MakeError(

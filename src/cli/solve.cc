@@ -154,7 +154,10 @@ Result<int> Solve(const SolveCommandFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   LOWLAP_ASSIGN_OR_RETURN(const SolveFlags solve,
                           WithHostFlags(flags.solve, flags.host, context));
-  LOWLAP_RETURN_IF_ERROR(MakeSolveOptions(solve));
+  FirstSolution first;
+  LOWLAP_ASSIGN_OR_RETURN(first.solve, MakeSolveOptions(solve));
+  LOWLAP_ASSIGN_OR_RETURN(first.refinement,
+                          ParseRefinement(solve.refine_intrinsics));
   // What cannot be written, or evaluated, is found before the work.
   const OutputPlace output = OutputPlaceOf(flags.output);
   LOWLAP_RETURN_IF_ERROR(CheckInputsStay(InputFiles(flags.input), output.folder,
@@ -168,9 +171,12 @@ Result<int> Solve(const SolveCommandFlags& flags) {
   RunSummary summary;
   summary.command = "solve";
   LOWLAP_ASSIGN_OR_RETURN(
-      auto loaded, LoadMeasuredScene(flags.input, context, &stages, check));
+      auto loaded,
+      LoadMeasuredScene(flags.input, context, &stages, check, first));
+  // A scene file's adjustment starts from the calibration as it was given, what
+  // was related here from that which it was related with.
+  if (loaded.pairs.empty()) RestoreGivenIntrinsics(&loaded.scene);
   summary.pairs = std::move(loaded.pairs);
-  RestoreGivenIntrinsics(&loaded.scene);
   return SolveAndWrite(std::move(loaded.scene), solve, std::move(summary),
                        &stages, context, flags.input.scene, output);
 }

@@ -243,11 +243,12 @@ SceneInput TakeSceneInput(Keywords* keywords) {
 
 MeasuredScene MeasuredSceneOf(const py::object& scene, SceneInput input,
                               Call* call, StageLog* stages,
-                              const ViewCheck& check) {
+                              const ViewCheck& check,
+                              const FirstSolution& first) {
   if (!py::isinstance<Scene>(scene)) {
     input.scene = PathOf(scene, "scene must be a Scene or a path");
     LoadedScene loaded = call->Run([&] {
-      return LoadMeasuredScene(input, call->context(), stages, check);
+      return LoadMeasuredScene(input, call->context(), stages, check, first);
     });
     return {std::make_shared<Scene>(std::move(loaded.scene)),
             std::move(loaded.pairs)};

@@ -123,6 +123,7 @@ struct MeasuredScene {
 /// `input` goes with a path. `stages` may be null.
 MeasuredScene MeasuredSceneOf(const py::object& scene, SceneInput input,
                               Call* call, StageLog* stages = nullptr,
-                              const ViewCheck& check = nullptr);
+                              const ViewCheck& check = nullptr,
+                              const FirstSolution& first = {});
 
 }  // namespace lowlap::python

@@ -24,12 +24,14 @@ Solution Solve(const py::object& scene_or_path, const py::kwargs& kwargs) {
   CheckOutput(arguments.output);
   StageLog stages;
   MeasuredScene measured =
-      MeasuredSceneOf(scene_or_path, input, call.get(), &stages);
+      MeasuredSceneOf(scene_or_path, input, call.get(), &stages, nullptr,
+                      {arguments.options, arguments.refinement});
   Solution solution;
   solution.scene = std::make_shared<Scene>(*measured.scene);
   solution.summary.command = "solve";
+  // As in the command.
+  if (measured.pairs.empty()) RestoreGivenIntrinsics(solution.scene.get());
   solution.summary.pairs = std::move(measured.pairs);
-  RestoreGivenIntrinsics(solution.scene.get());
   SolveInPlace(arguments, call.get(), &stages, &solution);
   return solution;
 }
@@ -213,9 +215,9 @@ Solution MeasurePhotographs(const Photographs& photographs,
   TruthOf(arguments.truth, *solution.scene);
   if (check) RaiseIfError(check(*solution.scene));
   ImageReport report = call->Run([&] {
-    auto measured = MeasureAndRefine(solution.scene.get(),
-                                     photographs.measurement, arguments.options,
-                                     arguments.refinement, context, stages);
+    auto measured = MeasureAndRefine(
+        solution.scene.get(), photographs.measurement,
+        {arguments.options, arguments.refinement}, context, stages);
     if (!measured && measured.error().file.empty()) {
       measured.error().file = photographs.folder;
     }

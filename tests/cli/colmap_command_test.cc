@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <vector>
 
 #include "adapters/colmap_database.h"
 #include "cli_fixture.h"
@@ -28,11 +29,8 @@ class ColmapCommand : public Cli {
     const SyntheticScene synthetic = *Simulate(options);
     const Scene& scene = synthetic.scene;
     ColmapDatabase file(Database(), ColmapDatabase::Version::k3_8);
-    const Intrinsic& camera = scene.intrinsics.begin()->second;
-    file.AddCamera(
-        1, 1, camera.width_px, camera.height_px,
-        {camera.fx_px, camera.fy_px, camera.principal_point_px.x() + 0.5,
-         camera.principal_point_px.y() + 0.5});
+    camera_ = scene.intrinsics.begin()->second;
+    file.AddCamera(1, 1, camera_.width_px, camera_.height_px, Parameters());
     for (const auto& [id, features] : scene.features) {
       std::vector<float> keypoints;
       for (const Vec2& point : features.points_px) {
@@ -52,6 +50,13 @@ class ColmapCommand : public Cli {
     }
   }
   std::string Database() const { return Path("database.db"); }
+  // Of camera_, in COLMAP's pixels.
+  std::vector<double> Parameters() const {
+    return {camera_.fx_px, camera_.fy_px, camera_.principal_point_px.x() + 0.5,
+            camera_.principal_point_px.y() + 0.5};
+  }
+
+  Intrinsic camera_;
 };
 
 TEST_F(ColmapCommand, ModelsAreMergedByADatabase) {
@@ -102,6 +107,28 @@ TEST_F(ColmapCommand, ADatabaseIsSolvedAndTheResultGoesBack) {
       Lowlap("solve " + Path("stored.lowlap") + " -o " + Path("again"));
   ASSERT_EQ(again.exit_code, 0) << again.output;
   EXPECT_THAT(again.output, HasSubstr("cameras placed: 8/8"));
+}
+
+// As COLMAP guesses them.
+TEST_F(ColmapCommand, AWrongFocalLengthIsRefinedAndViewsRelatedOnceMore) {
+  const double true_px = camera_.fx_px;
+  camera_.fx_px = camera_.fy_px = 1.2 * true_px;
+  sqlite3* connection = nullptr;
+  ASSERT_EQ(sqlite3_open(Database().c_str(), &connection), SQLITE_OK);
+  const std::string change =
+      "UPDATE cameras SET params = " + ColmapDatabase::Blob(Parameters());
+  ASSERT_EQ(sqlite3_exec(connection, change.c_str(), nullptr, nullptr, nullptr),
+            SQLITE_OK);
+  sqlite3_close(connection);
+  const Outcome solved = Lowlap("solve " + Database() +
+                                " --refine-intrinsics focal -o " + Path("out"));
+  ASSERT_EQ(solved.exit_code, 0) << solved.output;
+  EXPECT_THAT(solved.output, HasSubstr("relative poses once more"));
+  EXPECT_THAT(solved.output, HasSubstr("firm: 8"));
+  const Outcome stored =
+      Lowlap("convert " + Path("out/scene.lowlap") + " " + Database());
+  EXPECT_EQ(stored.exit_code, 0) << stored.output;
+  EXPECT_THAT(stored.output, HasSubstr("1 cameras of the database stay"));
 }
 
 TEST_F(ColmapCommand, ViewsAreLeftOutByName) {

@@ -62,7 +62,7 @@ class MatchedPointsTest : public ::testing::Test {
       log_.push_back(message);
     };
     const auto pairs =
-        RelateMatchedPoints(points, use, {}, context, nullptr, &scene);
+        RelateMatchedPoints(points, use, {}, {}, context, nullptr, &scene);
     EXPECT_THAT(pairs, IsOk());
     EXPECT_EQ(scene.relative_poses.count(kPair), 1u);
     return scene;

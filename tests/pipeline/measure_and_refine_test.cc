@@ -33,8 +33,8 @@ TEST(MeasureAndRefine, MeasuresWithTheIntrinsicsThatASolutionPrefers) {
   Scene refined = given;
   IntrinsicRefinement focal;
   focal.focal = true;
-  ASSERT_THAT(MeasureAndRefine(&refined, ChainOfPhotographs(), SolveOptions(),
-                               focal, {}, nullptr),
+  ASSERT_THAT(MeasureAndRefine(&refined, ChainOfPhotographs(),
+                               {SolveOptions(), focal}, {}, nullptr),
               IsOk());
   EXPECT_EQ(refined.given_intrinsics, given.intrinsics);
   EXPECT_NE(refined.intrinsics, given.intrinsics);
@@ -49,10 +49,17 @@ TEST(MeasureAndRefine, MeasuresWithTheIntrinsicsThatASolutionPrefers) {
 TEST(MeasureAndRefine, HoldsIntrinsicsThatAreNotToBeRefined) {
   const Scene given = RoomWithWrongFocalLength();
   Scene held = given, measured = given;
-  const auto report = MeasureAndRefine(&held, ChainOfPhotographs(),
-                                       SolveOptions(), {}, {}, nullptr);
+  const auto report =
+      MeasureAndRefine(&held, ChainOfPhotographs(), {}, {}, nullptr);
   ASSERT_THAT(report, IsOk());
   EXPECT_EQ(report->pairs.size(), given.views.size() - 1);
+  for (const PairReport& pair : report->pairs) {
+    const RelativePose& pose = held.relative_poses.at(pair.views);
+    EXPECT_EQ(pair.num_point_inliers,
+              static_cast<int>(pose.point_inliers.size()));
+    EXPECT_EQ(pair.num_line_inliers,
+              static_cast<int>(pose.line_inliers.size()));
+  }
   ASSERT_THAT(MeasureImages(&measured, ChainOfPhotographs(), {}, nullptr),
               IsOk());
   EXPECT_TRUE(held == measured);
@@ -62,9 +69,8 @@ TEST(MeasureAndRefine, SaysWhyNothingIsRelated) {
   Scene scene = RoomWithWrongFocalLength();
   MeasurementOptions options = ChainOfPhotographs();
   options.matching.match_points = options.matching.match_lines = false;
-  EXPECT_THAT(
-      MeasureAndRefine(&scene, options, SolveOptions(), {}, {}, nullptr),
-      IsError(ErrorCode::kInsufficientData, "no pair of views"));
+  EXPECT_THAT(MeasureAndRefine(&scene, options, {}, {}, nullptr),
+              IsError(ErrorCode::kInsufficientData, "no pair of views"));
 }
 
 }  // namespace

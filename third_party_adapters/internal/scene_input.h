@@ -7,6 +7,7 @@
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
 #include "lowlap/pipeline/internal/measure/pair_report.h"
+#include "lowlap/pipeline/internal/measure/relate_and_refine.h"
 #include "lowlap/pipeline/stage_log.h"
 #include "lowlap/scene/scene.h"
 
@@ -33,15 +34,18 @@ using ViewCheck = std::function<Status(const Scene&)>;
 
 /// Reads the scene without the excluded views. From the matches of OpenMVG or
 /// COLMAP the relative poses are estimated, if `check`, which may be null,
-/// finds nothing. kInvalidArgument if no scene is named.
+/// finds nothing, with the intrinsics that a first solution refines
+/// (RelateAndRefine). kInvalidArgument if no scene is named.
 Result<LoadedScene> LoadScene(const SceneInput& input,
                               const RunContext& context, StageLog* stages,
-                              const ViewCheck& check = nullptr);
+                              const ViewCheck& check = nullptr,
+                              const FirstSolution& first = {});
 
 /// The same; kInvalidScene if there are no relative poses in the end.
 Result<LoadedScene> LoadMeasuredScene(const SceneInput& input,
                                       const RunContext& context,
                                       StageLog* stages,
-                                      const ViewCheck& check = nullptr);
+                                      const ViewCheck& check = nullptr,
+                                      const FirstSolution& first = {});
 
 }  // namespace lowlap

@@ -53,7 +53,7 @@ Result<ImageReport> MeasurePhotographs(const PhotographFlags& flags,
                 "focal lengths are those of the EXIF data, a few percent off "
                 "as a rule; --refine-intrinsics adjusts them");
   }
-  auto report = MeasureAndRefine(scene, measurement, options, refinement,
+  auto report = MeasureAndRefine(scene, measurement, {options, refinement},
                                  context, stages);
   if (report) return report;
   if (IsInterrupted() && !flags.cache.empty()) {

@@ -11,6 +11,7 @@
 #include "lowlap/matching/internal/points/subpixel_refinement.h"
 #include "lowlap/pipeline/internal/measure/cache/cached_measurements.h"
 #include "lowlap/pipeline/internal/measure/image_measurements.h"
+#include "lowlap/pipeline/internal/measure/pair_report.h"
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
 #include "lowlap/pipeline/internal/measure/tilted_measurements.h"
 #include "lowlap/pipeline/internal/scene_reduction.h"
@@ -29,17 +30,6 @@ Status RefinePoints(const std::map<ViewId, DetectedFeatures>& detected,
                   std::to_string(summary.observations) +
                   " observations aligned");
   return RefineRelativePoses(scene, detected, options.relative_poses, context);
-}
-
-void UpdateCounts(const Scene& scene, std::vector<PairReport>* reports) {
-  for (PairReport& report : *reports) {
-    const auto found = scene.relative_poses.find(report.views);
-    if (found == scene.relative_poses.end()) continue;
-    report.num_point_inliers =
-        static_cast<int>(found->second.point_inliers.size());
-    report.num_line_inliers =
-        static_cast<int>(found->second.line_inliers.size());
-  }
 }
 
 }  // namespace
@@ -137,7 +127,7 @@ Result<std::vector<PairReport>> RelatePairs(
     const StageLog::Scope scope(stages, "point refinement");
     LOWLAP_RETURN_IF_ERROR(
         RefinePoints(measurements.features, options, context, scene));
-    UpdateCounts(*scene, &*reports);
+    CountInliers(*scene, &*reports);
   }
   KeepMatchedFeatures(scene);
   return reports;

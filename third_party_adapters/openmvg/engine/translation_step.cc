@@ -131,7 +131,8 @@ Result<TranslationStepResult> RunTranslationStep(
       RelateMatchedPoints(points,
                           options.use_photographs ? PhotographUse::kLinesIfThere
                                                   : PhotographUse::kNone,
-                          options.relative_poses, context, nullptr, &scene));
+                          options.relative_poses, {}, context, nullptr,
+                          &scene));
   if (scene.relative_poses.empty()) {
     return MakeError(ErrorCode::kInsufficientData, ExplainNoPose(pairs));
   }

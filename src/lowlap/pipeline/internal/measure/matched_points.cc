@@ -60,8 +60,8 @@ Status MatchSegments(const std::map<ViewId, DetectedFeatures>& detected,
 
 Result<std::vector<PairReport>> RelateMatchedPoints(
     const MatchedPoints& points, PhotographUse use,
-    const RelativePoseOptions& options, const RunContext& context,
-    StageLog* stages, Scene* scene) {
+    const RelativePoseOptions& options, const FirstSolution& first,
+    const RunContext& context, StageLog* stages, Scene* scene) {
   std::map<ViewPair, PairMatches> matches;
   for (const auto& [pair, of_pair] : points.matches) {
     matches[pair].points = of_pair;
@@ -75,12 +75,15 @@ Result<std::vector<PairReport>> RelateMatchedPoints(
     const StageLog::Scope scope(stages, "matching");
     LOWLAP_RETURN_IF_ERROR(MatchSegments(detected, context, &matches));
   }
-  const StageLog::Scope scope(stages, "relative poses");
   RelativePoseOptions of_points = options;
   // The points have no descriptors here to be matched again by.
   of_points.pair.starved_below = 0;
-  return EstimateRelativePoses(scene, matches, &detected, of_points, context,
-                               points.cam2_from_cam1);
+  const auto relate = [&](Scene* related) {
+    const StageLog::Scope scope(stages, "relative poses");
+    return EstimateRelativePoses(related, matches, &detected, of_points,
+                                 context, points.cam2_from_cam1);
+  };
+  return RelateAndRefine(relate, first, context, stages, scene);
 }
 
 }  // namespace lowlap

@@ -7,6 +7,7 @@
 #include "lowlap/core/run_context.h"
 #include "lowlap/geometry/rigid_transform.h"
 #include "lowlap/pipeline/internal/measure/pair_report.h"
+#include "lowlap/pipeline/internal/measure/relate_and_refine.h"
 #include "lowlap/pipeline/measure_images.h"
 #include "lowlap/pipeline/stage_log.h"
 #include "lowlap/scene/scene.h"
@@ -30,12 +31,13 @@ enum class PhotographUse {
 };
 
 /// From the points of another program to relative poses and tracks
-/// (EstimateRelativePoses). Views whose photograph is missing or unusable have
-/// points alone; the log names them. Errors: those of EstimateRelativePoses;
-/// that of the first photograph if none is usable, with kLines.
+/// (EstimateRelativePoses), with the intrinsics that a first solution refines
+/// (RelateAndRefine). Views whose photograph is missing or unusable have points
+/// alone; the log names them. Errors: those of EstimateRelativePoses; that of
+/// the first photograph if none is usable, with kLines.
 Result<std::vector<PairReport>> RelateMatchedPoints(
     const MatchedPoints& points, PhotographUse use,
-    const RelativePoseOptions& options, const RunContext& context,
-    StageLog* stages, Scene* scene);
+    const RelativePoseOptions& options, const FirstSolution& first,
+    const RunContext& context, StageLog* stages, Scene* scene);
 
 }  // namespace lowlap

@@ -15,6 +15,16 @@ int NumMatches(const PairReport& pair) {
 
 }  // namespace
 
+void CountInliers(const Scene& scene, std::vector<PairReport>* pairs) {
+  for (PairReport& pair : *pairs) {
+    const auto found = scene.relative_poses.find(pair.views);
+    if (found == scene.relative_poses.end()) continue;
+    pair.num_point_inliers =
+        static_cast<int>(found->second.point_inliers.size());
+    pair.num_line_inliers = static_cast<int>(found->second.line_inliers.size());
+  }
+}
+
 std::string ExplainNoPose(const std::vector<PairReport>& pairs) {
   const std::string none = "no pair of views has a relative pose";
   if (pairs.empty()) return none + ", for none has matches";

@@ -7,8 +7,12 @@
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
 #include "lowlap/pipeline/measure_images.h"
+#include "lowlap/scene/scene.h"
 
 namespace lowlap {
+
+/// Takes the numbers of inliers of accepted pairs from the scene.
+void CountInliers(const Scene& scene, std::vector<PairReport>* pairs);
 
 /// For people, where not one pair was accepted: how many were tried, and why
 /// the one with the most matches was not.

@@ -9,6 +9,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/core/internal/union_find.h"
+#include "lowlap/pipeline/internal/measure/pair_report.h"
 
 namespace lowlap {
 namespace {
@@ -213,6 +214,7 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
   }
   LogPairsWithoutParallax(*scene, reports, context);
   BuildTracks(lone_matches, options, scene);
+  CountInliers(*scene, &reports);
   return reports;
 }
 

@@ -1,0 +1,95 @@
+#include "lowlap/pipeline/internal/measure/relate_and_refine.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <vector>
+
+#include "lowlap/synthetic/synthetic_scene.h"
+#include "support/matchers.h"
+
+namespace lowlap {
+namespace {
+
+using ::testing::IsEmpty;
+using testing::IsError;
+using testing::IsOk;
+
+constexpr double kFocalFactor = 1.05;
+
+// A room whose photographs have a focal length that is 5 % too long, without
+// relative poses.
+class RelateAndRefineTest : public ::testing::Test {
+ protected:
+  RelateAndRefineTest() {
+    SyntheticOptions options;
+    options.num_views = 8;
+    options.noise_px = 0.3;
+    options.pairs = "all";
+    measured_ = Simulate(options)->scene;
+    scene_ = measured_;
+    for (auto& [id, intrinsic] : scene_.intrinsics) {
+      intrinsic.fx_px *= kFocalFactor;
+      intrinsic.fy_px *= kFocalFactor;
+    }
+    scene_.relative_poses.clear();
+    given_ = scene_.intrinsics;
+  }
+
+  Result<std::vector<PairReport>> Relate(const FirstSolution& first) {
+    const auto relate = [this](Scene* scene) {
+      focals_px_.push_back(scene->intrinsics.begin()->second.fx_px);
+      scene->relative_poses = measured_.relative_poses;
+      return Result<std::vector<PairReport>>(std::vector<PairReport>(2));
+    };
+    return RelateAndRefine(relate, first, {}, nullptr, &scene_);
+  }
+
+  Scene measured_;
+  Scene scene_;
+  std::map<IntrinsicId, Intrinsic> given_;
+  std::vector<double> focals_px_;  // with which views were related
+};
+
+TEST_F(RelateAndRefineTest, RelatesOnceMoreWithWhatAFirstSolutionRefines) {
+  const double true_px = measured_.intrinsics.begin()->second.fx_px;
+  FirstSolution first;
+  first.refinement.focal = true;
+  const auto reports = Relate(first);
+  ASSERT_THAT(reports, IsOk());
+  EXPECT_EQ(reports->size(), 2u);
+  ASSERT_EQ(focals_px_.size(), 2u);
+  EXPECT_DOUBLE_EQ(focals_px_[0], kFocalFactor * true_px);
+  EXPECT_NEAR(focals_px_[1], true_px, 0.01 * true_px);
+  EXPECT_EQ(scene_.intrinsics.begin()->second.fx_px, focals_px_[1]);
+  EXPECT_EQ(scene_.given_intrinsics, given_);
+  EXPECT_THAT(scene_.poses, IsEmpty());
+}
+
+TEST_F(RelateAndRefineTest, HoldsIntrinsicsThatAreNotToBeRefined) {
+  ASSERT_THAT(Relate({}), IsOk());
+  EXPECT_EQ(focals_px_.size(), 1u);
+  EXPECT_EQ(scene_.intrinsics, given_);
+  EXPECT_THAT(scene_.given_intrinsics, IsEmpty());
+}
+
+TEST_F(RelateAndRefineTest, WithoutASolutionNothingChanges) {
+  measured_.relative_poses.clear();
+  FirstSolution first;
+  first.refinement.focal = true;
+  ASSERT_THAT(Relate(first), IsOk());
+  EXPECT_EQ(focals_px_.size(), 1u);
+  EXPECT_EQ(scene_.intrinsics, given_);
+}
+
+TEST_F(RelateAndRefineTest, PassesErrorsOn) {
+  const auto fail = [](Scene*) -> Result<std::vector<PairReport>> {
+    return MakeError(ErrorCode::kCancelled, "cancelled");
+  };
+  EXPECT_THAT(RelateAndRefine(fail, {}, {}, nullptr, &scene_),
+              IsError(ErrorCode::kCancelled, "cancelled"));
+}
+
+}  // namespace
+}  // namespace lowlap
