@@ -42,7 +42,7 @@ Result<int> Convert(const ConvertFlags& flags) {
   LOWLAP_ASSIGN_OR_RETURN(const auto written,
                           WriteScene(scene, flags.output, flags.output_format));
   notes.insert(notes.end(), written.begin(), written.end());
-  if (scene.relative_poses.empty() && scene.poses.empty() &&
+  if (scene.relative_poses.empty() &&
       (flags.drop_solution || flags.max_point_matches > 0)) {
     notes.push_back(
         "without its solution the scene holds no measurements, only views and "

@@ -10,7 +10,6 @@
 #include "cli/flags/scene_input.h"
 #include "cli/flags/solve_flags.h"
 #include "cli/flags/truth.h"
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/merge/merge_models.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
@@ -42,10 +41,7 @@ Result<LoadedScene> Load(const MergeFlags& flags, const ViewCheck& check,
     }
     measured.scene = flags.database;
   }
-  LOWLAP_ASSIGN_OR_RETURN(auto loaded,
-                          LoadMeasuredScene(measured, context, stages, check));
-  RestoreGivenIntrinsics(&loaded.scene);
-  return loaded;
+  return LoadSceneToSolve(measured, flags.solve, context, stages, check);
 }
 
 // The measured scene, from photographs or as it was measured before.

@@ -10,7 +10,6 @@
 #include "cli/flags/scene_input.h"
 #include "cli/flags/solve_flags.h"
 #include "cli/flags/truth.h"
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
 
@@ -154,10 +153,7 @@ Result<int> Solve(const SolveCommandFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   LOWLAP_ASSIGN_OR_RETURN(const SolveFlags solve,
                           WithHostFlags(flags.solve, flags.host, context));
-  FirstSolution first;
-  LOWLAP_ASSIGN_OR_RETURN(first.solve, MakeSolveOptions(solve));
-  LOWLAP_ASSIGN_OR_RETURN(first.refinement,
-                          ParseRefinement(solve.refine_intrinsics));
+  LOWLAP_RETURN_IF_ERROR(MakeSolveOptions(solve));
   // What cannot be written, or evaluated, is found before the work.
   const OutputPlace output = OutputPlaceOf(flags.output);
   LOWLAP_RETURN_IF_ERROR(CheckInputsStay(InputFiles(flags.input), output.folder,
@@ -172,10 +168,7 @@ Result<int> Solve(const SolveCommandFlags& flags) {
   summary.command = "solve";
   LOWLAP_ASSIGN_OR_RETURN(
       auto loaded,
-      LoadMeasuredScene(flags.input, context, &stages, check, first));
-  // A scene file's adjustment starts from the calibration as it was given, what
-  // was related here from that which it was related with.
-  if (loaded.pairs.empty()) RestoreGivenIntrinsics(&loaded.scene);
+      LoadSceneToSolve(flags.input, solve, context, &stages, check));
   summary.pairs = std::move(loaded.pairs);
   return SolveAndWrite(std::move(loaded.scene), solve, std::move(summary),
                        &stages, context, flags.input.scene, output);

@@ -2,7 +2,6 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/merge/merge_models.h"
 #include "python/solution.h"
@@ -94,11 +93,7 @@ Solution Merge(const py::object& given, const py::kwargs& kwargs) {
   };
   Solution solution;
   if (scene) {
-    MeasuredScene measured =
-        MeasuredSceneOf(scene, input, call.get(), &stages, match);
-    solution.scene = std::make_shared<Scene>(*measured.scene);
-    solution.summary.pairs = std::move(measured.pairs);
-    RestoreGivenIntrinsics(solution.scene.get());
+    solution = LoadToSolve(scene, input, arguments, call.get(), &stages, match);
   } else {
     photographs.intrinsics = IntrinsicsOf(intrinsics, focal_px);
     solution =

@@ -21,6 +21,13 @@ struct Solution {
 /// Raises if results cannot be put into the folder; empty: none is asked for.
 void CheckOutput(const std::string& output);
 
+/// A scene to solve, as MeasuredSceneOf gives it. Its adjustment starts from
+/// the calibration as it was given, or from that with which it was related
+/// here.
+Solution LoadToSolve(const py::object& scene, const SceneInput& input,
+                     const SolveArguments& arguments, Call* call,
+                     StageLog* stages, const ViewCheck& check = nullptr);
+
 /// Photographs, and how they are measured.
 struct Photographs {
   std::string folder;

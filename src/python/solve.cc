@@ -23,15 +23,9 @@ Solution Solve(const py::object& scene_or_path, const py::kwargs& kwargs) {
   keywords.Finish();
   CheckOutput(arguments.output);
   StageLog stages;
-  MeasuredScene measured =
-      MeasuredSceneOf(scene_or_path, input, call.get(), &stages, nullptr,
-                      {arguments.options, arguments.refinement});
-  Solution solution;
-  solution.scene = std::make_shared<Scene>(*measured.scene);
+  Solution solution =
+      LoadToSolve(scene_or_path, input, arguments, call.get(), &stages);
   solution.summary.command = "solve";
-  // As in the command.
-  if (measured.pairs.empty()) RestoreGivenIntrinsics(solution.scene.get());
-  solution.summary.pairs = std::move(measured.pairs);
   SolveInPlace(arguments, call.get(), &stages, &solution);
   return solution;
 }
@@ -199,6 +193,19 @@ constexpr char kRunDoc[] =
 
 void CheckOutput(const std::string& output) {
   if (!output.empty()) RaiseIfError(CheckOutputFolder(output));
+}
+
+Solution LoadToSolve(const py::object& scene, const SceneInput& input,
+                     const SolveArguments& arguments, Call* call,
+                     StageLog* stages, const ViewCheck& check) {
+  MeasuredScene measured =
+      MeasuredSceneOf(scene, input, call, stages, check,
+                      {arguments.options, arguments.refinement});
+  Solution solution;
+  solution.scene = std::make_shared<Scene>(*measured.scene);
+  if (measured.pairs.empty()) RestoreGivenIntrinsics(solution.scene.get());
+  solution.summary.pairs = std::move(measured.pairs);
+  return solution;
 }
 
 Solution MeasurePhotographs(const Photographs& photographs,

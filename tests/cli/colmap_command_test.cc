@@ -56,6 +56,20 @@ class ColmapCommand : public Cli {
             camera_.principal_point_px.y() + 0.5};
   }
 
+  // As COLMAP guesses them.
+  void MakeFocalLengthWrong() {
+    camera_.fx_px *= 1.2;
+    camera_.fy_px *= 1.2;
+    sqlite3* connection = nullptr;
+    ASSERT_EQ(sqlite3_open(Database().c_str(), &connection), SQLITE_OK);
+    const std::string change =
+        "UPDATE cameras SET params = " + ColmapDatabase::Blob(Parameters());
+    EXPECT_EQ(
+        sqlite3_exec(connection, change.c_str(), nullptr, nullptr, nullptr),
+        SQLITE_OK);
+    sqlite3_close(connection);
+  }
+
   Intrinsic camera_;
 };
 
@@ -109,17 +123,8 @@ TEST_F(ColmapCommand, ADatabaseIsSolvedAndTheResultGoesBack) {
   EXPECT_THAT(again.output, HasSubstr("cameras placed: 8/8"));
 }
 
-// As COLMAP guesses them.
 TEST_F(ColmapCommand, AWrongFocalLengthIsRefinedAndViewsRelatedOnceMore) {
-  const double true_px = camera_.fx_px;
-  camera_.fx_px = camera_.fy_px = 1.2 * true_px;
-  sqlite3* connection = nullptr;
-  ASSERT_EQ(sqlite3_open(Database().c_str(), &connection), SQLITE_OK);
-  const std::string change =
-      "UPDATE cameras SET params = " + ColmapDatabase::Blob(Parameters());
-  ASSERT_EQ(sqlite3_exec(connection, change.c_str(), nullptr, nullptr, nullptr),
-            SQLITE_OK);
-  sqlite3_close(connection);
+  MakeFocalLengthWrong();
   const Outcome solved = Lowlap("solve " + Database() +
                                 " --refine-intrinsics focal -o " + Path("out"));
   ASSERT_EQ(solved.exit_code, 0) << solved.output;
@@ -128,7 +133,21 @@ TEST_F(ColmapCommand, AWrongFocalLengthIsRefinedAndViewsRelatedOnceMore) {
   const Outcome stored =
       Lowlap("convert " + Path("out/scene.lowlap") + " " + Database());
   EXPECT_EQ(stored.exit_code, 0) << stored.output;
-  EXPECT_THAT(stored.output, HasSubstr("1 cameras of the database stay"));
+  EXPECT_THAT(stored.output, HasSubstr("stay as they are: 1 of them up to "));
+}
+
+TEST_F(ColmapCommand, SoTheyAreForAMerge) {
+  ASSERT_EQ(Lowlap("solve " + Database() + " --exclude 7.jpg,8.jpg -o " +
+                   Path("part"))
+                .exit_code,
+            0);
+  MakeFocalLengthWrong();
+  const Outcome merged =
+      Lowlap("merge " + Path("part") + "/scene.lowlap --database " +
+             Database() + " --refine-intrinsics focal -o " + Path("out"));
+  ASSERT_EQ(merged.exit_code, 0) << merged.output;
+  EXPECT_THAT(merged.output, HasSubstr("relative poses once more"));
+  EXPECT_THAT(merged.output, HasSubstr("cameras placed: 8/8"));
 }
 
 TEST_F(ColmapCommand, ViewsAreLeftOutByName) {

@@ -109,15 +109,6 @@ TEST(RefinePair, ImprovesOnTheInliersAlone) {
   EXPECT_TRUE(RefinePair(rough, first, second, {}) == rough);
 }
 
-// The share of the variance of `before` that `after` has lost in the direction
-// in which it has lost most; their frames are nearly the same.
-double MostLost(const Mat5& before, const Mat5& after) {
-  const Mat5 half = before.llt().matrixL();
-  const Mat5 inverse = half.inverse();
-  const Mat5 ratio = inverse * after * inverse.transpose();
-  return 1 - ratio.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
-}
-
 // It has no threshold, which does not mean that its matches are exact.
 TEST(RefinePair, KeepsTheInliersOfAGivenPose) {
   TwoViewSceneOptions options;
@@ -130,6 +121,15 @@ TEST(RefinePair, KeepsTheInliersOfAGivenPose) {
   ASSERT_TRUE(given.pose) << given.reason;
   const RelativePose refined = RefinePair(*given.pose, first, second, {});
   EXPECT_GT(refined.point_inliers.size(), 195u);
+}
+
+// The share of the variance of `before` that `after` has lost in the direction
+// in which it has lost most; their frames are nearly the same.
+double MostLost(const Mat5& before, const Mat5& after) {
+  const Mat5 half = before.llt().matrixL();
+  const Mat5 inverse = half.inverse();
+  const Mat5 ratio = inverse * after * inverse.transpose();
+  return 1 - ratio.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff();
 }
 
 TEST(RefinePair, StillSaysWhatOnePlaneLeavesOpen) {

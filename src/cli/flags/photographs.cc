@@ -1,7 +1,6 @@
 #include "cli/flags/photographs.h"
 
 #include "cli/command.h"
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"
 
@@ -39,10 +38,8 @@ Result<ImageReport> MeasurePhotographs(const PhotographFlags& flags,
                                        const SolveFlags& solve,
                                        const RunContext& context,
                                        StageLog* stages, Scene* scene) {
-  LOWLAP_ASSIGN_OR_RETURN(const auto options, MakeSolveOptions(solve));
+  LOWLAP_ASSIGN_OR_RETURN(const auto first, MakeFirstSolution(solve));
   LOWLAP_ASSIGN_OR_RETURN(const auto scale, MakeScaleOptions(solve.scale));
-  LOWLAP_ASSIGN_OR_RETURN(const auto refinement,
-                          ParseRefinement(solve.refine_intrinsics));
   MeasurementOptions measurement;
   LOWLAP_RETURN_IF_ERROR(SetChoices(flags.choices, scale, &measurement));
   measurement.pairs = flags.pairs;
@@ -53,8 +50,7 @@ Result<ImageReport> MeasurePhotographs(const PhotographFlags& flags,
                 "focal lengths are those of the EXIF data, a few percent off "
                 "as a rule; --refine-intrinsics adjusts them");
   }
-  auto report = MeasureAndRefine(scene, measurement, {options, refinement},
-                                 context, stages);
+  auto report = MeasureAndRefine(scene, measurement, first, context, stages);
   if (report) return report;
   if (IsInterrupted() && !flags.cache.empty()) {
     context.Log(LogLevel::kInfo, "what was measured is kept in " + flags.cache +

@@ -1,5 +1,8 @@
 #include "cli/flags/scene_input.h"
 
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
+#include "lowlap/core/internal/propagate.h"
+
 namespace lowlap::cli {
 
 void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
@@ -22,6 +25,17 @@ void AddSceneInputFlags(CLI::App* command, SceneInputFlags* flags) {
             "Views to leave out (file names or ids), separated by "
             "commas")
       .SeparatedBy(',');
+}
+
+Result<LoadedScene> LoadSceneToSolve(const SceneInputFlags& flags,
+                                     const SolveFlags& solve,
+                                     const RunContext& context,
+                                     StageLog* stages, const ViewCheck& check) {
+  LOWLAP_ASSIGN_OR_RETURN(const auto first, MakeFirstSolution(solve));
+  LOWLAP_ASSIGN_OR_RETURN(
+      auto loaded, LoadMeasuredScene(flags, context, stages, check, first));
+  if (loaded.pairs.empty()) RestoreGivenIntrinsics(&loaded.scene);
+  return loaded;
 }
 
 std::vector<NamedFile> InputFiles(const SceneInputFlags& flags) {

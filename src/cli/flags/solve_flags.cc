@@ -295,6 +295,14 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
   return options;
 }
 
+Result<FirstSolution> MakeFirstSolution(const SolveFlags& flags) {
+  FirstSolution first;
+  LOWLAP_ASSIGN_OR_RETURN(first.solve, MakeSolveOptions(flags));
+  LOWLAP_ASSIGN_OR_RETURN(first.refinement,
+                          ParseRefinement(flags.refine_intrinsics));
+  return first;
+}
+
 OutputPlace OutputPlaceOf(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored) ||

@@ -9,6 +9,7 @@
 #include "cli/flags/command_line.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/result.h"
+#include "lowlap/pipeline/internal/measure/relate_and_refine.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
@@ -44,6 +45,8 @@ struct SolveFlags {
 
 void AddSolveFlags(CLI::App* command, SolveFlags* flags);
 Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
+/// The same, for what is related first (RelateAndRefine).
+Result<FirstSolution> MakeFirstSolution(const SolveFlags& flags);
 
 /// --coplanar-ties
 void AddCoplanarTiesFlag(CLI::App* command, std::string* ties);

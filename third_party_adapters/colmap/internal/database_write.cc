@@ -122,8 +122,8 @@ class DatabaseWriter {
     }
     if (others.empty()) return;
     notes->push_back(Format(
-        "%zu cameras of the database stay as they are, though the scene's are "
-        "up to %.1f pixels off them, and its relative poses with them; formats "
+        "the cameras of the database stay as they are: %zu of them up to %.1f "
+        "pixels off the scene's, which its relative poses go with; formats "
         "colmap and colmap-bin hold the scene's",
         others.size(), largest_px));
   }

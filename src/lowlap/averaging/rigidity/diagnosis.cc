@@ -11,7 +11,6 @@
 
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/core/internal/union_find.h"
 
 namespace lowlap {
 namespace {
@@ -119,39 +118,24 @@ void FindNearest(const std::vector<ViewId>& group,
   }
 }
 
-// The views of all groups that cameras join to each group, by the first, and so
-// the largest, of these.
-std::map<std::size_t, std::vector<ViewId>> ViewsOfJoined(
-    const RigidityReport& report) {
-  UnionFind joined(report.groups.size());
-  for (const ArticulationView& articulation : report.articulation_views) {
-    for (const std::size_t group : articulation.groups) {
-      joined.Union(articulation.groups.front(), group);
-    }
-  }
-  std::map<std::size_t, std::size_t> first_of;
-  std::map<std::size_t, std::vector<ViewId>> views;
-  for (std::size_t g = 0; g < report.groups.size(); ++g) {
-    const std::size_t first = first_of.emplace(joined.Find(g), g).first->second;
-    const std::vector<ViewId>& more = report.groups[g].views;
-    views[first].insert(views[first].end(), more.begin(), more.end());
-  }
-  for (auto& [first, all] : views) {
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-  }
-  return views;
-}
-
 std::vector<FloatingPart> FindFloating(const Scene& scene,
                                        const RigidityReport& report) {
   std::vector<FloatingPart> floating;
-  const auto joined = ViewsOfJoined(report);
-  for (std::size_t g = 1; g < report.groups.size(); ++g) {
+  std::map<ViewId, std::size_t> component_of;
+  for (std::size_t c = 0; c < report.connected_components.size(); ++c) {
+    for (const ViewId view : report.connected_components[c]) {
+      component_of[view] = c;
+    }
+  }
+  std::set<std::size_t> known;  // components
+  for (std::size_t g = 0; g < report.groups.size(); ++g) {
     const RigidGroup& group = report.groups[g];
+    const std::size_t component = component_of.at(group.views.front());
+    const bool is_first = known.insert(component).second;
+    if (g == 0) continue;
     FloatingPart part;
-    if (const auto apart = joined.find(g); apart != joined.end()) {
-      part.views = apart->second;
+    if (is_first) {
+      part.views = report.connected_components[component];
       FindNearest(report.groups[0].views, part.views, &part);
       floating.push_back(std::move(part));
       continue;
