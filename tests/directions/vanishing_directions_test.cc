@@ -67,6 +67,34 @@ TEST(FindVanishingDirections, FindsHardlyAnyInClutterAlone) {
   EXPECT_LT(count, 10u);
 }
 
+// Lines of the same photograph with five times the pixels err by as many more.
+TEST(FindVanishingDirections, LargeImagesMayErrByMorePixels) {
+  LineSceneOptions options;
+  options.num_clutter = 30;
+  options.noise_px = 0.3;
+  for (int seed = 0; seed < 5; ++seed) {
+    NormalizedFeatures features =
+        MakeLineScene(options, 10 + seed).views.features1;
+    const auto small = FindVanishingDirections(features, {});
+    features.focal_px *= 5;
+    const auto large = FindVanishingDirections(features, {}, 5);
+    ASSERT_EQ(large.size(), small.size());
+    for (std::size_t n = 0; n < large.size(); ++n) {
+      EXPECT_LT(LineAngleDeg(large[n].direction, small[n].direction), 0.1);
+    }
+  }
+}
+
+// The crossing of two segments that attracts others by chance, which the fit to
+// them loses again, comes before one of the directions.
+TEST(FindVanishingDirections, GoesOnAfterACandidateThatIsNone) {
+  LineSceneOptions options;
+  options.noise_px = 0.3;
+  auto scene = MakeLineScene(options, 99);
+  scene.views.features1.focal_px *= 20;
+  EXPECT_EQ(FindVanishingDirections(scene.views.features1, {}).size(), 3u);
+}
+
 TEST(FindVanishingDirections, ReturnsNothingForNoSegments) {
   EXPECT_TRUE(FindVanishingDirections({}, {}).empty());
 }

@@ -40,6 +40,32 @@ int NumRight(const RelativePose& pose, const TwoViewScene& scene) {
       }));
 }
 
+// The same photographs with more pixels, and errors of more pixels.
+TEST(EstimateRelativePose, LargeImagesMayErrByMorePixels) {
+  TwoViewSceneOptions options;
+  options.num_right = 60;
+  options.num_wrong = 60;
+  options.noise_px = 0.7;
+  const TwoViewScene scene = MakeTwoViewScene(options, 3);
+  const auto estimate = [&](double factor) {
+    TwoViewScene larger = scene;
+    larger.features1.focal_px *= factor;
+    larger.features2.focal_px *= factor;
+    TwoViewInput input = larger.Input();
+    input.image_size1_px *= factor;
+    input.image_size2_px *= factor;
+    const auto result = EstimateRelativePose(input, {}, 5);
+    EXPECT_THAT(result, IsOk());
+    return result->pose;
+  };
+  const RelativePose medium = estimate(2), large = estimate(8);
+  EXPECT_LT(RotationErrorDeg(large.rotation, medium.rotation), 1e-4);
+  EXPECT_LT(DirectionErrorDeg(large.direction, medium.direction), 1e-3);
+  EXPECT_EQ(large.point_inliers, medium.point_inliers);
+  EXPECT_NEAR(large.point_threshold_px / medium.point_threshold_px, 4, 1e-9);
+  EXPECT_GT(large.point_inliers.size(), 50u);
+}
+
 TEST(EstimateRelativePose, IsExactWithoutNoise) {
   for (int seed = 0; seed < 5; ++seed) {
     const TwoViewScene scene = MakeTwoViewScene({}, seed);

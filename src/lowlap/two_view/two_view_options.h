@@ -6,7 +6,8 @@
 namespace lowlap {
 
 struct TwoViewOptions {
-  /// Upper bound of the a-contrario threshold. It only has to be wide enough
+  /// Upper bound of the a-contrario threshold, in images of up to 6 megapixels;
+  /// in larger ones it grows with their diagonal. It only has to be wide enough
   /// for the worst calibration that is to be accepted.
   double max_threshold_px = 4;
   /// Upper bound of the samples drawn; the count adapts to the inlier rate.

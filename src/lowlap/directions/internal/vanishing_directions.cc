@@ -20,7 +20,7 @@ namespace {
 // Pairs of this many long segments propose directions.
 constexpr std::size_t kProposers = 80;
 constexpr std::size_t kNumThresholds = 3;
-constexpr std::array<double, kNumThresholds> kThresholdsPx = {0.5, 1.0, 2.0};
+constexpr std::array<double, kNumThresholds> kThresholds = {0.5, 1.0, 2.0};
 constexpr std::size_t kMinSegments = 3;
 // The midpoint of a segment is no vanishing point of it.
 constexpr double kLeastSine = 1e-9;
@@ -141,10 +141,14 @@ struct SegmentTable {
 
 class Finder {
  public:
-  Finder(const NormalizedFeatures& features, const VanishingOptions& options)
+  Finder(const NormalizedFeatures& features, const VanishingOptions& options,
+         double pixel_unit)
       : options_(options),
         focal_px_(features.focal_px),
         max_sine_(std::sin(RadFromDeg(options.max_angle_deg))) {
+    for (std::size_t t = 0; t < kNumThresholds; ++t) {
+      thresholds_px_[t] = kThresholds[t] * pixel_unit;
+    }
     for (std::size_t n = 0; n < features.segments.size(); ++n) {
       const NormalizedSegment& s = features.segments[n];
       if (!s.IsValid()) continue;
@@ -159,6 +163,23 @@ class Finder {
   }
 
   std::optional<VanishingDirection> Next() {
+    while (const std::optional<Candidate> candidate = BestCandidate()) {
+      const std::size_t num_free = free_.size();
+      VanishingDirection found = Fit(*candidate);
+      if (found.segments.size() >= kMinSegments) return found;
+      if (free_.size() == num_free) break;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Candidate {
+    Vec3 direction = Vec3::Zero();
+    double log10_nfa = 0;
+  };
+
+  // The one of least NFA, if it is meaningful.
+  std::optional<Candidate> BestCandidate() const {
     const std::size_t count =
         std::min(free_.size(), static_cast<std::size_t>(options_.max_segments));
     const std::size_t proposers = std::min(count, kProposers);
@@ -171,13 +192,12 @@ class Finder {
     for (std::size_t t = 0; t < kNumThresholds; ++t) {
       for (std::size_t n = 0; n < count; ++n) {
         alpha[t] += 2 / kPi *
-                    std::asin(MaxSine(segments_[free_[n]], kThresholdsPx[t])) /
+                    std::asin(MaxSine(segments_[free_[n]], thresholds_px_[t])) /
                     static_cast<double>(count);
       }
     }
     const SegmentTable table = MakeTable(count);
-    double best_nfa = 0;
-    Vec3 best = Vec3::Zero();
+    Candidate best;
     // The more, the less likely by chance.
     std::array<std::int64_t, kNumThresholds> most;
     most.fill(kMinSegments - 1);
@@ -196,18 +216,14 @@ class Finder {
               log10_tests + Log10Tail(count - 2,
                                       static_cast<std::size_t>(inliers[t] - 2),
                                       alpha[t]);
-          if (nfa < best_nfa) {
-            best_nfa = nfa;
-            best = direction;
-          }
+          if (nfa < best.log10_nfa) best = {direction, nfa};
         }
       }
     }
-    if (!(best_nfa < 0)) return std::nullopt;
-    return Fit(best, best_nfa);
+    if (!(best.log10_nfa < 0)) return std::nullopt;
+    return best;
   }
 
- private:
   // Of the longest free segments.
   SegmentTable MakeTable(std::size_t count) const {
     SegmentTable table(static_cast<Eigen::Index>(count));
@@ -218,7 +234,7 @@ class Finder {
       table.middles.row(row) = s.middle;
       for (std::size_t t = 0; t < kNumThresholds; ++t) {
         const double limit =
-            MaxSine(s, kThresholdsPx[t]) * s.length_px / focal_px_;
+            MaxSine(s, thresholds_px_[t]) * s.length_px / focal_px_;
         table.squared_limits[t][row] = limit * limit;
       }
     }
@@ -246,9 +262,12 @@ class Finder {
     return -static_cast<double>(n) * divergence / std::log(10.0);
   }
 
-  VanishingDirection Fit(const Vec3& start, double log10_nfa) {
-    DirectionFit fit(start, focal_px_, options_);
-    std::vector<std::size_t> members;
+  // Takes its segments out of the search: those of the fit or, where too few
+  // are left for one, those that the candidate attracted, which would bring it
+  // back for ever.
+  VanishingDirection Fit(const Candidate& candidate) {
+    DirectionFit fit(candidate.direction, focal_px_, options_);
+    std::vector<std::size_t> members, attracted;
     for (int iteration = 0; iteration < 10; ++iteration) {
       members.clear();
       std::vector<const Segment*> support;
@@ -256,24 +275,26 @@ class Finder {
         const Segment& s = segments_[n];
         const double error_px =
             std::abs(ErrorPx(s, fit.direction(), focal_px_));
-        if (!IsParallel(s, error_px, kThresholdsPx[2])) continue;
+        if (!IsParallel(s, error_px, thresholds_px_.back())) continue;
         members.push_back(n);
         support.push_back(&s);
       }
+      if (iteration == 0) attracted = members;
       if (members.size() < kMinSegments) break;
       fit.Step(support);
     }
     VanishingDirection result;
     result.direction = fit.direction();
     result.covariance = fit.Covariance();
-    result.log10_nfa = log10_nfa;
+    result.log10_nfa = candidate.log10_nfa;
     for (const std::size_t n : members) {
       result.segments.push_back(segments_[n].index);
     }
     std::sort(result.segments.begin(), result.segments.end());
+    const auto& taken = members.size() < kMinSegments ? attracted : members;
     std::vector<std::size_t> rest;
-    std::set_difference(free_.begin(), free_.end(), members.begin(),
-                        members.end(), std::back_inserter(rest));
+    std::set_difference(free_.begin(), free_.end(), taken.begin(), taken.end(),
+                        std::back_inserter(rest));
     free_ = std::move(rest);
     return result;
   }
@@ -281,6 +302,7 @@ class Finder {
   VanishingOptions options_;
   double focal_px_;
   double max_sine_;
+  std::array<double, kNumThresholds> thresholds_px_;
   std::vector<Segment> segments_;  // from long to short
   std::vector<std::size_t> free_;  // not yet part of a direction, ascending
 };
@@ -294,15 +316,13 @@ Mat3 WidenedCovariance(const VanishingDirection& direction, double stddev_rad) {
 }
 
 std::vector<VanishingDirection> FindVanishingDirections(
-    const NormalizedFeatures& features, const VanishingOptions& options) {
+    const NormalizedFeatures& features, const VanishingOptions& options,
+    double pixel_unit) {
   std::vector<VanishingDirection> directions;
-  Finder finder(features, options);
+  Finder finder(features, options, pixel_unit);
   while (static_cast<int>(directions.size()) < options.max_directions) {
     std::optional<VanishingDirection> next = finder.Next();
     if (!next) break;
-    // Segments that a candidate attracts but its fit loses would bring it back
-    // for ever.
-    if (next->segments.size() < kMinSegments) break;
     directions.push_back(std::move(*next));
   }
   return directions;

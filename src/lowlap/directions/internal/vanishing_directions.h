@@ -32,8 +32,10 @@ Mat3 WidenedCovariance(const VanishingDirection& direction, double stddev_rad);
 /// bounded by Chernoff's inequality) is fitted robustly to its segments, these
 /// are set aside, and the search goes on while candidates are meaningful (NFA <
 /// 1). The covariance is that of the fit, with the scatter found in it.
+/// `pixel_unit`: PixelUnit of the image; t is in such pixels.
 std::vector<VanishingDirection> FindVanishingDirections(
-    const NormalizedFeatures& features, const VanishingOptions& options);
+    const NormalizedFeatures& features, const VanishingOptions& options,
+    double pixel_unit = 1);
 
 /// The direction that best fits the given segments (at least two), starting
 /// from one that most of them agree with; log10_nfa stays zero.

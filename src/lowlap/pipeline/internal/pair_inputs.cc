@@ -4,6 +4,7 @@
 
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/directions/internal/vanishing_directions.h"
+#include "lowlap/scene/internal/pixel_unit.h"
 
 namespace lowlap {
 
@@ -29,8 +30,10 @@ Status PairInputs::FindDirections(const std::vector<ViewPair>& pairs,
     if (found != views_.end()) to_find.push_back(&found->second);
   }
   return ParallelFor(context, "directions", to_find.size(), [&](std::size_t n) {
-    to_find[n]->directions =
-        FindVanishingDirections(to_find[n]->features, VanishingOptions());
+    ViewMeasurements& view = *to_find[n];
+    view.directions =
+        FindVanishingDirections(view.features, VanishingOptions(),
+                                PixelUnit(view.image_size_px.norm()));
   });
 }
 

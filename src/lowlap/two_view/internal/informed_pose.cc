@@ -50,7 +50,7 @@ InformedPose InformPose(const TwoViewInput& input, const RelativePose& pose,
   const std::vector<DirectionPair> axes = AxesOf(prior);
   directions.insert(directions.end(), axes.begin(), axes.end());
   const PoseSearch search(matches.pairs, std::move(directions),
-                          SampsonLaw(input), BoundedByPose({}, pose));
+                          SampsonLaw(input), BoundedByPose({}, input, pose));
   const double before = search.ScoreOf(pose.Cam2FromCam1());
   PoseCandidate best = search.Finish(pose.Cam2FromCam1());
   int num_samples = 0;

@@ -8,6 +8,7 @@
 #include "lowlap/core/internal/format.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/features.h"
+#include "lowlap/scene/internal/pixel_unit.h"
 #include "lowlap/scene/validation.h"
 #include "lowlap/two_view/internal/search/kept_covariance.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
@@ -142,7 +143,8 @@ ViewMeasurements MeasureView(const ViewFeatures& features,
                              const VanishingOptions& options) {
   ViewMeasurements view;
   view.features = NormalizeFeatures(features, intrinsic);
-  view.directions = FindVanishingDirections(view.features, options);
+  view.directions = FindVanishingDirections(view.features, options,
+                                            PixelUnit(image_size_px.norm()));
   view.image_size_px = image_size_px;
   view.detected = detected;
   if (detected == nullptr) return view;

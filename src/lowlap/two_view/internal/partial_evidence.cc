@@ -32,7 +32,7 @@ double EvidenceOfSome(const TwoViewInput& input, const ShuffledMatches& matches,
     pairs.covariance2.push_back(matches.pairs.Covariance2(n));
   }
   const PoseSearch search(pairs, {}, SampsonLaw(input),
-                          BoundedByPose(options, pose));
+                          BoundedByPose(options, input, pose));
   return search.SupportOf(pose.Cam2FromCam1()).log10_nfa;
 }
 
@@ -42,9 +42,9 @@ double ScatteredEvidence(const TwoViewInput& input,
                          const TwoViewOptions& options) {
   const PointPairs& pairs = matches.pairs;
   const double apart1 =
-      kApartShare * input.image_size1_px.mean() / pairs.focal1_px;
+      kApartShare * input.image_size1_px.mean() / input.features1->focal_px;
   const double apart2 =
-      kApartShare * input.image_size2_px.mean() / pairs.focal2_px;
+      kApartShare * input.image_size2_px.mean() / input.features2->focal_px;
   const auto is_near = [&](int n, int other) {
     return (pairs.x1[n] - pairs.x1[other]).norm() < apart1 &&
            (pairs.x2[n] - pairs.x2[other]).norm() < apart2;

@@ -284,7 +284,7 @@ RelativePose ImproveRelativePose(const TwoViewInput& input,
   const PoseSearch search(
       matches.pairs,
       CommonDirections(input, static_cast<int>(matches.pairs.size())),
-      SampsonLaw(input), BoundedByPose(options, pose));
+      SampsonLaw(input), BoundedByPose(options, input, pose));
   PoseCandidate candidate = search.Finish(pose.Cam2FromCam1());
   if (!std::isfinite(candidate.support.log10_nfa)) return pose;
   if (is_of_one_plane) {

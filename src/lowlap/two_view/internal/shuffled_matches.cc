@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lowlap/scene/internal/common_errors.h"
+#include "lowlap/scene/internal/pixel_unit.h"
 #include "lowlap/two_view/internal/line_crossings.h"
 
 namespace lowlap {
@@ -14,13 +15,19 @@ constexpr double kLineVariance = 0.25;
 
 }  // namespace
 
+double PixelUnit(const TwoViewInput& input) {
+  return PixelUnit(0.5 *
+                   (input.image_size1_px.norm() + input.image_size2_px.norm()));
+}
+
 ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random) {
   ShuffledMatches shuffled;
   PointPairs& pairs = shuffled.pairs;
-  pairs.focal1_px = input.features1->focal_px;
-  pairs.focal2_px = input.features2->focal_px;
-  pairs.common_error_side1 =
-      kCommonErrorShare * input.image_size1_px.norm() / pairs.focal1_px;
+  const double unit = PixelUnit(input);
+  pairs.focal1_px = input.features1->focal_px / unit;
+  pairs.focal2_px = input.features2->focal_px / unit;
+  pairs.common_error_side1 = kCommonErrorShare * input.image_size1_px.norm() /
+                             input.features1->focal_px;
   const auto add = [&](int match, const Vec3& x1, const Vec3& x2,
                        const Mat2& covariance1, const Mat2& covariance2,
                        const std::array<int, 2>& lines) {
@@ -64,7 +71,9 @@ ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random) {
 
 BackgroundLaw SampsonLaw(const TwoViewInput& input) {
   BackgroundLaw law;
-  for (const Vec2& size : {input.image_size1_px, input.image_size2_px}) {
+  const double unit = PixelUnit(input);
+  for (const Vec2& size_px : {input.image_size1_px, input.image_size2_px}) {
+    const Vec2 size = size_px / unit;
     law.coefficient =
         std::max(law.coefficient,
                  BackgroundLaw::Sampson(size.prod(), size.norm()).coefficient);

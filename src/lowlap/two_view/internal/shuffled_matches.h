@@ -9,6 +9,11 @@
 
 namespace lowlap {
 
+/// PixelUnit of the mean diagonal. Thresholds and residuals of two-view
+/// estimators are in pixels of the estimation, those of a RelativePose in
+/// pixels of the images.
+double PixelUnit(const TwoViewInput& input);
+
 /// The usable matches and the crossings of matched lines in random order.
 struct ShuffledMatches {
   static constexpr int kCrossing = -1;
@@ -19,7 +24,8 @@ struct ShuffledMatches {
 
 ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random);
 
-/// BackgroundLaw::Sampson of the image where chance is larger.
+/// BackgroundLaw::Sampson of the image where chance is larger, in pixels of the
+/// estimation.
 BackgroundLaw SampsonLaw(const TwoViewInput& input);
 
 }  // namespace lowlap

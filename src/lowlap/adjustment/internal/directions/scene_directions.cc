@@ -12,6 +12,7 @@
 #include "lowlap/directions/internal/vanishing_directions.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/median_deviation.h"
+#include "lowlap/scene/internal/pixel_unit.h"
 
 namespace lowlap {
 namespace {
@@ -91,10 +92,10 @@ Result<std::vector<DirectionSight>> FindDirectionSights(
         if (features == scene.features.end()) return;
         const VanishingOptions options;
         const double stddev = RadFromDeg(options.parallel_stddev_deg);
+        const Intrinsic& intrinsic = cameras.intrinsics[view.intrinsic].value;
         for (const VanishingDirection& found : FindVanishingDirections(
-                 NormalizeFeatures(features->second,
-                                   cameras.intrinsics[view.intrinsic].value),
-                 options)) {
+                 NormalizeFeatures(features->second, intrinsic), options,
+                 PixelUnit(intrinsic.ImageDiagonal()))) {
           of_view[n].push_back({view.pose, found.direction,
                                 WidenedCovariance(found, stddev),
                                 found.log10_nfa});

@@ -8,7 +8,7 @@
 namespace lowlap {
 
 /// Matched points of two views, normalised (z = 1), and the focal lengths that
-/// turn their residuals into pixels.
+/// turn their residuals into pixels (of the estimation: PixelUnit).
 struct PointPairs {
   std::vector<Vec3> x1;
   std::vector<Vec3> x2;

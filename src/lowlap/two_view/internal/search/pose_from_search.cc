@@ -49,10 +49,12 @@ std::vector<DirectionPair> CommonDirections(const TwoViewInput& input,
   return pairs;
 }
 
-TwoViewOptions BoundedByPose(TwoViewOptions options, const RelativePose& pose) {
+TwoViewOptions BoundedByPose(TwoViewOptions options, const TwoViewInput& input,
+                             const RelativePose& pose) {
   if (pose.point_threshold_px > 0) {
     options.max_threshold_px =
-        std::max(2 * PoseSearch::kMinThresholdPx, 2 * pose.point_threshold_px);
+        std::max(2 * PoseSearch::kMinThresholdPx,
+                 2 * pose.point_threshold_px / PixelUnit(input));
   }
   return options;
 }
@@ -78,7 +80,7 @@ RelativePose PoseFromSearch(const TwoViewInput& input,
     *lone_matches = PointMatches(input, matches, lone);
   }
   pose.log10_nfa = candidate.support.log10_nfa;
-  pose.point_threshold_px = candidate.support.threshold;
+  pose.point_threshold_px = candidate.support.threshold * PixelUnit(input);
   pose.covariance = candidate.plane
                         ? CovarianceOnPlane(candidate.pose, matches.pairs,
                                             *candidate.plane, refinement)

@@ -20,7 +20,8 @@ std::vector<DirectionPair> CommonDirections(const TwoViewInput& input,
 /// Matches that were found with a pose do not widen its threshold: at most
 /// twice that of the pose is looked for, unless it has none, as one that was
 /// given.
-TwoViewOptions BoundedByPose(TwoViewOptions options, const RelativePose& pose);
+TwoViewOptions BoundedByPose(TwoViewOptions options, const TwoViewInput& input,
+                             const RelativePose& pose);
 
 /// The relative pose of a candidate of `search` over `matches`, without line
 /// inliers. `lone_matches`, if not null, are as in TwoViewResult.
