@@ -14,47 +14,14 @@
 #include "lowlap/pipeline/internal/output/summary_json.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/synthetic/synthetic_scene.h"
-#include "lowlap/two_view/internal/planes/planar_motion.h"
+#include "pipeline/ambiguous_wall.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
 namespace {
 
-SyntheticScene Wall(const std::string& pairs, std::uint64_t seed) {
-  SyntheticOptions options;
-  options.kind = SyntheticKind::kPlanar;
-  options.num_views = 6;
-  options.pairs = pairs;
-  options.noise_px = 0.5;
-  options.rotation_noise_deg = 0.05;
-  options.direction_noise_deg = 0.1;
-  options.seed = seed;
-  return *Simulate(options);
-}
-
-/// The pair gets the other motion of the one wall for its own, and its own for
-/// an alternative.
-void PutWrongMotionFirst(const ViewPair& views, SyntheticScene* synthetic) {
-  Scene& scene = synthetic->scene;
-  RelativePose& pose = scene.relative_poses.at(views);
-  const Pose& first = synthetic->true_poses.at(views.first);
-  const Vec4& plane = synthetic->planes.front();
-  const Vec3 normal = plane.head<3>();
-  // normal . X = 1 in camera 1, in units of the baseline.
-  const double distance = -(plane[3] + normal.dot(first.center)) /
-                          synthetic->true_baselines.at(views);
-  const Vec3 ray = scene.FindIntrinsic(views.first)
-                       ->Bearing(scene.features.at(views.first)
-                                     .points_px[pose.point_inliers[0].first])
-                       .value();
-  const auto other = OtherPlanarMotion(pose.Cam2FromCam1(),
-                                       first.rotation * normal / distance, ray);
-  ASSERT_TRUE(other);
-  pose.alternatives.push_back(
-      {pose.rotation, pose.direction, pose.log10_nfa, pose.covariance});
-  pose.rotation = other->rotation;
-  pose.direction = other->translation;
-}
+using testing::PutWrongMotionFirst;
+using testing::Wall;
 
 std::vector<HypothesisDecision> Decide(Scene* scene, int num_threads = 0) {
   RunContext context;
@@ -116,6 +83,7 @@ TEST(DecideHypotheses, WithoutCyclesAndTripletsBothMotionsStay) {
   const auto decisions = DecideHypotheses(
       &scene, *MakeScaleEstimator(ScaleOptions()), PoseOptions(), context);
   ASSERT_TRUE(decisions);
+  LogDecisions(*decisions, scene, context);
   ASSERT_EQ(decisions->size(), 1u);
   EXPECT_EQ((*decisions)[0].views, (ViewPair{0, 1}));
   EXPECT_EQ((*decisions)[0].grounds, HypothesisGrounds::kNone);
@@ -194,8 +162,9 @@ TEST(DecideHypotheses, IsPartOfSolvingAndOfItsSummary) {
   EXPECT_LT(EvaluatePoses(wall.scene, wall.true_poses).position.max, 0.2);
   const std::string json = ToJson(summary, wall.scene);
   for (const char* member :
-       {"\"decided_by_triplets\": 1", "\"undecided\": 0",
-        "\"decided_by\": \"triplets\"", "\"replaced\": true"}) {
+       {"\"decided_by_triplets\": 1", "\"decided_by_structure\": 0",
+        "\"undecided\": 0", "\"decided_by\": \"triplets\"",
+        "\"replaced\": true"}) {
     EXPECT_NE(json.find(member), std::string::npos) << member;
   }
 }

@@ -57,18 +57,7 @@ class Adjuster {
       : options_(options),
         context_(context),
         scene_(scene),
-        optimum_{CameraSet(scene), {}, {}, 0, {}, {}, false} {
-    optimum_.state.points = LoadPoints(scene, optimum_.cameras);
-    optimum_.state.lines =
-        LoadLines(scene, optimum_.cameras, options.MovesIntrinsics());
-    optimum_.state.pairs = LoadPairs(scene, optimum_.state.lines);
-    if (options.use_relative_poses) {
-      optimum_.state.priors = LoadRelativePosePriors(scene, optimum_.cameras);
-    }
-    if (options.use_scale_ratios) {
-      optimum_.state.ratio_priors =
-          LoadScaleRatioPriors(scene, optimum_.cameras);
-    }
+        optimum_(LoadOptimum(scene, options)) {
     summary_.observations_without_camera =
         CountObservationsWithoutCamera(scene, optimum_.cameras);
   }

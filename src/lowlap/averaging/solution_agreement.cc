@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
+#include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 #include "lowlap/averaging/strategies/internal/component_closure.h"
 #include "lowlap/core/internal/median.h"
 #include "lowlap/geometry/internal/rotation.h"
@@ -16,21 +17,10 @@
 namespace lowlap {
 namespace {
 
-// Half the way to another motion that explains the pair as well.
-double HalfWayToAlternatives(const RelativePose& pose) {
-  double farthest_rad = 0;
-  for (const AlternativeMotion& other : pose.alternatives) {
-    farthest_rad = std::max(
-        {farthest_rad, RotationAngleBetween(pose.rotation, other.rotation),
-         AngleBetween(pose.direction, other.direction)});
-  }
-  return 0.5 * farthest_rad;
-}
-
+// Half the way to another motion is as far as an undecided one may be off.
 bool IsVague(const RelativePose& pose) {
   return std::max({RotationStddev(pose), DirectionStddev(pose),
-                   HalfWayToAlternatives(pose)}) >
-         DiagnosisOptions().max_stddev;
+                   0.5 * MotionSpread(pose)}) > DiagnosisOptions().max_stddev;
 }
 
 // Holds measurements against the centres of component 0.

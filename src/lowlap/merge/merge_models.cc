@@ -7,6 +7,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/merge/internal/ties.h"
 #include "lowlap/merge/internal/trusted_pieces.h"
+#include "lowlap/pipeline/internal/decide_hypotheses.h"
 
 namespace lowlap {
 namespace {
@@ -81,6 +82,7 @@ Result<SolveResult> MergeModels(Scene* scene,
   SolveResult result;
   LOWLAP_ASSIGN_OR_RETURN(auto start,
                           StartSolution(scene, merging, context, stages));
+  LogDecisions(start.motions, *scene, context);
   LOWLAP_RETURN_IF_ERROR(
       EstimateBelievedRatios(scene, start, merging, context, stages));
   {

@@ -12,6 +12,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/believed_evidence.h"
 #include "lowlap/pipeline/internal/check_directions.h"
+#include "lowlap/pipeline/internal/decide_by_structure.h"
 #include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/pipeline/internal/judge_views.h"
 #include "lowlap/pipeline/internal/reconsider_poses.h"
@@ -133,15 +134,6 @@ std::size_t CountScaleParts(const Scene& scene, const PoseSummary& summary) {
                              .WithoutPairs(PairsOf(summary.outlier_edges))
                              .WithoutViews(summary.unplaced))
       .groups.size();
-}
-
-// The pairs whose matches are not believed.
-std::vector<ViewPair> FalsePairs(const PoseSummary& summary) {
-  std::vector<ViewPair> pairs;
-  for (const OutlierEdge& edge : summary.outlier_edges) {
-    if (edge.IsFalse()) pairs.push_back(edge.views);
-  }
-  return pairs;
 }
 
 }  // namespace
@@ -285,6 +277,8 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
   LOWLAP_ASSIGN_OR_RETURN(
       result.poses,
       ComposePoses(scene, start.rotations, options.poses, context, stages));
+  LOWLAP_RETURN_IF_ERROR(DecideHypothesesByStructure(
+      start.rotations.matches, options, context, stages, scene, &result));
   LOWLAP_RETURN_IF_ERROR(
       FinishSolution(scene, options, context, stages, &result));
   return result;

@@ -6,6 +6,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/matching/internal/tracks.h"
+#include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/pipeline/internal/given_rotations.h"
 #include "lowlap/scene/validation.h"
 
@@ -134,6 +135,7 @@ Result<TranslationEstimate> TranslationScaleEstimator::Estimate(
   if (cam_from_world_.empty()) {
     LOWLAP_ASSIGN_OR_RETURN(const auto start,
                             StartSolution(&scene, options_, context, nullptr));
+    LogDecisions(start.motions, scene, context);
     LOWLAP_RETURN_IF_ERROR(
         EstimateBelievedRatios(&scene, start, options_, context, nullptr));
     summary =

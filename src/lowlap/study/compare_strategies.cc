@@ -7,6 +7,7 @@
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/averaging/scene_poses.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/study/internal/consistency.h"
 
 namespace lowlap {
@@ -203,6 +204,7 @@ Result<Comparison> CompareStrategies(const Scene& scene,
   LOWLAP_ASSIGN_OR_RETURN(
       const auto start,
       StartSolution(&start_scene, options.solve, context, &stages));
+  LogDecisions(start.motions, start_scene, context);
   LOWLAP_RETURN_IF_ERROR(EstimateBelievedRatios(
       &start_scene, start, options.solve, context, &stages));
   start_scene.poses.clear();

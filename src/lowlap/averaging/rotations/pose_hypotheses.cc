@@ -154,6 +154,8 @@ const char* HypothesisGroundsName(HypothesisGrounds grounds) {
       return "cycles";
     case HypothesisGrounds::kTriplets:
       return "triplets";
+    case HypothesisGrounds::kStructure:
+      return "structure";
   }
   return "";
 }
@@ -172,6 +174,16 @@ RelativePose WithHypothesis(const RelativePose& pose, std::size_t n) {
   result.log10_nfa = motion.log10_nfa;
   result.covariance = motion.covariance;
   return result;
+}
+
+double MotionSpread(const RelativePose& pose) {
+  double spread_rad = 0;
+  for (const AlternativeMotion& other : pose.alternatives) {
+    spread_rad = std::max({spread_rad,
+                           RotationAngleBetween(pose.rotation, other.rotation),
+                           AngleBetween(pose.direction, other.direction)});
+  }
+  return spread_rad;
 }
 
 HypothesisDecision ChooseHypothesis(const std::vector<double>& costs,

@@ -80,12 +80,13 @@ struct ContestedLink {
 /// What told the motions of a pair apart, whose matches allow several
 /// (RelativePose::alternatives).
 enum class HypothesisGrounds {
-  kNone,      // nothing did
-  kCycles,    // the rotations of the cycles through the pair
-  kTriplets,  // the scale ratios of the triplets through the pair
+  kNone,       // nothing did
+  kCycles,     // the rotations of the cycles through the pair
+  kTriplets,   // the scale ratios of the triplets through the pair
+  kStructure,  // what the whole scene shows, adjusted under either
 };
 
-/// "none", "cycles", "triplets".
+/// "none", "cycles", "triplets", "structure".
 const char* HypothesisGroundsName(HypothesisGrounds grounds);
 
 /// Which motion of a pair was taken, and why.
@@ -95,7 +96,8 @@ struct HypothesisDecision {
   /// Not the motion that the pair came with.
   bool replaced = false;
   /// By how much the best motion is ahead of the next: robust cost of the
-  /// rotations (see DecideHypothesesByCycles), or log10 NFA of the ratios.
+  /// rotations (see DecideHypothesesByCycles), log10 NFA of the ratios, or
+  /// squared errors of the structure in units of its noise.
   double margin = 0;
 };
 

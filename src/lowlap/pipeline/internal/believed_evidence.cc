@@ -131,6 +131,15 @@ void Restore(Tracks* changed, Tracks* tracks) {
 
 }  // namespace
 
+std::vector<ViewPair> FalsePairs(const PoseSummary& summary) {
+  std::vector<ViewPair> pairs;
+  for (const OutlierEdge& edge : summary.outlier_edges) {
+    if (edge.IsFalse()) pairs.push_back(edge.views);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
 BelievedEvidence::BelievedEvidence(const std::vector<ViewPair>& left_out,
                                    Scene* scene)
     : scene_(scene) {

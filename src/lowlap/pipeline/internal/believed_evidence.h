@@ -3,9 +3,14 @@
 #include <map>
 #include <vector>
 
+#include "lowlap/averaging/scene_poses.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
+
+/// The relative poses that the others say are wrong, by views: their matches
+/// are not believed.
+std::vector<ViewPair> FalsePairs(const PoseSummary& summary);
 
 /// While it lives, the scene's tracks are without what only relative poses join
 /// that were left out: of the observations of a track, the largest set (the one

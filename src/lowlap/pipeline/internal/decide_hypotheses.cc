@@ -73,24 +73,6 @@ Result<double> CostOf(const Scene& scene, const Trial& trial,
   return std::min(ratio.log10_nfa, 0.0);
 }
 
-void LogDecision(const HypothesisDecision& decision, const Scene& scene,
-                 const RunContext& context) {
-  const std::string pair = scene.NameOf(decision.views.first) + " and " +
-                           scene.NameOf(decision.views.second);
-  if (decision.grounds == HypothesisGrounds::kNone) {
-    context.Log(LogLevel::kWarning,
-                pair +
-                    " share one plane, which two motions explain; neither "
-                    "cycles nor triplets tell them apart");
-    return;
-  }
-  context.Log(LogLevel::kInfo,
-              pair + " share one plane, which two motions explain; " +
-                  HypothesisGroundsName(decision.grounds) +
-                  (decision.replaced ? " speak for the second"
-                                     : " speak for the first"));
-}
-
 }  // namespace
 
 Result<std::vector<HypothesisDecision>> DecideHypothesesByTriplets(
@@ -170,11 +152,25 @@ Result<std::vector<HypothesisDecision>> DecideHypotheses(
     }
   }
   std::vector<HypothesisDecision> result;
-  for (const auto& entry : decisions) {
-    LogDecision(entry.second, *scene, context);
-    result.push_back(entry.second);
-  }
+  for (const auto& entry : decisions) result.push_back(entry.second);
   return result;
+}
+
+void LogDecisions(const std::vector<HypothesisDecision>& decisions,
+                  const Scene& scene, const RunContext& context) {
+  for (const HypothesisDecision& decision : decisions) {
+    const std::string pair = scene.NameOf(decision.views.first) + " and " +
+                             scene.NameOf(decision.views.second) +
+                             " share one plane, which two motions explain; ";
+    if (decision.grounds == HypothesisGrounds::kNone) {
+      context.Log(LogLevel::kWarning, pair + "nothing else tells them apart");
+    } else {
+      context.Log(LogLevel::kInfo,
+                  pair + "decided by " +
+                      HypothesisGroundsName(decision.grounds) +
+                      (decision.replaced ? ": the second" : ": the first"));
+    }
+  }
 }
 
 }  // namespace lowlap

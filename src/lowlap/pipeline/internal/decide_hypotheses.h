@@ -31,9 +31,13 @@ Result<std::vector<HypothesisDecision>> DecideHypothesesByTriplets(
 /// (DecideHypothesesByCycles) and, where these do not decide, by triplets, in
 /// turns until neither decides any more. The motion taken replaces the pose's
 /// own; where nothing decides, the pose and its alternatives stay. One entry
-/// per pair that had alternatives, by views.
+/// per pair that had alternatives, by views; the log is left to LogDecisions.
 Result<std::vector<HypothesisDecision>> DecideHypotheses(
     Scene* scene, const ScaleEstimator& scale, const PoseOptions& poses,
     const RunContext& context);
+
+/// Says which motions were taken, and warns of pairs that nothing decided.
+void LogDecisions(const std::vector<HypothesisDecision>& decisions,
+                  const Scene& scene, const RunContext& context);
 
 }  // namespace lowlap

@@ -6,6 +6,7 @@
 
 #include "lowlap/averaging/internal/solution_agreement.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -17,6 +18,7 @@ Result<Scene> SceneInUse(Scene scene, SolveOptions options,
   Scene solved = scene;
   LOWLAP_ASSIGN_OR_RETURN(const auto start,
                           StartSolution(&solved, options, context, nullptr));
+  LogDecisions(start.motions, solved, context);
   LOWLAP_RETURN_IF_ERROR(
       EstimateBelievedRatios(&solved, start, options, context, nullptr));
   LOWLAP_ASSIGN_OR_RETURN(

@@ -10,6 +10,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/evaluation/internal/relative_errors.h"
+#include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/report/internal/table_text.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
 
@@ -189,6 +190,7 @@ Result<Ablation> Ablate(const Scene& scene, const GroundTruth& truth,
   LOWLAP_ASSIGN_OR_RETURN(
       const auto start,
       StartSolution(&start_scene, options.solve, context, &stages));
+  LogDecisions(start.motions, start_scene, context);
 
   const std::vector<Features> cases = FeatureCases();
   const Features& all = cases.back();

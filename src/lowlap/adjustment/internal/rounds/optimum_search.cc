@@ -4,6 +4,8 @@
 #include <string>
 #include <utility>
 
+#include "lowlap/adjustment/internal/costs/relative_pose_prior.h"
+#include "lowlap/adjustment/internal/costs/scale_ratio_prior.h"
 #include "lowlap/adjustment/internal/planes/free_landmark.h"
 #include "lowlap/adjustment/internal/planes/scene_planes.h"
 #include "lowlap/adjustment/internal/rounds/kind_statistics.h"
@@ -35,6 +37,21 @@ NoiseLevels Widened(NoiseLevels noise, double gate) {
 }
 
 }  // namespace
+
+Optimum LoadOptimum(const Scene& scene, const AdjustmentOptions& options) {
+  Optimum optimum{CameraSet(scene), {}, {}, 0, {}, {}, false};
+  StructureState& state = optimum.state;
+  state.points = LoadPoints(scene, optimum.cameras);
+  state.lines = LoadLines(scene, optimum.cameras, options.MovesIntrinsics());
+  state.pairs = LoadPairs(scene, state.lines);
+  if (options.use_relative_poses) {
+    state.priors = LoadRelativePosePriors(scene, optimum.cameras);
+  }
+  if (options.use_scale_ratios) {
+    state.ratio_priors = LoadScaleRatioPriors(scene, optimum.cameras);
+  }
+  return optimum;
+}
 
 Result<double> CostOf(const Optimum& optimum, const Optimum& scale,
                       const RunContext& context) {
@@ -172,12 +189,16 @@ Status OptimumSearch::SearchAgain(const Optimum& settled, Optimum* best) {
   return {};
 }
 
+Status OptimumSearch::Run() {
+  LOWLAP_RETURN_IF_ERROR(Prepare());
+  LOWLAP_RETURN_IF_ERROR(Settle());
+  return Complete();
+}
+
 Status OptimumSearch::CompleteFrom(const AdjustmentOptions& kind) {
   OptimumSearch alone(kind, context_, scene_, now_, summary_,
                       stage_prefix_ + "alone: ");
-  LOWLAP_RETURN_IF_ERROR(alone.Prepare());
-  LOWLAP_RETURN_IF_ERROR(alone.Settle());
-  LOWLAP_RETURN_IF_ERROR(alone.Complete());
+  LOWLAP_RETURN_IF_ERROR(alone.Run());
   now_->state.planes.clear();
   if (const auto changes = Update({true}); !changes) {
     return tl::unexpected<Error>(changes.error());

@@ -28,6 +28,10 @@ struct Optimum {
   bool at_rest = false;  // a further round would change next to nothing
 };
 
+/// Where an adjustment of the scene starts: all that it holds of the kinds in
+/// use.
+Optimum LoadOptimum(const Scene& scene, const AdjustmentOptions& options);
+
 /// MeasurementCost of an optimum, at the noise of `scale`.
 Result<double> CostOf(const Optimum& optimum, const Optimum& scale,
                       const RunContext& context);
@@ -58,6 +62,8 @@ class OptimumSearch {
   Status Settle();
   /// From there to the best that is reached, with planes.
   Status Complete();
+  /// All three.
+  Status Run();
   /// All of it, first with the kinds of these options alone.
   Status CompleteFrom(const AdjustmentOptions& kind);
   /// To the tolerance of the options.

@@ -18,6 +18,10 @@ std::size_t NumHypotheses(const RelativePose& pose);
 /// The pose with its n-th motion and no alternatives; 0 is its own.
 RelativePose WithHypothesis(const RelativePose& pose, std::size_t n);
 
+/// How far another motion is from the pose's own at most, in rotation or
+/// direction, in radians; 0 without alternatives.
+double MotionSpread(const RelativePose& pose);
+
 /// Takes the motion of the least cost, and drops all others, if these cost more
 /// by `margin` at least. `costs` has NumHypotheses entries. Otherwise the pose
 /// stays as it is, and the grounds of the decision are kNone.

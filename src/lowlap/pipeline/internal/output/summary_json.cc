@@ -191,6 +191,7 @@ Json MotionsJson(const std::vector<HypothesisDecision>& motions) {
   return {{"pairs", motions.size()},
           {"decided_by_cycles", count[HypothesisGrounds::kCycles]},
           {"decided_by_triplets", count[HypothesisGrounds::kTriplets]},
+          {"decided_by_structure", count[HypothesisGrounds::kStructure]},
           {"undecided", count[HypothesisGrounds::kNone]},
           {"decisions", std::move(decisions)}};
 }
