@@ -93,13 +93,12 @@ void PrintUnsaid(const std::vector<SubsetOutcome>& outcomes, const Scene& scene,
   }
 }
 
-Result<int> Finish(const std::vector<SubsetOutcome>& all,
-                   const std::vector<SubsetOutcome>& outcomes,
+Result<int> Finish(const std::vector<SubsetOutcome>& outcomes,
                    const Scene& scene, const SubsetsFlags& flags) {
   const SubsetSummary summary = SummarizeSubsets(outcomes, flags.bounds);
   LOWLAP_ASSIGN_OR_RETURN(const auto plot, DrawSubsets(outcomes));
   LOWLAP_RETURN_IF_ERROR(
-      WriteTextFiles({{"results.csv", ToCsv(all, scene)},
+      WriteTextFiles({{"results.csv", ToCsv(outcomes, scene)},
                       {"summary.json", ToJson(summary, flags.bounds)},
                       {"results.svg", plot}},
                      flags.output));
@@ -200,13 +199,13 @@ Result<int> Subsets(const SubsetsFlags& flags) {
                                    return log->Append(ToJsonLine(outcome));
                                  });
   if (!done) return tl::unexpected<Error>(done.error());
-  // In the order of the subsets, whatever order they were finished in.
-  std::vector<SubsetOutcome> all, asked_for;
-  for (const auto& entry : outcomes) all.push_back(entry.second);
+  // In the order of the subsets, whatever order they were finished in, and
+  // without those that an earlier run was asked for.
+  std::vector<SubsetOutcome> asked_for;
   for (const std::vector<ViewId>& dropped : chosen) {
     asked_for.push_back(outcomes.at(dropped));
   }
-  return Finish(all, asked_for, scene, flags);
+  return Finish(asked_for, scene, flags);
 }
 
 }  // namespace

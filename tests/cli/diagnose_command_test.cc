@@ -84,6 +84,10 @@ TEST_F(DiagnoseCommand, SubsetsAreResumed) {
               HasSubstr(four.substr(
                   second_line, four.find('\n', second_line) - second_line)));
   EXPECT_TRUE(std::filesystem::exists(Path("out/results.svg")));
+  // The tables are of what was asked for last.
+  ASSERT_EQ(OnRoom("subsets", common + " --sample 4").exit_code, 0);
+  const std::string fewer = ReadText(Path("out/results.csv"));
+  EXPECT_EQ(std::count(fewer.begin(), fewer.end(), '\n'), 5);
   for (const char* option : {" --no-adjust", " --principal-point-stddev 0.0003",
                              " --no-directions", " --coplanar-ties pairs"}) {
     const Outcome other = OnRoom("subsets", common + option);

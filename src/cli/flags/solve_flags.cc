@@ -55,7 +55,7 @@ void PrintCost(const std::vector<StageCost>& stages) {
   StageCost front_end;
   for (const StageCost& stage : stages) {
     if (stage.name == "features" || stage.name == "matching" ||
-        stage.name == "relative poses") {
+        stage.name == "tilted views" || stage.name == "relative poses") {
       front_end.wall_s += stage.wall_s;
       front_end.cpu_s += stage.cpu_s;
     }

@@ -38,9 +38,9 @@ struct Lead {
 
 std::vector<ViewPair> UndecidedInUse(const Scene& scene,
                                      const PoseSummary& poses,
-                                     const std::set<ViewPair>& asked) {
+                                     const std::set<ViewPair>& changed) {
   const std::set<ViewId> unplaced(poses.unplaced.begin(), poses.unplaced.end());
-  std::set<ViewPair> left_out = asked;
+  std::set<ViewPair> left_out = changed;
   for (const OutlierEdge& edge : poses.outlier_edges) {
     left_out.insert(edge.views);
   }
