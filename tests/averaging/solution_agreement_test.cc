@@ -86,6 +86,20 @@ TEST(SolutionAgreement, TrianglesOnALineAreFlat) {
   EXPECT_THAT(AgreementWithTruth(room, {}).flat, IsEmpty());
 }
 
+// Views side by side, far from the others.
+TEST(SolutionAgreement, TrianglesWithAShortSideAreNarrow) {
+  SyntheticOptions options;
+  options.kind = SyntheticKind::kTwins;
+  options.twin_baseline_m = 1e-4;
+  options.num_views = 8;
+  options.pairs = "window:2";
+  const SolutionAgreement agreement =
+      AgreementWithTruth(SceneWithTrueRatios(options), {});
+  EXPECT_THAT(agreement.narrow, Contains(ViewTriplet{0, 2, 1}));
+  EXPECT_THAT(agreement.narrow, Contains(ViewTriplet{2, 1, 3}));
+  EXPECT_THAT(agreement.flat, Not(Contains(ViewTriplet{0, 2, 1})));
+}
+
 // Directions along a line do not confirm it, right or wrong.
 TEST(SolutionAgreement, ViewsOfAWalkThatHangOnAWeakRatioAreNotFirm) {
   for (const double log_error : {0.0, 0.7}) {

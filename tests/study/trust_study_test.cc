@@ -262,6 +262,21 @@ TEST(TrustSummary, ThePlotSaysHowManyCamerasABarStandsFor) {
   EXPECT_THAT(*plot, HasSubstr("over 100 % (0 of 0, 0 of 0)"));
 }
 
+// Pairs of views at one place, between which no ratio is meaningful.
+TEST(TrustTrial, WhereNothingTellsAScaleNoWrongCameraIsFirm) {
+  RunContext context;
+  context.num_threads = 1;
+  const auto trial = RunTrustTrial(TrustFamily::kMixed, 7700145, context);
+  ASSERT_TRUE(trial);
+  int num_wrong = 0;
+  for (const JudgedView& judged : trial->views) {
+    if (!judged.IsPlaced() || !(judged.error > kWrongCamera)) continue;
+    ++num_wrong;
+    EXPECT_TRUE(judged.IsDoubtful()) << judged.view.value();
+  }
+  EXPECT_GT(num_wrong, 0);
+}
+
 // Of features that have nothing to do with each other.
 TEST(TrustNoise, NothingIsMeaningfulAndNoCameraIsFirm) {
   int num_triplets = 0, num_meaningful = 0;

@@ -27,10 +27,10 @@ void WarnOfHangingViews(PoseSummary* summary) {
   if (doubtful.empty() || summary->components.empty()) return;
   const ViewGraph graph = ViewGraph(summary->firm_evidence.edges)
                               .WithoutViews({doubtful.begin(), doubtful.end()});
-  const RigidityReport report =
-      AnalyzeRigidity(graph, summary->firm_evidence.ratios,
-                      summary->agreement ? summary->agreement->flat
-                                         : std::vector<ViewTriplet>());
+  const SolutionAgreement agreement =
+      summary->agreement ? *summary->agreement : SolutionAgreement();
+  const RigidityReport report = AnalyzeRigidity(
+      graph, summary->firm_evidence.ratios, agreement.flat, agreement.narrow);
   const std::vector<ViewId>& placed = summary->components.front();
   std::set<ViewId> firm;
   if (!report.groups.empty()) {

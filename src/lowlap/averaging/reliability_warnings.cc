@@ -234,7 +234,7 @@ class Warnings {
 
   RigidityReport Analyze(const ViewGraph& graph,
                          const RatioTriplets& ratios) const {
-    return AnalyzeRigidity(graph, ratios, agreement_.flat);
+    return AnalyzeRigidity(graph, ratios, agreement_.flat, agreement_.narrow);
   }
 
   static std::vector<ViewId> GroupOf(const ViewPair& edge,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -16,6 +17,8 @@
 
 namespace lowlap {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Half the way to another motion is as far as an undecided one may be off.
 bool IsVague(const RelativePose& pose) {
@@ -50,7 +53,7 @@ class Comparison {
     std::sort(agreement->agreeing.begin(), agreement->agreeing.end());
   }
 
-  void FindFlat(SolutionAgreement* agreement) const {
+  void FindThinTriangles(SolutionAgreement* agreement) const {
     std::map<ViewPair, const DirectionEdge*> edges;
     for (const DirectionEdge& edge : problem_.edges) {
       edges.emplace(ViewsOf(edge), &edge);
@@ -61,25 +64,43 @@ class Comparison {
                  : Vec3(-edge.direction_in_world);
     };
     for (const auto& views : FindTriangles(ViewGraph(agreement->held))) {
-      int num_flat = 0, middle = 0;
-      double least_cosine = 1;
+      int num_flat = 0, flat = 0, middle = 0, far = 0;
+      double least_cosine = 1, longest = 0, shortest = kInfinity;
+      double stddev_rad = 0;  // of the sides at the far view
       for (int n = 0; n < 3; ++n) {
         const ViewId at = views[n];
         const DirectionEdge& a = *edges.at(OrderedPair(at, views[(n + 1) % 3]));
         const DirectionEdge& b = *edges.at(OrderedPair(at, views[(n + 2) % 3]));
+        const DirectionEdge& opposite =
+            *edges.at(OrderedPair(views[(n + 1) % 3], views[(n + 2) % 3]));
+        const double stddev_here_rad = std::max(a.stddev_rad, b.stddev_rad);
+        const double length = Baseline(opposite).norm();
+        longest = std::max(longest, length);
+        if (length < shortest) {
+          shortest = length;
+          stddev_rad = stddev_here_rad;
+          far = n;
+        }
         const Vec3 to_a = outwards(at, a), to_b = outwards(at, b);
-        if (to_a.cross(to_b).norm() <
-            kSeparation * std::max(a.stddev_rad, b.stddev_rad)) {
+        if (to_a.cross(to_b).norm() < kSeparation * stddev_here_rad) {
           ++num_flat;
+          flat = n;
         }
         if (to_a.dot(to_b) >= least_cosine) continue;
         least_cosine = to_a.dot(to_b);
         middle = n;
       }
-      // With one, the far end of a narrow triangle, all places are fixed.
-      if (num_flat < 2) continue;
-      agreement->flat.push_back(
-          {views[(middle + 1) % 3], views[middle], views[(middle + 2) % 3]});
+      const auto triplet = [&](int n) -> ViewTriplet {
+        return {views[(n + 1) % 3], views[n], views[(n + 2) % 3]};
+      };
+      // Of lengths that are nearly equal, the difference is not known either.
+      if (num_flat > 1 && shortest < kSeparation * stddev_rad * longest) {
+        agreement->narrow.push_back(triplet(far));
+      } else if (num_flat > 1) {
+        agreement->flat.push_back(triplet(middle));
+      } else if (num_flat == 1 && flat != middle) {
+        agreement->narrow.push_back(triplet(flat));
+      }
     }
   }
 
@@ -166,7 +187,7 @@ SolutionAgreement FindAgreement(const Scene& scene,
   std::sort(agreement.refuted.begin(), agreement.refuted.end());
   const Comparison comparison(scene, problem, solution, options);
   comparison.SplitPoses(&agreement);
-  comparison.FindFlat(&agreement);
+  comparison.FindThinTriangles(&agreement);
   const std::set<ViewPair> untold(matches.untold.begin(), matches.untold.end());
   for (const ViewPair& views : agreement.held) {
     if (IsVague(scene.relative_poses.at(views))) {

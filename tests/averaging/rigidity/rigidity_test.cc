@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <set>
+#include <vector>
 
 #include "averaging/rigidity/scene_with_edges.h"
 
@@ -155,6 +157,37 @@ TEST(Rigidity, LengthsOnALineAddUp) {
        {ViewTriplet{0, 1, 2}, ViewTriplet{1, 0, 2}, ViewTriplet{0, 2, 1}}) {
     EXPECT_EQ(AnalyzeRigidity(line, {ratio}, flat).groups.size(), 1u);
   }
+}
+
+std::set<std::vector<ViewPair>> EdgesOfGroups(const RigidityReport& report) {
+  std::set<std::vector<ViewPair>> edges;
+  for (const RigidGroup& group : report.groups) edges.insert(group.edges);
+  return edges;
+}
+
+// Views 1 and 2 stand side by side, and see 0 and 3 far away: their distance
+// compares nothing with anything.
+TEST(Rigidity, ViewsSideBySideCarryNoScale) {
+  const ViewGraph graph({{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}});
+  const std::vector<ViewTriplet> narrow = {{1, 0, 2}, {1, 3, 2}};
+  EXPECT_EQ(AnalyzeRigidity(graph).groups.size(), 1u);
+  using Groups = std::set<std::vector<ViewPair>>;
+  EXPECT_EQ(EdgesOfGroups(AnalyzeRigidity(graph, {}, {}, narrow)),
+            (Groups{{{0, 1}, {0, 2}}, {{1, 3}, {2, 3}}, {{1, 2}}}));
+  // A ratio does.
+  EXPECT_EQ(EdgesOfGroups(AnalyzeRigidity(graph, {{0, 1, 3}}, {}, narrow)),
+            (Groups{{{0, 1}, {0, 2}, {1, 3}, {2, 3}}, {{1, 2}}}));
+  EXPECT_EQ(
+      AnalyzeRigidity(graph, {{0, 1, 2}, {2, 1, 3}}, {}, narrow).groups.size(),
+      1u);
+}
+
+// ... but a wide triangle beside them does.
+TEST(Rigidity, AShortEdgeIsHeldByATriangleOfItsSize) {
+  const ViewGraph graph(
+      {{0, 1}, {0, 2}, {1, 2}, {1, 3}, {2, 3}, {1, 4}, {2, 4}});
+  EXPECT_EQ(
+      AnalyzeRigidity(graph, {}, {}, {{1, 0, 2}, {1, 3, 2}}).groups.size(), 1u);
 }
 
 }  // namespace

@@ -36,6 +36,11 @@ struct SolutionAgreement {
   /// are less than ten standard deviations from those of a line, as of a walk
   /// straight ahead: they do not fix the ratios of its lengths.
   std::vector<ViewTriplet> flat;
+  /// Triangles of those held, by near view, far view and other near view, with
+  /// an angle of less than ten standard deviations at the far one, or on a line
+  /// with a side that is as short: how far the far one is, is not known in
+  /// lengths of that side.
+  std::vector<ViewTriplet> narrow;
   /// Not in use, for their own matches.
   std::vector<ViewPair> refuted;  // sorted
   /// Of the ratios in use across relative poses that are held, those within

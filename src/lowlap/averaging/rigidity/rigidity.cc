@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 #include <iterator>
 #include <map>
 #include <set>
@@ -42,22 +43,34 @@ std::vector<FlatTriangle> FlatTriangles(const ViewGraph& graph,
   return triangles;
 }
 
-std::vector<ViewTriangle> OpenTriangles(const ViewGraph& graph,
-                                        const std::vector<ViewTriplet>& flat) {
+// Those that are neither flat nor narrow.
+std::vector<ViewTriangle> OpenTriangles(
+    const ViewGraph& graph, const std::vector<ViewTriplet>& flat,
+    const std::vector<ViewTriplet>& narrow) {
   std::vector<ViewTriangle> open = FindTriangles(graph);
-  if (flat.empty()) return open;
-  std::set<ViewTriangle> on_lines;
-  for (const ViewTriplet& v : flat) {
-    ViewTriangle views = {v.first, v.middle, v.last};
-    std::sort(views.begin(), views.end());
-    on_lines.insert(views);
+  std::set<ViewTriangle> thin;
+  for (const auto* triangles : {&flat, &narrow}) {
+    for (const ViewTriplet& v : *triangles) {
+      ViewTriangle views = {v.first, v.middle, v.last};
+      std::sort(views.begin(), views.end());
+      thin.insert(views);
+    }
   }
   open.erase(std::remove_if(open.begin(), open.end(),
                             [&](const ViewTriangle& views) {
-                              return on_lines.count(views) > 0;
+                              return thin.count(views) > 0;
                             }),
              open.end());
   return open;
+}
+
+void MergePaths(const ViewGraph& graph, const std::vector<ViewTriplet>& paths,
+                UnionFind* sets) {
+  for (const ViewTriplet& views : paths) {
+    const auto reference = graph.FindPair(views.first, views.middle);
+    const auto target = graph.FindPair(views.middle, views.last);
+    if (reference && target) sets->Union(*reference, *target);
+  }
 }
 
 // Lengths on a line add up: two that are known give the third. Those of which
@@ -81,9 +94,11 @@ void AddUpLengths(std::vector<FlatTriangle>* flat, UnionFind* sets) {
   }
 }
 
-// MergeRigidParts without the long edges of `flat` that nothing else holds: to
-// generic centres they would close their triangles. Whether it merged anything.
+// MergeRigidParts without the long edges of `flat` and the short ones of
+// `narrow` that nothing else holds: to generic centres they would close their
+// triangles. Whether it merged anything.
 bool MergePartsBut(const std::vector<FlatTriangle>& flat,
+                   const std::vector<ViewTriplet>& narrow,
                    const ViewGraph& graph, UnionFind* sets) {
   std::vector<std::size_t> labels = sets->Labels();
   std::vector<int> sizes(labels.size(), 0);
@@ -93,11 +108,29 @@ bool MergePartsBut(const std::vector<FlatTriangle>& flat,
     const std::size_t long_edge = triangle.edges[2];
     is_idle[long_edge] = sizes[labels[long_edge]] == 1;
   }
+  std::map<ViewId, std::size_t> place_of;
+  for (const ViewId view : graph.views()) {
+    place_of.emplace(view, place_of.size());
+  }
+  UnionFind places(place_of.size());
+  for (const ViewTriplet& v : narrow) {
+    const auto short_edge = graph.FindPair(v.first, v.last);
+    if (!short_edge || sizes[labels[*short_edge]] > 1) continue;
+    is_idle[*short_edge] = true;
+    places.Union(place_of.at(v.first), place_of.at(v.last));
+  }
+  const auto at_places = [&](const ViewPair& views) {
+    const auto place = [&](ViewId view) {
+      return ViewId(static_cast<std::uint32_t>(places.Find(place_of.at(view))));
+    };
+    return OrderedPair(place(views.first), place(views.second));
+  };
   std::vector<ViewPair> pairs;
   std::vector<std::size_t> edges;
   for (std::size_t e = 0; e < labels.size(); ++e) {
-    if (is_idle[e]) continue;
-    pairs.push_back(graph.pairs()[e]);
+    const ViewPair pair = at_places(graph.pairs()[e]);
+    if (is_idle[e] || pair.first == pair.second) continue;
+    pairs.push_back(pair);
     edges.push_back(e);
   }
   UnionFind parts(edges.size());
@@ -221,18 +254,17 @@ RigidityReport Report(const ViewGraph& graph, UnionFind* sets) {
 
 RigidityReport AnalyzeRigidity(const ViewGraph& graph,
                                const std::vector<ViewTriplet>& ratios,
-                               const std::vector<ViewTriplet>& flat) {
+                               const std::vector<ViewTriplet>& flat,
+                               const std::vector<ViewTriplet>& narrow) {
   UnionFind sets(graph.pairs().size());
-  MergeTriangles(graph, OpenTriangles(graph, flat), &sets);
-  for (const ViewTriplet& views : ratios) {
-    const auto reference = graph.FindPair(views.first, views.middle);
-    const auto target = graph.FindPair(views.middle, views.last);
-    if (reference && target) sets.Union(*reference, *target);
-  }
+  MergeTriangles(graph, OpenTriangles(graph, flat, narrow), &sets);
+  MergePaths(graph, ratios, &sets);
+  MergePaths(graph, narrow, &sets);
   std::vector<FlatTriangle> unknown = FlatTriangles(graph, flat);
   do {
     AddUpLengths(&unknown, &sets);
-  } while (MergePartsBut(unknown, graph, &sets) && !unknown.empty());
+  } while (MergePartsBut(unknown, narrow, graph, &sets) &&
+           !(unknown.empty() && narrow.empty()));
   return Report(graph, &sets);
 }
 

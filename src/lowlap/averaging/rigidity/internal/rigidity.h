@@ -42,6 +42,12 @@ struct RigidityReport {
 /// line. Their directions say only that the lengths add up: two fix the third,
 /// and until then the edge of the two ends fixes nothing.
 ///
+/// `narrow`: triangles, by near view, far view and other near view, whose near
+/// views are too close to one another, for how well directions are known, to
+/// tell how far the far one is. The long edges are as long as one another; the
+/// short one takes no scale from them or to them, and where nothing else holds
+/// it, the near views count as one place.
+///
 /// Edges belong to one group iff their lengths are proportional in every
 /// solution of C_j - C_i = s_ij d_ij, and s_jk = tau s_ij for the ratios. The
 /// test is generic: the null space of these equations for random centres in a
@@ -52,7 +58,8 @@ struct RigidityReport {
 /// views are merged.
 RigidityReport AnalyzeRigidity(const ViewGraph& graph,
                                const std::vector<ViewTriplet>& ratios = {},
-                               const std::vector<ViewTriplet>& flat = {});
+                               const std::vector<ViewTriplet>& flat = {},
+                               const std::vector<ViewTriplet>& narrow = {});
 
 /// What averaging over triplets stands on: triplets of views, each with a scale
 /// of its own, joined where they share an edge. A triplet counts if its three
