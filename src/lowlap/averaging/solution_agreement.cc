@@ -93,11 +93,12 @@ class Comparison {
       const auto triplet = [&](int n) -> ViewTriplet {
         return {views[(n + 1) % 3], views[n], views[(n + 2) % 3]};
       };
-      // Of lengths that are nearly equal, the difference is not known either.
-      if (num_flat > 1 && shortest < kSeparation * stddev_rad * longest) {
-        agreement->narrow.push_back(triplet(far));
-      } else if (num_flat > 1) {
+      if (num_flat > 1) {
         agreement->flat.push_back(triplet(middle));
+        // Of lengths that are nearly equal, the difference is not known.
+        if (shortest < kSeparation * stddev_rad * longest) {
+          agreement->narrow.push_back(triplet(far));
+        }
       } else if (num_flat == 1 && flat != middle) {
         agreement->narrow.push_back(triplet(flat));
       }

@@ -182,6 +182,25 @@ TEST(Rigidity, ViewsSideBySideCarryNoScale) {
       1u);
 }
 
+// On a line with the far view, directions do not say that they are near.
+TEST(Rigidity, OfLongLengthsOnALineTheDifferenceIsNotKnown) {
+  const ViewGraph line({{0, 1}, {0, 2}, {1, 2}});
+  const std::vector<ViewTriplet> flat = {{0, 1, 2}}, narrow = {{1, 0, 2}};
+  EXPECT_EQ(AnalyzeRigidity(line, {}, flat, narrow).groups.size(), 3u);
+  using Groups = std::set<std::vector<ViewPair>>;
+  EXPECT_EQ(EdgesOfGroups(AnalyzeRigidity(line, {{1, 0, 2}}, flat, narrow)),
+            (Groups{{{0, 1}, {0, 2}}, {{1, 2}}}));
+  EXPECT_EQ(AnalyzeRigidity(line, {{0, 1, 2}}, flat, narrow).groups.size(), 1u);
+}
+
+// The near views are one place whether or not a relative pose joins them.
+TEST(Rigidity, ViewsAtOnePlaceShareOneView) {
+  const ViewGraph graph({{0, 1}, {0, 2}, {1, 3}, {2, 3}});
+  const std::vector<ViewTriplet> ratios = {{1, 0, 2}, {1, 3, 2}};
+  EXPECT_EQ(AnalyzeRigidity(graph, ratios).groups.size(), 1u);
+  EXPECT_EQ(AnalyzeRigidity(graph, ratios, {}, ratios).groups.size(), 2u);
+}
+
 // ... but a wide triangle beside them does.
 TEST(Rigidity, AShortEdgeIsHeldByATriangleOfItsSize) {
   const ViewGraph graph(

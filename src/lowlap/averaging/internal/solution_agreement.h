@@ -37,7 +37,7 @@ struct SolutionAgreement {
   /// straight ahead: they do not fix the ratios of its lengths.
   std::vector<ViewTriplet> flat;
   /// Triangles of those held, by near view, far view and other near view, with
-  /// an angle of less than ten standard deviations at the far one, or on a line
+  /// an angle of less than ten standard deviations at the far one, or flat ones
   /// with a side that is as short: how far the far one is, is not known in
   /// lengths of that side.
   std::vector<ViewTriplet> narrow;

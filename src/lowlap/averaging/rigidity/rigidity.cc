@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <set>
 #include <utility>
 
@@ -26,19 +27,42 @@ void MergeTriangles(const ViewGraph& graph,
   }
 }
 
+ViewTriangle Sorted(const ViewTriplet& v) {
+  ViewTriangle views = {v.first, v.middle, v.last};
+  std::sort(views.begin(), views.end());
+  return views;
+}
+
+std::set<ViewTriangle> Sorted(const std::vector<ViewTriplet>& triplets) {
+  std::set<ViewTriangle> triangles;
+  for (const ViewTriplet& v : triplets) triangles.insert(Sorted(v));
+  return triangles;
+}
+
 // A triangle on a line.
 struct FlatTriangle {
-  std::array<std::size_t, 3> edges;  // the long one last
+  std::array<std::size_t, 3> edges;       // the long one last
+  std::optional<std::size_t> short_edge;  // if it is narrow
 };
 
-std::vector<FlatTriangle> FlatTriangles(const ViewGraph& graph,
-                                        const std::vector<ViewTriplet>& flat) {
+std::vector<FlatTriangle> FlatTriangles(
+    const ViewGraph& graph, const std::vector<ViewTriplet>& flat,
+    const std::vector<ViewTriplet>& narrow) {
+  std::map<ViewTriangle, ViewPair> short_sides;
+  for (const ViewTriplet& v : narrow) {
+    short_sides[Sorted(v)] = OrderedPair(v.first, v.last);
+  }
   std::vector<FlatTriangle> triangles;
   for (const ViewTriplet& v : flat) {
     const auto a = graph.FindPair(v.first, v.middle);
     const auto b = graph.FindPair(v.middle, v.last);
     const auto ends = graph.FindPair(v.first, v.last);
-    if (a && b && ends) triangles.push_back({{*a, *b, *ends}});
+    if (!a || !b || !ends) continue;
+    triangles.push_back({{*a, *b, *ends}, std::nullopt});
+    const auto found = short_sides.find(Sorted(v));
+    if (found == short_sides.end()) continue;
+    triangles.back().short_edge =
+        graph.FindPair(found->second.first, found->second.second);
   }
   return triangles;
 }
@@ -48,20 +72,28 @@ std::vector<ViewTriangle> OpenTriangles(
     const ViewGraph& graph, const std::vector<ViewTriplet>& flat,
     const std::vector<ViewTriplet>& narrow) {
   std::vector<ViewTriangle> open = FindTriangles(graph);
-  std::set<ViewTriangle> thin;
-  for (const auto* triangles : {&flat, &narrow}) {
-    for (const ViewTriplet& v : *triangles) {
-      ViewTriangle views = {v.first, v.middle, v.last};
-      std::sort(views.begin(), views.end());
-      thin.insert(views);
-    }
-  }
+  std::set<ViewTriangle> thin = Sorted(flat);
+  thin.merge(Sorted(narrow));
   open.erase(std::remove_if(open.begin(), open.end(),
                             [&](const ViewTriangle& views) {
                               return thin.count(views) > 0;
                             }),
              open.end());
   return open;
+}
+
+// Those whose directions, all three, say that they are narrow.
+std::vector<ViewTriplet> NarrowAlone(const ViewGraph& graph,
+                                     const std::vector<ViewTriplet>& flat,
+                                     const std::vector<ViewTriplet>& narrow) {
+  const std::set<ViewTriangle> on_lines = Sorted(flat);
+  std::vector<ViewTriplet> alone;
+  for (const ViewTriplet& v : narrow) {
+    if (graph.FindPair(v.first, v.last) && on_lines.count(Sorted(v)) == 0) {
+      alone.push_back(v);
+    }
+  }
+  return alone;
 }
 
 void MergePaths(const ViewGraph& graph, const std::vector<ViewTriplet>& paths,
@@ -73,23 +105,28 @@ void MergePaths(const ViewGraph& graph, const std::vector<ViewTriplet>& paths,
   }
 }
 
-// Lengths on a line add up: two that are known give the third. Those of which
-// no two are known are left in `flat`.
+// Lengths on a line add up: two that are known give the third, unless that is
+// too short. Those of which no such two are known are left in `flat`.
 void AddUpLengths(std::vector<FlatTriangle>* flat, UnionFind* sets) {
   for (std::size_t before = flat->size() + 1; flat->size() < before;) {
     before = flat->size();
-    flat->erase(std::remove_if(flat->begin(), flat->end(),
-                               [&](const FlatTriangle& triangle) {
-                                 const auto& [a, b, c] = triangle.edges;
-                                 if (sets->Find(a) != sets->Find(b) &&
-                                     sets->Find(b) != sets->Find(c) &&
-                                     sets->Find(a) != sets->Find(c)) {
-                                   return false;
-                                 }
-                                 sets->Union(a, b);
-                                 sets->Union(b, c);
-                                 return true;
-                               }),
+    flat->erase(std::remove_if(
+                    flat->begin(), flat->end(),
+                    [&](const FlatTriangle& triangle) {
+                      const auto& [a, b, c] = triangle.edges;
+                      const auto give = [&](std::size_t first,
+                                            std::size_t second,
+                                            std::size_t third) {
+                        return triangle.short_edge != third &&
+                               sets->Find(first) == sets->Find(second);
+                      };
+                      if (!give(a, b, c) && !give(b, c, a) && !give(a, c, b)) {
+                        return false;
+                      }
+                      sets->Union(a, b);
+                      sets->Union(b, c);
+                      return true;
+                    }),
                 flat->end());
   }
 }
@@ -115,9 +152,13 @@ bool MergePartsBut(const std::vector<FlatTriangle>& flat,
   UnionFind places(place_of.size());
   for (const ViewTriplet& v : narrow) {
     const auto short_edge = graph.FindPair(v.first, v.last);
-    if (!short_edge || sizes[labels[*short_edge]] > 1) continue;
-    is_idle[*short_edge] = true;
-    places.Union(place_of.at(v.first), place_of.at(v.last));
+    if (short_edge && sizes[labels[*short_edge]] > 1) continue;
+    if (short_edge) is_idle[*short_edge] = true;
+    const auto one = graph.FindPair(v.first, v.middle);
+    const auto other = graph.FindPair(v.middle, v.last);
+    if (one && other && labels[*one] == labels[*other]) {
+      places.Union(place_of.at(v.first), place_of.at(v.last));
+    }
   }
   const auto at_places = [&](const ViewPair& views) {
     const auto place = [&](ViewId view) {
@@ -259,8 +300,8 @@ RigidityReport AnalyzeRigidity(const ViewGraph& graph,
   UnionFind sets(graph.pairs().size());
   MergeTriangles(graph, OpenTriangles(graph, flat, narrow), &sets);
   MergePaths(graph, ratios, &sets);
-  MergePaths(graph, narrow, &sets);
-  std::vector<FlatTriangle> unknown = FlatTriangles(graph, flat);
+  MergePaths(graph, NarrowAlone(graph, flat, narrow), &sets);
+  std::vector<FlatTriangle> unknown = FlatTriangles(graph, flat, narrow);
   do {
     AddUpLengths(&unknown, &sets);
   } while (MergePartsBut(unknown, narrow, graph, &sets) &&

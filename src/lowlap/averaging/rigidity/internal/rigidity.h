@@ -44,9 +44,10 @@ struct RigidityReport {
 ///
 /// `narrow`: triangles, by near view, far view and other near view, whose near
 /// views are too close to one another, for how well directions are known, to
-/// tell how far the far one is. The long edges are as long as one another; the
-/// short one takes no scale from them or to them, and where nothing else holds
-/// it, the near views count as one place.
+/// tell how far the far one is. The long edges are as long as one another,
+/// unless the triangle is flat as well; the short one takes no scale from them.
+/// Where these are known to be in proportion, and nothing else holds the short
+/// one, the near views count as one place.
 ///
 /// Edges belong to one group iff their lengths are proportional in every
 /// solution of C_j - C_i = s_ij d_ij, and s_jk = tau s_ij for the ratios. The
