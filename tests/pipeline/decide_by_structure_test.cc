@@ -140,14 +140,11 @@ TEST(DecideHypothesesByStructure, LeavesWhatNothingTellsApart) {
   }
   const RelativePose pair = scene.relative_poses.at({0, 1});
   scene.relative_poses = {{ViewPair{0, 1}, pair}};
-  for (auto* tracks : {&scene.point_tracks}) {
-    for (auto entry = tracks->begin(); entry != tracks->end();) {
-      Track& track = entry->second;
-      for (auto o = track.begin(); o != track.end();) {
-        o = o->view > 1 ? track.erase(o) : o + 1;
-      }
-      entry = track.size() < 2 ? tracks->erase(entry) : std::next(entry);
-    }
+  auto& tracks = scene.point_tracks;
+  for (auto entry = tracks.begin(); entry != tracks.end();) {
+    const bool is_of_pair =
+        entry->second.front().view == 0u && entry->second.back().view == 1u;
+    entry = is_of_pair ? std::next(entry) : tracks.erase(entry);
   }
   scene.line_tracks.clear();
   Composed composed = Compose(scene);

@@ -131,45 +131,65 @@ void AddUpLengths(std::vector<FlatTriangle>* flat, UnionFind* sets) {
   }
 }
 
-// MergeRigidParts without the long edges of `flat` and the short ones of
-// `narrow` that nothing else holds: to generic centres they would close their
-// triangles. Whether it merged anything.
-bool MergePartsBut(const std::vector<FlatTriangle>& flat,
-                   const std::vector<ViewTriplet>& narrow,
-                   const ViewGraph& graph, UnionFind* sets) {
-  std::vector<std::size_t> labels = sets->Labels();
+// The edges that no other holds, of a flat triangle the long one and of a
+// narrow one the short one: to generic centres they would close their
+// triangles.
+std::vector<bool> IdleEdges(const std::vector<FlatTriangle>& flat,
+                            const std::vector<ViewTriplet>& narrow,
+                            const ViewGraph& graph,
+                            const std::vector<std::size_t>& labels) {
   std::vector<int> sizes(labels.size(), 0);
   for (const std::size_t label : labels) ++sizes[label];
   std::vector<bool> is_idle(labels.size(), false);
-  for (const FlatTriangle& triangle : flat) {
-    const std::size_t long_edge = triangle.edges[2];
-    is_idle[long_edge] = sizes[labels[long_edge]] == 1;
+  const auto note = [&](std::size_t edge) {
+    is_idle[edge] = sizes[labels[edge]] == 1;
+  };
+  for (const FlatTriangle& triangle : flat) note(triangle.edges[2]);
+  for (const ViewTriplet& v : narrow) {
+    if (const auto edge = graph.FindPair(v.first, v.last)) note(*edge);
   }
-  std::map<ViewId, std::size_t> place_of;
+  return is_idle;
+}
+
+// The place of every view, by number: near views of a narrow triangle whose
+// long edges are in proportion share one, unless their own edge is held.
+std::map<ViewId, std::uint32_t> PlacesOf(const std::vector<ViewTriplet>& narrow,
+                                         const ViewGraph& graph,
+                                         const std::vector<std::size_t>& labels,
+                                         const std::vector<bool>& is_idle) {
+  std::map<ViewId, std::uint32_t> places;
   for (const ViewId view : graph.views()) {
-    place_of.emplace(view, place_of.size());
+    places.emplace(view, static_cast<std::uint32_t>(places.size()));
   }
-  UnionFind places(place_of.size());
+  UnionFind joined(places.size());
   for (const ViewTriplet& v : narrow) {
     const auto short_edge = graph.FindPair(v.first, v.last);
-    if (short_edge && sizes[labels[*short_edge]] > 1) continue;
-    if (short_edge) is_idle[*short_edge] = true;
     const auto one = graph.FindPair(v.first, v.middle);
     const auto other = graph.FindPair(v.middle, v.last);
-    if (one && other && labels[*one] == labels[*other]) {
-      places.Union(place_of.at(v.first), place_of.at(v.last));
+    const bool is_held = short_edge && !is_idle[*short_edge];
+    if (!is_held && one && other && labels[*one] == labels[*other]) {
+      joined.Union(places.at(v.first), places.at(v.last));
     }
   }
-  const auto at_places = [&](const ViewPair& views) {
-    const auto place = [&](ViewId view) {
-      return ViewId(static_cast<std::uint32_t>(places.Find(place_of.at(view))));
-    };
-    return OrderedPair(place(views.first), place(views.second));
-  };
+  for (auto& [view, place] : places) {
+    place = static_cast<std::uint32_t>(joined.Find(place));
+  }
+  return places;
+}
+
+// MergeRigidParts without idle edges. Whether it merged anything.
+bool MergePartsBut(const std::vector<FlatTriangle>& flat,
+                   const std::vector<ViewTriplet>& narrow,
+                   const ViewGraph& graph, UnionFind* sets) {
+  const std::vector<std::size_t> labels = sets->Labels();
+  const std::vector<bool> is_idle = IdleEdges(flat, narrow, graph, labels);
+  const auto places = PlacesOf(narrow, graph, labels, is_idle);
   std::vector<ViewPair> pairs;
   std::vector<std::size_t> edges;
   for (std::size_t e = 0; e < labels.size(); ++e) {
-    const ViewPair pair = at_places(graph.pairs()[e]);
+    const auto& [first, second] = graph.pairs()[e];
+    const ViewPair pair =
+        OrderedPair(ViewId(places.at(first)), ViewId(places.at(second)));
     if (is_idle[e] || pair.first == pair.second) continue;
     pairs.push_back(pair);
     edges.push_back(e);

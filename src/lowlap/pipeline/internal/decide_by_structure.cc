@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -21,7 +20,6 @@ namespace {
 constexpr std::size_t kMaxPairs = 8;
 constexpr double kDecisiveLogLikelihood = 46;  // times minus two
 constexpr double kDecisiveCostShare = 0.1;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // By how much `worse` is behind, if that is finite.
 struct Lead {
@@ -40,10 +38,9 @@ std::vector<ViewPair> UndecidedInUse(const Scene& scene,
                                      const PoseSummary& poses,
                                      const std::set<ViewPair>& changed) {
   const std::set<ViewId> unplaced(poses.unplaced.begin(), poses.unplaced.end());
+  const std::vector<ViewPair> outliers = PairsOf(poses.outlier_edges);
   std::set<ViewPair> left_out = changed;
-  for (const OutlierEdge& edge : poses.outlier_edges) {
-    left_out.insert(edge.views);
-  }
+  left_out.insert(outliers.begin(), outliers.end());
   std::vector<std::pair<double, ViewPair>> by_spread;
   for (const auto& [views, pose] : scene.relative_poses) {
     if (!pose.alternatives.empty() && unplaced.count(views.first) == 0 &&
