@@ -107,6 +107,23 @@ TEST(RobustPositionErrors, AnExactGroupWinsOverACompromise) {
   }
 }
 
+TEST(RobustPositionErrors, CamerasThatAreLittleOffMoveNoOther) {
+  // A similarity that shares the error out has the smaller sum of squares.
+  GroundTruth truth;
+  Scene scene;
+  for (std::uint32_t view = 0; view < 8; ++view) {
+    Pose& pose = truth[view];
+    pose.center = {1.0 * view, 0, 0};
+    scene.views[view].pose_id = view;
+    scene.poses[view] = pose;
+    if (view < 3) scene.poses[view].center.x() -= 2;
+  }
+  for (const auto& [view, error] :
+       RobustPositionErrors(scene, truth, 0.3).error) {
+    EXPECT_NEAR(error, view.value() < 3 ? 2.0 / 7 : 0, 1e-9) << view;
+  }
+}
+
 TEST(RobustPositionErrors, AreInfiniteWhereNothingCanBeAligned) {
   const SyntheticScene synthetic = *Simulate(SmallRoom());
   Scene scene = TrueSolution(synthetic);

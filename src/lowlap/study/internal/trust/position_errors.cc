@@ -19,7 +19,7 @@ double SizeOf(const GroundTruth& truth) {
 }
 
 struct AlignedErrors {
-  double cost = HUGE_VAL;  // the truncated squares
+  double cost = HUGE_VAL;  // the sum of the truncated errors
   double scale = 0;
   std::vector<double> errors;
 };
@@ -33,7 +33,7 @@ AlignedErrors ErrorsAt(const std::vector<Vec3>& turned,
   for (std::size_t n = 0; n < truth.size(); ++n) {
     const double error = (scale * turned[n] + translation - truth[n]).norm();
     aligned.errors.push_back(error);
-    aligned.cost += std::min(error * error, wrong * wrong);
+    aligned.cost += std::min(error, wrong);
   }
   return aligned;
 }

@@ -20,13 +20,12 @@ struct PositionErrors {
   double unit = 0;
 };
 
-/// Errors after the similarity of least sum of squared errors, none of which
-/// counts for more than the square of `wrong`: cameras that are far off have no
-/// part in it. It is no compromise between two groups as long as one of them is
-/// exact, even if it would bring more cameras within `wrong`. The rotations
-/// tried are those of single cameras, scale and translation those of two, of at
-/// most 30 cameras, evenly spaced. The errors are infinite if no two of these
-/// have different places.
+/// Errors after the similarity of least sum of errors, none of which counts for
+/// more than `wrong`. Where most cameras are exact the sum, unlike one of
+/// squares, makes no compromise between them and the others, even if it would
+/// bring more cameras within `wrong`. The rotations tried are those of single
+/// cameras, scale and translation those of two, of at most 30 cameras, evenly
+/// spaced. The errors are infinite if no two of these have different places.
 PositionErrors RobustPositionErrors(const Scene& scene,
                                     const GroundTruth& truth, double wrong);
 
