@@ -48,6 +48,24 @@ TEST(RepeatedPattern, HoldsTheCopiesAndFewOfTheRest) {
   }
 }
 
+TEST(RepeatedPattern, KnowsWhichPlacesAreCopies) {
+  const PatternView view = TiledView(60, 1);
+  const RepeatedPattern pattern = RepeatedPattern::Find(view.View());
+  const std::vector<Vec3>& points = view.features.points;
+  // In the middle, of the first point of the motif.
+  constexpr int kCells = kColumns * kRows, kMiddle = kCells / 2;
+  int num_copies = 0, num_others = 0;
+  for (int n = 0; n < kInPattern; ++n) {
+    if (n == kMiddle) continue;
+    const bool are_copies = pattern.AreCopies(points[kMiddle], points[n], 3);
+    EXPECT_EQ(are_copies, pattern.AreCopies(points[n], points[kMiddle], 3));
+    (n < kCells ? num_copies : num_others) += are_copies ? 1 : 0;
+  }
+  EXPECT_GT(num_copies, 2);
+  EXPECT_LT(num_others, 3);
+  EXPECT_FALSE(RepeatedPattern().AreCopies(points[0], points[1], 3));
+}
+
 TEST(RepeatedPattern, IsEmptyWhereNothingRepeats) {
   for (const std::uint64_t seed : {1, 2, 3}) {
     PatternView view = EmptyView();

@@ -22,15 +22,7 @@ double EvidenceOfSome(const TwoViewInput& input, const ShuffledMatches& matches,
   if (some.size() <= EssentialKernel::kSampleSize) {
     return std::numeric_limits<double>::infinity();
   }
-  PointPairs pairs;
-  pairs.focal1_px = matches.pairs.focal1_px;
-  pairs.focal2_px = matches.pairs.focal2_px;
-  for (const int n : some) {
-    pairs.x1.push_back(matches.pairs.x1[n]);
-    pairs.x2.push_back(matches.pairs.x2[n]);
-    pairs.covariance1.push_back(matches.pairs.Covariance1(n));
-    pairs.covariance2.push_back(matches.pairs.Covariance2(n));
-  }
+  const PointPairs pairs = SomeOf(matches, some).pairs;
   const PoseSearch search(pairs, {}, SampsonLaw(input),
                           BoundedByPose(options, input, pose));
   return search.SupportOf(pose.Cam2FromCam1()).log10_nfa;

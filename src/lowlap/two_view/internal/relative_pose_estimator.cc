@@ -11,6 +11,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/two_view/internal/other_copies.h"
 #include "lowlap/two_view/internal/partial_evidence.h"
 #include "lowlap/two_view/internal/planes/parallax_evidence.h"
 #include "lowlap/two_view/internal/planes/planar_motion.h"
@@ -31,6 +32,8 @@ constexpr double kPlaneShare = 0.5;
 /// Two motions are told apart by an advantage worth ten points that fit one
 /// perfectly and the other not at all, 10 log(10): noise alone reaches half.
 constexpr double kDecisiveScore = 23;
+/// In which matches of other copies are left out.
+constexpr int kMaxRounds = 3;
 
 Status ValidateInput(const TwoViewInput& input) {
   if (input.features1 == nullptr || input.features2 == nullptr) {
@@ -151,46 +154,22 @@ Status DiscountRepeats(const TwoViewInput& input,
   return {};
 }
 
-}  // namespace
-
-Status TwoViewOptions::Validate() const {
-  if (!(max_threshold_px > PoseSearch::kMinThresholdPx)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "relative pose: max_threshold_px must exceed " +
-                         Format("%.1f", PoseSearch::kMinThresholdPx));
+// Of the indices below `count` those that are not in `indices`, ascending.
+std::vector<int> TheRest(const std::vector<int>& indices, int count) {
+  std::vector<int> rest;
+  for (int n = 0; n < count; ++n) {
+    if (!std::binary_search(indices.begin(), indices.end(), n)) {
+      rest.push_back(n);
+    }
   }
-  if (max_samples < 1) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "relative pose: max_samples must be positive");
-  }
-  if (!(confidence > 0 && confidence < 1)) {
-    return MakeError(ErrorCode::kInvalidArgument,
-                     "relative pose: confidence must lie between 0 and 1");
-  }
-  return {};
+  return rest;
 }
 
-const char* TwoViewGeometryName(TwoViewGeometry geometry) {
-  switch (geometry) {
-    case TwoViewGeometry::kGeneral:
-      return "general";
-    case TwoViewGeometry::kPlanar:
-      return "planar";
-    case TwoViewGeometry::kAmbiguousPlane:
-      return "ambiguous_plane";
-    case TwoViewGeometry::kRotationOnly:
-      return "rotation_only";
-  }
-  return "unknown";
-}
-
-Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
-                                           const TwoViewOptions& options,
-                                           std::uint64_t seed) {
-  LOWLAP_RETURN_IF_ERROR(options.Validate());
-  LOWLAP_RETURN_IF_ERROR(ValidateInput(input));
-  Random random(seed);
-  const ShuffledMatches matches = ShuffleMatches(input, random);
+// Of the matches as they are.
+Result<TwoViewResult> EstimateFrom(const TwoViewInput& input,
+                                   const ShuffledMatches& matches,
+                                   const TwoViewOptions& options,
+                                   Random& random) {
   const PointPairs& pairs = matches.pairs;
   if (pairs.size() < kMinMatches) {
     return MakeError(ErrorCode::kInsufficientData,
@@ -265,10 +244,62 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
     result.alternatives.push_back(
         PoseFromSearch(input, matches, search, *other, nullptr));
   }
-  if (result.HasDirection()) {
-    result.scattered_log10_nfa =
-        ScatteredEvidence(input, matches, result.pose, options);
-    LOWLAP_RETURN_IF_ERROR(DiscountRepeats(input, matches, options, &result));
+  return result;
+}
+
+}  // namespace
+
+Status TwoViewOptions::Validate() const {
+  if (!(max_threshold_px > PoseSearch::kMinThresholdPx)) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "relative pose: max_threshold_px must exceed " +
+                         Format("%.1f", PoseSearch::kMinThresholdPx));
+  }
+  if (max_samples < 1) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "relative pose: max_samples must be positive");
+  }
+  if (!(confidence > 0 && confidence < 1)) {
+    return MakeError(ErrorCode::kInvalidArgument,
+                     "relative pose: confidence must lie between 0 and 1");
+  }
+  return {};
+}
+
+const char* TwoViewGeometryName(TwoViewGeometry geometry) {
+  switch (geometry) {
+    case TwoViewGeometry::kGeneral:
+      return "general";
+    case TwoViewGeometry::kPlanar:
+      return "planar";
+    case TwoViewGeometry::kAmbiguousPlane:
+      return "ambiguous_plane";
+    case TwoViewGeometry::kRotationOnly:
+      return "rotation_only";
+  }
+  return "unknown";
+}
+
+Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
+                                           const TwoViewOptions& options,
+                                           std::uint64_t seed) {
+  LOWLAP_RETURN_IF_ERROR(options.Validate());
+  LOWLAP_RETURN_IF_ERROR(ValidateInput(input));
+  Random random(seed);
+  ShuffledMatches matches = ShuffleMatches(input, random);
+  auto result = EstimateFrom(input, matches, options, random);
+  // A better pose sees more of them.
+  for (int round = 0; result && round < kMaxRounds; ++round) {
+    const std::vector<int> others =
+        MatchesOfOtherCopies(input, matches, result->pose, random);
+    if (others.empty()) break;
+    matches = SomeOf(matches, TheRest(others, matches.pairs.size()));
+    result = EstimateFrom(input, matches, options, random);
+  }
+  if (result && result->HasDirection()) {
+    result->scattered_log10_nfa =
+        ScatteredEvidence(input, matches, result->pose, options);
+    LOWLAP_RETURN_IF_ERROR(DiscountRepeats(input, matches, options, &*result));
   }
   return result;
 }

@@ -25,9 +25,8 @@ bool IsRepeated(const TwoViewInput& input, const ShuffledMatches& matches,
 
 }  // namespace
 
-std::optional<EvidenceBeyondRepeats> FindEvidenceBeyondRepeats(
-    const TwoViewInput& input, const ShuffledMatches& matches,
-    const RelativePose& pose, const TwoViewOptions& options) {
+std::optional<std::vector<int>> MatchesBeyondRepeats(
+    const TwoViewInput& input, const ShuffledMatches& matches) {
   if (input.repeats1 == nullptr || input.repeats2 == nullptr ||
       (input.repeats1->IsEmpty() && input.repeats2->IsEmpty())) {
     return std::nullopt;
@@ -36,11 +35,19 @@ std::optional<EvidenceBeyondRepeats> FindEvidenceBeyondRepeats(
   for (int n = 0; n < matches.pairs.size(); ++n) {
     if (!IsRepeated(input, matches, n)) others.push_back(n);
   }
+  if (others.size() == matches.match_of_pair.size()) return std::nullopt;
+  return others;
+}
+
+std::optional<EvidenceBeyondRepeats> FindEvidenceBeyondRepeats(
+    const TwoViewInput& input, const ShuffledMatches& matches,
+    const RelativePose& pose, const TwoViewOptions& options) {
+  const auto others = MatchesBeyondRepeats(input, matches);
+  if (!others) return std::nullopt;
   EvidenceBeyondRepeats evidence;
-  evidence.num_others = static_cast<int>(others.size());
+  evidence.num_others = static_cast<int>(others->size());
   evidence.num_repeated = matches.pairs.size() - evidence.num_others;
-  if (evidence.num_repeated == 0) return std::nullopt;
-  evidence.log10_nfa = EvidenceOfSome(input, matches, others, pose, options);
+  evidence.log10_nfa = EvidenceOfSome(input, matches, *others, pose, options);
   return evidence;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "lowlap/two_view/internal/relative_pose_estimator.h"
 #include "lowlap/two_view/internal/shuffled_matches.h"
@@ -13,6 +14,12 @@ struct EvidenceBeyondRepeats {
   int num_repeated = 0;  // matches and crossings that belong to a pattern
   int num_others = 0;
 };
+
+/// The matches and crossings of which neither side belongs to a pattern of its
+/// view (RepeatedPattern), as indices of `matches.pairs`. nullopt: nothing is
+/// known to repeat, or no match does.
+std::optional<std::vector<int>> MatchesBeyondRepeats(
+    const TwoViewInput& input, const ShuffledMatches& matches);
 
 /// Where a pattern repeats, the copies of one place agree on a motion as well
 /// as those of another, or of another building with the same windows: any

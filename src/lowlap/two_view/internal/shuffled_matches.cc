@@ -69,6 +69,25 @@ ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random) {
   return shuffled;
 }
 
+ShuffledMatches SomeOf(const ShuffledMatches& matches,
+                       const std::vector<int>& indices) {
+  ShuffledMatches some;
+  const PointPairs& all = matches.pairs;
+  PointPairs& pairs = some.pairs;
+  pairs.focal1_px = all.focal1_px;
+  pairs.focal2_px = all.focal2_px;
+  pairs.common_error_side1 = all.common_error_side1;
+  for (const int n : indices) {
+    some.match_of_pair.push_back(matches.match_of_pair[n]);
+    pairs.x1.push_back(all.x1[n]);
+    pairs.x2.push_back(all.x2[n]);
+    pairs.covariance1.push_back(all.covariance1[n]);
+    pairs.covariance2.push_back(all.covariance2[n]);
+    pairs.lines.push_back(all.lines[n]);
+  }
+  return some;
+}
+
 BackgroundLaw SampsonLaw(const TwoViewInput& input) {
   BackgroundLaw law;
   const double unit = PixelUnit(input);

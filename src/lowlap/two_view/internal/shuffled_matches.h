@@ -24,6 +24,10 @@ struct ShuffledMatches {
 
 ShuffledMatches ShuffleMatches(const TwoViewInput& input, Random& random);
 
+/// Those at the indices, in their order.
+ShuffledMatches SomeOf(const ShuffledMatches& matches,
+                       const std::vector<int>& indices);
+
 /// BackgroundLaw::Sampson of the image where chance is larger, in pixels of the
 /// estimation.
 BackgroundLaw SampsonLaw(const TwoViewInput& input);

@@ -38,6 +38,7 @@ RepeatedPattern RepeatedPattern::Find(const PointView& view) {
   for (int n = 0; n < kMaxTranslations; ++n) {
     const auto translation = search.Best();
     if (!translation) break;
+    pattern.translations_.push_back(*translation);
     const std::vector<AlikePlaces> explained = search.Explained(*translation);
     for (const AlikePlaces& places : explained) {
       repeated.insert(repeated.end(), {places.first, places.second});
@@ -69,6 +70,20 @@ bool RepeatedPattern::Covers(const Vec3& x, double scale_px) const {
                        return (place_px - member.place_px).squaredNorm() <
                               window_px * window_px;
                      });
+}
+
+bool RepeatedPattern::AreCopies(const Vec3& x, const Vec3& other,
+                                double tolerance_px) const {
+  const double tolerance = tolerance_px / focal_px_;
+  for (ConjugateTranslation translation : translations_) {
+    const Vec3 step = translation.vanishing_point;
+    for (const int times : {1, -1, 2, -2, 3, -3}) {
+      translation.vanishing_point = times * step;
+      const auto copy = translation.Map(x);
+      if (copy && (*copy - other).norm() < tolerance) return true;
+    }
+  }
+  return false;
 }
 
 }  // namespace lowlap

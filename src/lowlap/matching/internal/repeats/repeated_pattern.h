@@ -5,6 +5,7 @@
 #include "lowlap/core/ids.h"
 #include "lowlap/geometry/types.h"
 #include "lowlap/matching/internal/points/guided_point_matching.h"
+#include "lowlap/matching/internal/repeats/conjugate_translation.h"
 
 namespace lowlap {
 
@@ -33,6 +34,9 @@ class RepeatedPattern {
   /// pattern: a point of the pattern and it lie in each other's windows, so
   /// that both show much of the same.
   bool Covers(const Vec3& x, double scale_px) const;
+  /// Whether one of its translations, up to three times either way, takes the
+  /// place x (z = 1) to within `tolerance_px` of `other`.
+  bool AreCopies(const Vec3& x, const Vec3& other, double tolerance_px) const;
 
  private:
   struct Member {
@@ -40,6 +44,7 @@ class RepeatedPattern {
     double scale_px = 0;
   };
   double focal_px_ = 1;
+  std::vector<ConjugateTranslation> translations_;
   std::vector<Member> members_;
   std::vector<bool> has_point_;
 };
