@@ -108,7 +108,7 @@ TEST(RobustPositionErrors, AnExactGroupWinsOverACompromise) {
 }
 
 TEST(RobustPositionErrors, CamerasThatAreLittleOffMoveNoOther) {
-  // A similarity that shares the error out has the smaller sum of squares.
+  // Halfway between the groups the sum of squares is less.
   GroundTruth truth;
   Scene scene;
   for (std::uint32_t view = 0; view < 8; ++view) {
@@ -116,11 +116,11 @@ TEST(RobustPositionErrors, CamerasThatAreLittleOffMoveNoOther) {
     pose.center = {1.0 * view, 0, 0};
     scene.views[view].pose_id = view;
     scene.poses[view] = pose;
-    if (view < 3) scene.poses[view].center.x() -= 2;
+    if (view < 3) scene.poses[view].center.z() += 1;
   }
   for (const auto& [view, error] :
-       RobustPositionErrors(scene, truth, 0.3).error) {
-    EXPECT_NEAR(error, view.value() < 3 ? 2.0 / 7 : 0, 1e-9) << view;
+       RobustPositionErrors(scene, truth, 0.2).error) {
+    EXPECT_NEAR(error, view.value() < 3 ? 1.0 / 7 : 0, 1e-9) << view;
   }
 }
 

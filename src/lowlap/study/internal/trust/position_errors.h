@@ -21,11 +21,12 @@ struct PositionErrors {
 };
 
 /// Errors after the similarity of least sum of errors, none of which counts for
-/// more than `wrong`. Where most cameras are exact the sum, unlike one of
-/// squares, makes no compromise between them and the others, even if it would
-/// bring more cameras within `wrong`. The rotations tried are those of single
-/// cameras, scale and translation those of two, of at most 30 cameras, evenly
-/// spaced. The errors are infinite if no two of these have different places.
+/// more than `wrong`. Moving cameras that are exact, to share the errors of
+/// fewer others, lessens the sum of squares, but not the sum of errors, even if
+/// it brings more cameras within `wrong`. The rotations tried are those of
+/// single cameras, scale and translation those of two, of at most 30 cameras,
+/// evenly spaced. The errors are infinite if no two of these have different
+/// places.
 PositionErrors RobustPositionErrors(const Scene& scene,
                                     const GroundTruth& truth, double wrong);
 
