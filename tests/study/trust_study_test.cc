@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
+#include <map>
 #include <set>
 #include <string>
 #include <vector>
@@ -90,37 +92,35 @@ TEST(RobustPositionErrors, HundredsOfCamerasAreAlignedByAFew) {
   }
 }
 
-TEST(RobustPositionErrors, AnExactGroupWinsOverACompromise) {
+// Of cameras along a line, of which some were moved across it.
+std::map<ViewId, double> ErrorsAlongALine(
+    std::uint32_t num_views, const std::function<bool(std::uint32_t)>& is_moved,
+    double across, double wrong) {
   GroundTruth truth;
   Scene scene;
-  for (std::uint32_t view = 0; view < 11; ++view) {
+  for (std::uint32_t view = 0; view < num_views; ++view) {
     Pose& pose = truth[view];
     pose.center = {1.0 * view, 0, 0};
     scene.views[view].pose_id = view;
     scene.poses[view] = pose;
-    // Halfway between the groups all would be within the limit of 0.5.
-    if (view % 4 == 1) scene.poses[view].center.z() += 0.8;
+    if (is_moved(view)) scene.poses[view].center.z() += across;
   }
-  for (const auto& [view, error] :
-       RobustPositionErrors(scene, truth, 0.05).error) {
-    EXPECT_NEAR(error, view.value() % 4 == 1 ? 0.08 : 0, 1e-9) << view;
+  return RobustPositionErrors(scene, truth, wrong).error;
+}
+
+TEST(RobustPositionErrors, AnExactGroupWinsOverACompromise) {
+  // Halfway between the groups all would be within the limit of 0.5.
+  const auto is_moved = [](std::uint32_t view) { return view % 4 == 1; };
+  for (const auto& [view, error] : ErrorsAlongALine(11, is_moved, 0.8, 0.05)) {
+    EXPECT_NEAR(error, is_moved(view.value()) ? 0.08 : 0, 1e-9) << view;
   }
 }
 
 TEST(RobustPositionErrors, CamerasThatAreLittleOffMoveNoOther) {
-  // Halfway between the groups the sum of squares is less.
-  GroundTruth truth;
-  Scene scene;
-  for (std::uint32_t view = 0; view < 8; ++view) {
-    Pose& pose = truth[view];
-    pose.center = {1.0 * view, 0, 0};
-    scene.views[view].pose_id = view;
-    scene.poses[view] = pose;
-    if (view < 3) scene.poses[view].center.z() += 1;
-  }
-  for (const auto& [view, error] :
-       RobustPositionErrors(scene, truth, 0.2).error) {
-    EXPECT_NEAR(error, view.value() < 3 ? 1.0 / 7 : 0, 1e-9) << view;
+  // Within the limit; halfway between the groups the sum of squares is less.
+  const auto is_moved = [](std::uint32_t view) { return view < 3; };
+  for (const auto& [view, error] : ErrorsAlongALine(8, is_moved, 1, 0.2)) {
+    EXPECT_NEAR(error, is_moved(view.value()) ? 1.0 / 7 : 0, 1e-9) << view;
   }
 }
 

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "lowlap/geometry/internal/rotation.h"
-#include "lowlap/two_view/internal/repeat_evidence.h"
 #include "support/matchers.h"
 #include "tests/two_view/tiled_pair.h"
 
@@ -86,20 +85,30 @@ TEST(MatchesOfOtherCopies, AreUnknownWithoutAPlaneOrAPattern) {
   EXPECT_TRUE(Found(input, pair.TruePose()).empty());
 }
 
+// Along the rows, so that the next column lies on the epipolar line.
+RigidTransform StepAlongTheWall() {
+  const Mat3 rotation = SideStep().rotation;
+  return {rotation,
+          rotation * testing::ObliqueCamera().rotation * Vec3(-0.9, 0, 0)};
+}
+
 TEST(EstimateRelativePose, LeavesOutMatchesOfOtherCopies) {
-  // Little stands out from the wall.
-  TiledPair pair(80, SideStep(), 4.9);
+  TiledPair pair(40, StepAlongTheWall(), 4);
   const std::set<FeatureIndex> shifted = ShiftUpperRows(2, &pair);
-  const auto result = EstimateRelativePose(pair.Input(), {}, 1);
-  ASSERT_THAT(result, IsOk());
-  for (const FeatureMatch& match : result->pose.point_inliers) {
-    EXPECT_EQ(shifted.count(match.first), 0u) << match.first;
-  }
-  EXPECT_LT(
-      RotationAngleBetween(result->pose.rotation, pair.TruePose().rotation),
-      0.01);
-  EXPECT_LT(AngleBetween(result->pose.direction, pair.TruePose().direction),
-            0.03);
+  const auto num_shifted_inliers = [&](const TwoViewInput& input) {
+    const auto result = EstimateRelativePose(input, {}, 1);
+    EXPECT_THAT(result, IsOk());
+    EXPECT_LT(AngleBetween(result->pose.direction, pair.TruePose().direction),
+              0.03);
+    const std::vector<FeatureMatch>& inliers = result->pose.point_inliers;
+    return static_cast<std::size_t>(std::count_if(
+        inliers.begin(), inliers.end(),
+        [&](const auto& match) { return shifted.count(match.first) > 0; }));
+  };
+  TwoViewInput input = pair.Input();
+  EXPECT_LT(num_shifted_inliers(input), shifted.size() / 2);
+  input.repeats1 = input.repeats2 = nullptr;
+  EXPECT_GT(num_shifted_inliers(input), shifted.size() * 9 / 10);
 }
 
 }  // namespace
