@@ -66,6 +66,15 @@ TEST(MatchesOfOtherCopies, AreThoseShiftedAlongThePattern) {
                             found.end()));
 }
 
+// One cell of the next column: as much as chance brings about.
+TEST(MatchesOfOtherCopies, AreNoneOfAFewByChance) {
+  TiledPair pair(60, SideStep(), kOnTheWall);
+  for (FeatureMatch& match : pair.matches) {
+    if (match.first == kColumns) ++match.second;
+  }
+  EXPECT_TRUE(Found(pair.Input(), pair.TruePose()).empty());
+}
+
 TEST(MatchesOfOtherCopies, AreUnknownWithoutAPlaneOrAPattern) {
   TiledPair pair(60, SideStep(), kOnTheWall);
   ShiftUpperRows(3, &pair);

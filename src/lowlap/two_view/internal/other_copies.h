@@ -14,9 +14,12 @@ namespace lowlap {
 /// point of one view not to its match, but to another copy of it
 /// (RepeatedPattern::AreCopies), to within a tenth of the way between the two,
 /// or 3 px. One window after the other of a facade agrees on such a step as on
-/// a plane behind it, and a pose of little parallax gives way to that. Indices
-/// of `matches.pairs`, ascending; none where nothing is known to repeat, or no
-/// plane holds ten inliers.
+/// a plane behind it, and a pose of little parallax gives way to that.
+///
+/// Of n that belong to a pattern and lie off the plane, k are such copies by
+/// chance with NFA = C(n, k) p^k, p the share with partners drawn at random.
+/// Indices of `matches.pairs`, ascending; none unless NFA < 0.001, where
+/// nothing is known to repeat, or where no plane holds ten inliers.
 std::vector<int> MatchesOfOtherCopies(const TwoViewInput& input,
                                       const ShuffledMatches& matches,
                                       const RelativePose& pose, Random& random);
