@@ -1,18 +1,23 @@
 #include "lowlap/averaging/internal/contests.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <limits>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
 
 constexpr int kMaxWays = 8;
+/// Turns are the same up to this, where the solution is bent elsewhere.
+const double kSameTurnRad = RadFromDeg(6);
+constexpr double kSameTurnReach = 3;
 
 /// Maximum flow by shortest augmenting paths (Edmonds and Karp 1972); what the
 /// source still reaches is its side of the least cut. Every search leaves the
@@ -118,6 +123,38 @@ double Across(const EvidenceOfPairs& evidence, const std::set<ViewId>& side,
   return sum;
 }
 
+bool AgreeOnTurn(const RejectedPose& a, const RejectedPose& b) {
+  return RotationAngleBetween(a.turn, b.turn) <=
+         std::max(kSameTurnRad,
+                  kSameTurnReach * std::hypot(a.stddev_rad, b.stddev_rad));
+}
+
+// The most evidence of rejected pairs across that may be right together.
+double MostAcross(const RejectedPoses& rejected, const std::set<ViewId>& side,
+                  std::vector<ViewPair>* pairs) {
+  RejectedPoses across;
+  for (const auto& [pair, pose] : rejected) {
+    const bool is_of_second = side.count(pair.second) > 0;
+    if (is_of_second == (side.count(pair.first) > 0)) continue;
+    RejectedPose& oriented = across[pair] = pose;
+    if (is_of_second) oriented.turn.transposeInPlace();
+  }
+  double most = 0;
+  for (const auto& one : across) {
+    std::vector<ViewPair> agreeing;
+    double sum = 0;
+    for (const auto& [pair, pose] : across) {
+      if (!AgreeOnTurn(one.second, pose)) continue;
+      agreeing.push_back(pair);
+      sum += pose.evidence;
+    }
+    if (sum <= most) continue;
+    most = sum;
+    *pairs = std::move(agreeing);
+  }
+  return most;
+}
+
 // The smaller side of the component that `side` is a part of.
 std::vector<ViewId> SmallerSide(const ViewGraph& graph,
                                 const std::set<ViewId>& side) {
@@ -137,7 +174,7 @@ std::vector<ViewId> SmallerSide(const ViewGraph& graph,
 // Views that poses in use join to the others with hardly more evidence than
 // rejected ones have across the same cut.
 void AddPoseContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
-                     const EvidenceOfPairs& rejected,
+                     const RejectedPoses& rejected,
                      std::vector<Contest>* contests) {
   EvidenceOfPairs one_each;
   for (const auto& entry : in_use) one_each[entry.first] = 1;
@@ -155,7 +192,7 @@ void AddPoseContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
     if (side.empty() || !is_new) continue;
     Contest contest;
     const double for_it = Across(in_use, side, &contest.links);
-    const double against = Across(rejected, side, &contest.contradictions);
+    const double against = MostAcross(rejected, side, &contest.contradictions);
     if (2 * against <= for_it) continue;
     contest.views = SmallerSide(graph, side);
     contests->push_back(std::move(contest));
@@ -179,10 +216,10 @@ std::vector<std::vector<ViewId>> PartsAt(const ViewGraph& graph, ViewId joint) {
 // The same for the scale across one camera.
 void AddScaleContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
                       const EvidenceOfRatios& ratios,
-                      const EvidenceOfPairs& rejected,
+                      const RejectedPoses& rejected,
                       std::vector<Contest>* contests) {
   for (const ViewId joint : ArticulationViews(graph)) {
-    EvidenceOfPairs past_joint;
+    RejectedPoses past_joint;
     for (const auto& entry : rejected) {
       const ViewPair& pair = entry.first;
       if (pair.first != joint && pair.second != joint) past_joint.insert(entry);
@@ -198,7 +235,8 @@ void AddScaleContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
         }
       }
       Contest contest;
-      const double against = Across(past_joint, side, &contest.contradictions);
+      const double against =
+          MostAcross(past_joint, side, &contest.contradictions);
       if (for_it == 0 || 2 * against <= for_it) continue;
       Across(in_use, side, &contest.links);
       contest.views = std::move(part);
@@ -219,7 +257,7 @@ void Unite(const std::vector<T>& more, std::vector<T>* sorted) {
 
 std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
                                   const EvidenceOfRatios& ratios,
-                                  const EvidenceOfPairs& rejected) {
+                                  const RejectedPoses& rejected) {
   std::vector<ViewPair> pairs;
   for (const auto& entry : in_use) pairs.push_back(entry.first);
   const ViewGraph graph(std::move(pairs));

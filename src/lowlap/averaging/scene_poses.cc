@@ -1,6 +1,7 @@
 #include "lowlap/averaging/scene_poses.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -42,7 +43,12 @@ std::vector<Contest> ContestsAmong(const Scene& scene,
   const auto evidence = [&](const ViewPair& views) {
     return 1 + std::max(0.0, -scene.relative_poses.at(views).log10_nfa);
   };
-  EvidenceOfPairs in_use, rejected;
+  std::map<ViewId, Mat3> cam_from_world;
+  for (std::size_t n = 0; n < problem.views.size(); ++n) {
+    cam_from_world[problem.views[n]] = problem.cam_from_world[n];
+  }
+  EvidenceOfPairs in_use;
+  RejectedPoses rejected;
   const auto is_placed = [&](const ViewPair& views) {
     return placed.count(views.first) > 0 && placed.count(views.second) > 0;
   };
@@ -56,7 +62,11 @@ std::vector<Contest> ContestsAmong(const Scene& scene,
   for (const auto* edges : {&summary.kept_outliers, &summary.outlier_edges}) {
     for (const OutlierEdge& edge : *edges) {
       if (is_placed(edge.views) && Contradicts(edge, summary.matches)) {
-        rejected[edge.views] = evidence(edge.views);
+        const RelativePose& pose = scene.relative_poses.at(edge.views);
+        const Mat3 turn = cam_from_world.at(edge.views.second).transpose() *
+                          pose.rotation * cam_from_world.at(edge.views.first);
+        rejected[edge.views] = {evidence(edge.views), turn,
+                                RotationStddev(pose)};
       }
     }
   }

@@ -70,8 +70,9 @@ struct ReliabilityWarning {
 };
 
 /// Views that only `links`, in use, join to the others, and what contradicts
-/// these: together more than half as much evidence as they have, or as the best
-/// ratio across the one camera that they share (FindContests).
+/// these and may be right together: more than half as much evidence as they
+/// have, or as the best ratio across the one camera that they share
+/// (FindContests).
 struct Contest {
   std::vector<ViewPair> links;
   std::vector<ViewPair> contradictions;
