@@ -14,8 +14,9 @@ namespace lowlap {
 ///
 /// The prior of a pair is the rotation along the most certain path between its
 /// views that avoids it, with the deviations that those of the path add up to;
-/// to each of these, as stated, least_false_deg / outlier_reach is added; a
-/// pose that states none is on no path. A pair takes its new motion if that
+/// to each of these, as stated, least_false_deg / outlier_reach is added, and
+/// how far the motions of an undecided pair are apart; a pose that states none
+/// is on no path. A pair takes its new motion if that
 /// gains a decimal digit, as it does by the prior alone, and agrees with its
 /// prior (in 95 of 100 cases). Of pairs that are on one another's paths the one
 /// that gains most goes first, and the others are looked at again: one wrong

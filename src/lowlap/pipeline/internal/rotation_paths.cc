@@ -16,6 +16,16 @@ namespace {
 
 constexpr double kMaxStddevDeg = 5;
 
+// How far an undecided motion may be turned.
+double RotationSpread(const RelativePose& pose) {
+  double spread_rad = 0;
+  for (const AlternativeMotion& other : pose.alternatives) {
+    spread_rad = std::max(spread_rad,
+                          RotationAngleBetween(pose.rotation, other.rotation));
+  }
+  return spread_rad;
+}
+
 }  // namespace
 
 RotationPaths::RotationPaths(const Scene& scene, double floor_rad)
@@ -86,7 +96,7 @@ void RotationPaths::Replace(const RelativePose& pose) {
 
 void RotationPaths::Connect(const RelativePose& pose) {
   if (!pose.covariance) return;
-  const double variance = VarianceOf(pose);
+  const double variance = VarianceOf(pose) + std::pow(RotationSpread(pose), 2);
   links_[pose.views.first].push_back(
       {pose.views.second, pose.rotation, variance});
   links_[pose.views.second].push_back(

@@ -20,8 +20,9 @@ struct PathPrior {
 /// Relative rotations along the relative poses of a scene.
 class RotationPaths {
  public:
-  /// `floor_rad` is added to every stated deviation. A pose that states none is
-  /// on no path.
+  /// `floor_rad` is added to every stated deviation, and so is, where several
+  /// motions are open, how far their rotations are apart. A pose that states
+  /// none is on no path.
   RotationPaths(const Scene& scene, double floor_rad);
 
   /// Of the rotation, about each axis, with the floor.
