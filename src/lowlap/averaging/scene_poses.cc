@@ -1,7 +1,6 @@
 #include "lowlap/averaging/scene_poses.h"
 
 #include <algorithm>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -37,16 +36,13 @@ bool Contradicts(const OutlierEdge& edge, const MatchVerdicts& matches) {
 // Those of the relative poses of placed views; what is contested already is
 // named.
 std::vector<Contest> ContestsAmong(const Scene& scene,
+                                   const SceneRotations& rotations,
                                    const TranslationProblem& problem,
                                    const std::set<ViewId>& placed,
                                    const PoseSummary& summary) {
   const auto evidence = [&](const ViewPair& views) {
     return 1 + std::max(0.0, -scene.relative_poses.at(views).log10_nfa);
   };
-  std::map<ViewId, Mat3> cam_from_world;
-  for (std::size_t n = 0; n < problem.views.size(); ++n) {
-    cam_from_world[problem.views[n]] = problem.cam_from_world[n];
-  }
   EvidenceOfPairs in_use;
   RejectedPoses rejected;
   const auto is_placed = [&](const ViewPair& views) {
@@ -63,8 +59,9 @@ std::vector<Contest> ContestsAmong(const Scene& scene,
     for (const OutlierEdge& edge : *edges) {
       if (is_placed(edge.views) && Contradicts(edge, summary.matches)) {
         const RelativePose& pose = scene.relative_poses.at(edge.views);
-        const Mat3 turn = cam_from_world.at(edge.views.second).transpose() *
-                          pose.rotation * cam_from_world.at(edge.views.first);
+        const Mat3 turn =
+            rotations.cam_from_world.at(edge.views.second).transpose() *
+            pose.rotation * rotations.cam_from_world.at(edge.views.first);
         rejected[edge.views] = {evidence(edge.views), turn,
                                 RotationStddev(pose)};
       }
@@ -160,7 +157,8 @@ PoseSummary Summarize(const Scene& scene, const SceneRotations& rotations,
                      RadFromDeg(options.least_false_deg)}));
   summary.reliability_warnings = FindReliabilityWarnings(
       scene, *summary.agreement, {}, &summary.firm_evidence);
-  summary.contests = ContestsAmong(scene, centers.problem, placed, summary);
+  summary.contests =
+      ContestsAmong(scene, rotations, centers.problem, placed, summary);
   WarnOfHangingViews(&summary);
   return summary;
 }

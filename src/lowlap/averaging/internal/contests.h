@@ -44,7 +44,8 @@ using RejectedPoses = std::map<ViewPair, RejectedPose>;
 /// What the same pairs contradict is one contest: one relative pose contradicts
 /// every link of a chain. Cost: nine searches of the graph for each rejected
 /// pair, about as many more where eight ways or less join it, and one for each
-/// camera that joins parts.
+/// camera that joins parts; for each of these cuts, the square of the rejected
+/// pairs across it.
 std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
                                   const EvidenceOfRatios& ratios,
                                   const RejectedPoses& rejected);

@@ -177,11 +177,19 @@ RelativePose WithHypothesis(const RelativePose& pose, std::size_t n) {
 }
 
 double MotionSpread(const RelativePose& pose) {
+  double spread_rad = RotationSpread(pose);
+  for (const AlternativeMotion& other : pose.alternatives) {
+    spread_rad =
+        std::max(spread_rad, AngleBetween(pose.direction, other.direction));
+  }
+  return spread_rad;
+}
+
+double RotationSpread(const RelativePose& pose) {
   double spread_rad = 0;
   for (const AlternativeMotion& other : pose.alternatives) {
-    spread_rad = std::max({spread_rad,
-                           RotationAngleBetween(pose.rotation, other.rotation),
-                           AngleBetween(pose.direction, other.direction)});
+    spread_rad = std::max(spread_rad,
+                          RotationAngleBetween(pose.rotation, other.rotation));
   }
   return spread_rad;
 }

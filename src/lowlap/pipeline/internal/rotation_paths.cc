@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 #include "lowlap/averaging/rotations/scene_rotations.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/view_graph.h"
@@ -15,16 +16,6 @@ namespace lowlap {
 namespace {
 
 constexpr double kMaxStddevDeg = 5;
-
-// How far an undecided motion may be turned.
-double RotationSpread(const RelativePose& pose) {
-  double spread_rad = 0;
-  for (const AlternativeMotion& other : pose.alternatives) {
-    spread_rad = std::max(spread_rad,
-                          RotationAngleBetween(pose.rotation, other.rotation));
-  }
-  return spread_rad;
-}
 
 }  // namespace
 

@@ -21,6 +21,8 @@ RelativePose WithHypothesis(const RelativePose& pose, std::size_t n);
 /// How far another motion is from the pose's own at most, in rotation or
 /// direction, in radians; 0 without alternatives.
 double MotionSpread(const RelativePose& pose);
+/// The same in rotation alone.
+double RotationSpread(const RelativePose& pose);
 
 /// Takes the motion of the least cost, and drops all others, if these cost more
 /// by `margin` at least. `costs` has NumHypotheses entries. Otherwise the pose
