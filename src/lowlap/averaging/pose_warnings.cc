@@ -116,12 +116,13 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
   for (const Contest& contest : summary.contests) {
     warnings.push_back({"Doubtful: " + writer.Names(contest.views) + ": only " +
                             writer.Pairs(contest.links) +
-                            " join them to the others, and are contradicted, "
-                            "with hardly less evidence, by " +
-                            writer.Pairs(contest.contradictions) + ".",
+                            " join them to the others, and are contradicted "
+                            "by " +
+                            writer.Pairs(contest.contradictions) +
+                            ", whose evidence comes near theirs or exceeds it.",
                         contest.views,
-                        "Doubtful, since what joins them to the others is "
-                        "contradicted with hardly less evidence"});
+                        "Doubtful, since what contradicts the links to the "
+                        "others has evidence near theirs, or more"});
   }
   for (const LoopClosing& loop : summary.loops) {
     warnings.push_back(

@@ -1,6 +1,7 @@
 #include "lowlap/averaging/internal/scene_centers.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include "lowlap/averaging/internal/contradicted_ratio.h"
@@ -12,19 +13,17 @@
 namespace lowlap {
 namespace {
 
-// Edges whose direction is beyond `reach` deviations from the centres of
-// component 0. `sigma_rad` is found first if it is 0, and then stays: what is
-// right must not be eroded round by round.
-std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
-                                           const TranslationSolution& solution,
-                                           const PoseOptions& options,
-                                           double* sigma_rad) {
-  struct Residual {
-    const DirectionEdge* edge;
-    double angle_rad;
-  };
-  std::vector<Residual> residuals;
-  std::vector<double> angles;
+// The angle between a direction and the centres.
+struct DirectionResidual {
+  ViewPair views;
+  double angle_rad = 0;
+  double stddev_rad = 0;  // stated
+};
+
+// Of the edges between views of component 0.
+std::vector<DirectionResidual> DirectionResiduals(
+    const TranslationProblem& problem, const TranslationSolution& solution) {
+  std::vector<DirectionResidual> residuals;
   for (const DirectionEdge& edge : problem.edges) {
     if (solution.component[edge.first] != 0 ||
         solution.component[edge.second] != 0) {
@@ -34,21 +33,19 @@ std::vector<OutlierEdge> DirectionOutliers(const TranslationProblem& problem,
                           solution.center_in_world[edge.first];
     if (!(baseline.norm() > 0)) continue;
     residuals.push_back(
-        {&edge, AngleBetween(baseline, edge.direction_in_world)});
-    angles.push_back(residuals.back().angle_rad);
+        {ViewPair{problem.views[edge.first], problem.views[edge.second]},
+         AngleBetween(baseline, edge.direction_in_world), edge.stddev_rad});
   }
-  if (*sigma_rad == 0) *sigma_rad = ResidualStddev<2>(std::move(angles));
-  const ErrorLimits limits = LimitsOf(options);
-  std::vector<OutlierEdge> outliers;
-  for (const Residual& residual : residuals) {
-    const DirectionEdge& edge = *residual.edge;
-    if (residual.angle_rad > limits.DirectionRad(*sigma_rad, edge.stddev_rad)) {
-      outliers.push_back(
-          {ViewPair{problem.views[edge.first], problem.views[edge.second]},
-           OutlierReason::kDirection, DegFromRad(residual.angle_rad)});
-    }
+  return residuals;
+}
+
+double TypicalAngle(const std::vector<DirectionResidual>& residuals) {
+  std::vector<double> angles;
+  angles.reserve(residuals.size());
+  for (const DirectionResidual& residual : residuals) {
+    angles.push_back(residual.angle_rad);
   }
-  return outliers;
+  return ResidualStddev<2>(std::move(angles));
 }
 
 // Ratios that are not meaningful, but the only ones on which candidates agree,
@@ -80,20 +77,28 @@ std::set<ViewTriplet> WeakRatios(const Scene& scene,
 class CenterSearch {
  public:
   CenterSearch(const Scene& scene, const SceneRotations& rotations,
-               const PoseOptions& options, const RunContext& context)
+               const std::vector<ViewPair>& without, const PoseOptions& options,
+               const RunContext& context)
       : scene_(scene),
         rotations_(rotations),
+        without_(without.begin(), without.end()),
         options_(options),
         context_(context),
         averager_(options.averager ? *options.averager : graph_) {}
 
   Result<SceneCenters> Run() && {
-    now_.outlier_edges = rotations_.outliers;
-    LOWLAP_ASSIGN_OR_RETURN(Solved first,
-                            Solve(now_.outlier_edges, now_.weak_ratios));
-    Take(std::move(first));
-    LOWLAP_RETURN_IF_ERROR(AddWeakRatios());
-    LOWLAP_RETURN_IF_ERROR(LeaveOutContradictions());
+    do {
+      now_ = {};
+      now_.outlier_edges = rotations_.outliers;
+      for (const ViewPair& views : without_) {
+        now_.outlier_edges.push_back({views, OutlierReason::kDirection, 0});
+      }
+      LOWLAP_ASSIGN_OR_RETURN(Solved first,
+                              Solve(now_.outlier_edges, now_.weak_ratios));
+      Take(std::move(first));
+      LOWLAP_RETURN_IF_ERROR(AddWeakRatios());
+      LOWLAP_RETURN_IF_ERROR(LeaveOutContradictions());
+    } while (TakeInAgain());
     std::sort(now_.outlier_edges.begin(), now_.outlier_edges.end(),
               [](const OutlierEdge& a, const OutlierEdge& b) {
                 return a.views < b.views;
@@ -138,28 +143,54 @@ class CenterSearch {
     return {};
   }
 
+  // The typical angle is that of the first solution: what is right must not be
+  // eroded round by round.
   std::vector<OutlierEdge> OutliersOf(const TranslationSolution& solution) {
-    return DirectionOutliers(now_.problem, solution, options_, &now_.sigma_rad);
+    const auto residuals = DirectionResiduals(now_.problem, solution);
+    if (now_.sigma_rad == 0) now_.sigma_rad = TypicalAngle(residuals);
+    std::vector<OutlierEdge> outliers;
+    for (const DirectionResidual& residual : residuals) {
+      if (IsOutlier(residual)) {
+        outliers.push_back({residual.views, OutlierReason::kDirection,
+                            DegFromRad(residual.angle_rad)});
+      }
+    }
+    return outliers;
+  }
+
+  bool IsOutlier(const DirectionResidual& residual) const {
+    return residual.angle_rad >
+           LimitsOf(options_).DirectionRad(now_.sigma_rad, residual.stddev_rad);
   }
 
   Status LeaveOutContradictions() {
+    std::set<ViewPair> needed;
     while (true) {
       const std::vector<OutlierEdge> wrong = OutliersOf(now_.solution);
-      if (wrong.empty()) return {};
       std::vector<OutlierEdge> more = now_.outlier_edges;
-      more.insert(more.end(), wrong.begin(), wrong.end());
-      LOWLAP_ASSIGN_OR_RETURN(Solved smaller, Solve(more, now_.weak_ratios));
-      if (smaller.solution.NumPlaced() < now_.solution.NumPlaced()) {
-        return KeepOrExplain(wrong);
+      for (const OutlierEdge& edge : wrong) {
+        if (needed.count(edge.views) == 0) more.push_back(edge);
       }
-      now_.outlier_edges = std::move(more);
-      Take(std::move(smaller));
+      if (more.size() == now_.outlier_edges.size()) {
+        now_.kept_outliers = wrong;
+        return {};
+      }
+      LOWLAP_ASSIGN_OR_RETURN(Solved smaller, Solve(more, now_.weak_ratios));
+      if (smaller.solution.NumPlaced() >= now_.solution.NumPlaced()) {
+        now_.outlier_edges = std::move(more);
+        Take(std::move(smaller));
+        continue;
+      }
+      if (needed.empty()) {
+        LOWLAP_ASSIGN_OR_RETURN(const bool is_explained, ExplainByRatio());
+        if (is_explained) return {};
+      }
+      AddNeeded(wrong, smaller.solution, &needed);
     }
   }
 
-  // Without these edges views would be lost: a false ratio explains them, or
-  // they stay.
-  Status KeepOrExplain(const std::vector<OutlierEdge>& wrong) {
+  // Whether a false ratio explains all that contradicts.
+  Result<bool> ExplainByRatio() {
     LOWLAP_ASSIGN_OR_RETURN(auto without,
                             SolveWithoutContradictedRatio(
                                 now_.problem, averager_, now_.solution,
@@ -167,17 +198,60 @@ class CenterSearch {
                                   return OutliersOf(other).empty();
                                 },
                                 context_));
-    if (without) {
-      now_.left_out_ratios = {without->ratio};
-      now_.solution = std::move(without->solution);
-    } else {
-      now_.kept_outliers = wrong;
+    if (!without) return false;
+    now_.left_out_ratios = {without->ratio};
+    now_.solution = std::move(without->solution);
+    return true;
+  }
+
+  // Those of views that are lost without them; all, if none is of one.
+  void AddNeeded(const std::vector<OutlierEdge>& wrong,
+                 const TranslationSolution& smaller,
+                 std::set<ViewPair>* needed) const {
+    std::set<ViewId> lost;
+    for (std::size_t n = 0; n < now_.problem.views.size(); ++n) {
+      if (now_.solution.component[n] == 0 && smaller.component[n] != 0) {
+        lost.insert(now_.problem.views[n]);
+      }
     }
-    return {};
+    const std::size_t num_needed = needed->size();
+    for (const OutlierEdge& edge : wrong) {
+      if (lost.count(edge.views.first) + lost.count(edge.views.second) > 0) {
+        needed->insert(edge.views);
+      }
+    }
+    if (needed->size() > num_needed) return;
+    for (const OutlierEdge& edge : wrong) needed->insert(edge.views);
+  }
+
+  // Whether some of those that it was done without agree with the centres; the
+  // others get their errors.
+  bool TakeInAgain() {
+    if (without_.empty()) return false;
+    const std::size_t num_without = without_.size();
+    const TranslationProblem with_all =
+        MakeTranslationProblem(scene_, rotations_.cam_from_world,
+                               PairsOf(rotations_.outliers), {}, false);
+    std::map<ViewPair, double> error_deg;
+    for (const DirectionResidual& residual :
+         DirectionResiduals(with_all, now_.solution)) {
+      if (without_.count(residual.views) == 0) continue;
+      if (IsOutlier(residual)) {
+        error_deg[residual.views] = DegFromRad(residual.angle_rad);
+      } else {
+        without_.erase(residual.views);
+      }
+    }
+    for (OutlierEdge& edge : now_.outlier_edges) {
+      const auto found = error_deg.find(edge.views);
+      if (found != error_deg.end()) edge.error_deg = found->second;
+    }
+    return without_.size() < num_without;
   }
 
   const Scene& scene_;
   const SceneRotations& rotations_;
+  std::set<ViewPair> without_;
   const PoseOptions& options_;
   const RunContext& context_;
   const GraphScalesAverager graph_;
@@ -187,11 +261,20 @@ class CenterSearch {
 
 }  // namespace
 
+std::set<ViewId> SceneCenters::PlacedViews() const {
+  std::set<ViewId> placed;
+  for (std::size_t n = 0; n < problem.views.size(); ++n) {
+    if (solution.component[n] == 0) placed.insert(problem.views[n]);
+  }
+  return placed;
+}
+
 Result<SceneCenters> SolveSceneCenters(const Scene& scene,
                                        const SceneRotations& rotations,
+                                       const std::vector<ViewPair>& without,
                                        const PoseOptions& options,
                                        const RunContext& context) {
-  return CenterSearch(scene, rotations, options, context).Run();
+  return CenterSearch(scene, rotations, without, options, context).Run();
 }
 
 }  // namespace lowlap

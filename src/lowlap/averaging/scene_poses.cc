@@ -4,89 +4,15 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/internal/contests.h"
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/internal/hanging_views.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
-#include "lowlap/averaging/internal/scene_centers.h"
+#include "lowlap/averaging/internal/weighed_centers.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {
-
-std::set<ViewId> PlacedViews(const SceneCenters& centers) {
-  std::set<ViewId> placed;
-  for (std::size_t n = 0; n < centers.problem.views.size(); ++n) {
-    if (centers.solution.component[n] == 0) {
-      placed.insert(centers.problem.views[n]);
-    }
-  }
-  return placed;
-}
-
-// Whether a relative pose that disagrees says that something is wrong: not if
-// its matches do not bear it out.
-bool Contradicts(const OutlierEdge& edge, const MatchVerdicts& matches) {
-  return edge.IsFalse() &&
-         std::find(matches.untold.begin(), matches.untold.end(), edge.views) ==
-             matches.untold.end();
-}
-
-// Those of the relative poses of placed views; what is contested already is
-// named.
-std::vector<Contest> ContestsAmong(const Scene& scene,
-                                   const SceneRotations& rotations,
-                                   const TranslationProblem& problem,
-                                   const std::set<ViewId>& placed,
-                                   const PoseSummary& summary) {
-  const auto evidence = [&](const ViewPair& views) {
-    return 1 + std::max(0.0, -scene.relative_poses.at(views).log10_nfa);
-  };
-  EvidenceOfPairs in_use;
-  RejectedPoses rejected;
-  const auto is_placed = [&](const ViewPair& views) {
-    return placed.count(views.first) > 0 && placed.count(views.second) > 0;
-  };
-  for (const DirectionEdge& edge : problem.edges) {
-    const ViewPair views{problem.views[edge.first], problem.views[edge.second]};
-    if (is_placed(views)) in_use[views] = evidence(views);
-  }
-  for (const OutlierEdge& edge : summary.kept_outliers) {
-    in_use.erase(edge.views);
-  }
-  for (const auto* edges : {&summary.kept_outliers, &summary.outlier_edges}) {
-    for (const OutlierEdge& edge : *edges) {
-      if (is_placed(edge.views) && Contradicts(edge, summary.matches)) {
-        const RelativePose& pose = scene.relative_poses.at(edge.views);
-        const Mat3 turn =
-            rotations.cam_from_world.at(edge.views.second).transpose() *
-            pose.rotation * rotations.cam_from_world.at(edge.views.first);
-        rejected[edge.views] = {evidence(edge.views), turn,
-                                RotationStddev(pose)};
-      }
-    }
-  }
-  EvidenceOfRatios ratios;
-  for (const ScaleRatio& ratio : scene.scale_ratios) {
-    if (ratio.verdict == RatioVerdict::kMeaningful) {
-      ratios[ratio.views] = 1 - ratio.log10_nfa;
-    }
-  }
-  std::vector<Contest> contests = FindContests(in_use, ratios, rejected);
-  contests.erase(std::remove_if(contests.begin(), contests.end(),
-                                [&](const Contest& contest) {
-                                  return std::any_of(
-                                      summary.contested.begin(),
-                                      summary.contested.end(),
-                                      [&](const ContestedLink& link) {
-                                        return contest.links ==
-                                               std::vector<ViewPair>{link.edge};
-                                      });
-                                }),
-                 contests.end());
-  return contests;
-}
 
 // What was said of the rotations, of placed views.
 void AddRotationDoubts(const SceneRotations& rotations,
@@ -143,8 +69,9 @@ PoseSummary CountPlaced(const Scene& scene, const SceneCenters& centers,
 }
 
 PoseSummary Summarize(const Scene& scene, const SceneRotations& rotations,
-                      const SceneCenters& centers, const PoseOptions& options) {
-  const std::set<ViewId> placed = PlacedViews(centers);
+                      WeighedCenters weighed, const PoseOptions& options) {
+  const SceneCenters& centers = weighed.centers;
+  const std::set<ViewId> placed = centers.PlacedViews();
   PoseSummary summary = CountPlaced(scene, centers, placed);
   AddRotationDoubts(rotations, placed, &summary);
   // Where false directions are the rule, they are no measure of the others.
@@ -157,8 +84,7 @@ PoseSummary Summarize(const Scene& scene, const SceneRotations& rotations,
                      RadFromDeg(options.least_false_deg)}));
   summary.reliability_warnings = FindReliabilityWarnings(
       scene, *summary.agreement, {}, &summary.firm_evidence);
-  summary.contests =
-      ContestsAmong(scene, rotations, centers.problem, placed, summary);
+  summary.contests = std::move(weighed.contests);
   WarnOfHangingViews(&summary);
   return summary;
 }
@@ -200,10 +126,10 @@ Result<PoseSummary> SolveScenePoses(Scene* scene,
                                     const RunContext& context) {
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   LOWLAP_ASSIGN_OR_RETURN(
-      const SceneCenters centers,
-      SolveSceneCenters(*scene, rotations, options, context));
-  SetPoses(centers.problem, centers.solution, scene);
-  return Summarize(*scene, rotations, centers, options);
+      WeighedCenters weighed,
+      SolveWeighedCenters(*scene, rotations, options, context));
+  SetPoses(weighed.centers.problem, weighed.centers.solution, scene);
+  return Summarize(*scene, rotations, std::move(weighed), options);
 }
 
 void SetPoses(const TranslationProblem& problem,

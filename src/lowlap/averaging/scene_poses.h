@@ -71,8 +71,8 @@ struct ReliabilityWarning {
 
 /// Views that only `links`, in use, join to the others, and what contradicts
 /// these and may be right together: more than half as much evidence as they
-/// have, or as the best ratio across the one camera that they share
-/// (FindContests).
+/// have, or as the best ratio across the one camera that they share. The scene
+/// solved without the links does not tell which are right.
 struct Contest {
   std::vector<ViewPair> links;
   std::vector<ViewPair> contradictions;
@@ -144,13 +144,14 @@ void SetPoses(const TranslationProblem& problem,
 /// solution is repeated. Where it loses one, a ratio of little evidence is left
 /// out instead, if without it nothing contradicts
 /// (SolveWithoutContradictedRatio; `left_out_ratios`); else the relative poses
-/// stay (`kept_outliers`). Views that no meaningful ratio joins are placed by
-/// ratios that are not, if at least two points or lines, or three coplanar
-/// pairs, agree on them, and failing that by those on which any two candidates
-/// agree; these are listed (`weak_ratios`). The poses of the largest component
-/// replace scene.poses; the others have no common scale with it and are listed.
-/// Gauge: that of SetPoses. Errors, with the scene unchanged: invalid options,
-/// those of the strategy.
+/// stay (`kept_outliers`). Where those left out or kept have more evidence than
+/// what they contradict, the scene is solved without that instead. Views that
+/// no meaningful ratio joins are placed by ratios that are not, if at least two
+/// points or lines, or three coplanar pairs, agree on them, and failing that by
+/// those on which any two candidates agree; these are listed (`weak_ratios`).
+/// The poses of the largest component replace scene.poses; the others have no
+/// common scale with it and are listed. Gauge: that of SetPoses. Errors, with
+/// the scene unchanged: invalid options, those of the strategy.
 Result<PoseSummary> SolveScenePoses(Scene* scene,
                                     const SceneRotations& rotations,
                                     const PoseOptions& options,

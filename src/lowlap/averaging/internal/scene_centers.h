@@ -18,13 +18,18 @@ struct SceneCenters {
   std::set<ViewTriplet> weak_ratios;
   /// Robust deviation of the directions from the centres; 0 without any.
   double sigma_rad = 0;
+
+  std::set<ViewId> PlacedViews() const;
 };
 
 /// The centres under averaged rotations, as SolveScenePoses says: with ratios
 /// that are weak for views that nothing else places, and without relative poses
-/// whose directions contradict the centres. Errors: those of the strategy.
+/// whose directions contradict the centres. It is done without the relative
+/// poses `without` from the start; those of them that agree with what comes out
+/// are taken in again. Errors: those of the strategy.
 Result<SceneCenters> SolveSceneCenters(const Scene& scene,
                                        const SceneRotations& rotations,
+                                       const std::vector<ViewPair>& without,
                                        const PoseOptions& options,
                                        const RunContext& context);
 

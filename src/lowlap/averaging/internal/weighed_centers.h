@@ -1,0 +1,38 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/averaging/internal/scene_centers.h"
+
+namespace lowlap {
+
+struct WeighedCenters {
+  SceneCenters centers;
+  std::vector<Contest> contests;  // those that cannot be decided
+};
+
+/// The centres against which least speaks. SolveSceneCenters follows robust
+/// weights, which know the deviations of directions and not how much evidence a
+/// relative pose has, so that a false one may keep two right ones out; nor does
+/// it take in again what only a false one contradicted. For every contest
+/// (FindSceneContests) the scene is therefore solved again, with the
+/// contradictions beside the links, and with them instead of the links. If the
+/// relative poses that contradict such a solution, left out or kept, have less
+/// evidence together, and no view is lost, it is taken, and its own contests
+/// are looked at next.
+///
+/// A contest is decided, and not listed, if those that contradict only the
+/// solution without the links have more than twice the evidence of those that
+/// contradict only this one: that counts what else must be wrong if the links
+/// are. It is not where that solution loses a view or fails, nor where a
+/// contradiction is left out for its rotation, which stays as it is.
+///
+/// Cost: two solutions for each contest, of so many that they have 3,000 views
+/// together; those against which most evidence speaks come first. Errors: those
+/// of SolveSceneCenters.
+Result<WeighedCenters> SolveWeighedCenters(const Scene& scene,
+                                           const SceneRotations& rotations,
+                                           const PoseOptions& options,
+                                           const RunContext& context);
+
+}  // namespace lowlap

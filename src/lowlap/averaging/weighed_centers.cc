@@ -1,0 +1,186 @@
+#include "lowlap/averaging/internal/weighed_centers.h"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/internal/scene_contests.h"
+#include "lowlap/core/internal/propagate.h"
+
+namespace lowlap {
+namespace {
+
+// Views of all solutions that are tried, so that large scenes, which solve
+// slowly, try few.
+constexpr std::size_t kMaxViewsTried = 3000;
+
+// A solution, and what contradicts it.
+struct Side {
+  SceneCenters centers;
+  EvidenceOfPairs against;
+
+  int NumPlaced() const { return centers.solution.NumPlaced(); }
+  double EvidenceAgainst() const {
+    double sum = 0;
+    for (const auto& entry : against) sum += entry.second;
+    return sum;
+  }
+  double EvidenceAgainstOnly(const Side& other) const {
+    double sum = 0;
+    for (const auto& [views, evidence] : against) {
+      if (other.against.count(views) == 0) sum += evidence;
+    }
+    return sum;
+  }
+};
+
+class SideSearch {
+ public:
+  SideSearch(const Scene& scene, const SceneRotations& rotations,
+             const PoseOptions& options, const RunContext& context)
+      : scene_(scene),
+        rotations_(rotations),
+        options_(options),
+        context_(context) {
+    for (const OutlierEdge& edge : rotations.outliers) {
+      left_out_before_.push_back(edge.views);
+    }
+    std::sort(left_out_before_.begin(), left_out_before_.end());
+  }
+
+  Result<WeighedCenters> Run() && {
+    LOWLAP_ASSIGN_OR_RETURN(now_, Solve({}));
+    bool is_better = true;
+    while (is_better) {
+      LOWLAP_ASSIGN_OR_RETURN(is_better, TryOtherSides());
+    }
+    return WeighedCenters{std::move(now_.centers), std::move(contests_)};
+  }
+
+ private:
+  Result<Side> Solve(const std::vector<ViewPair>& without) const {
+    Side side;
+    LOWLAP_ASSIGN_OR_RETURN(
+        side.centers,
+        SolveSceneCenters(scene_, rotations_, without, options_, context_));
+    for (const auto* edges :
+         {&side.centers.outlier_edges, &side.centers.kept_outliers}) {
+      for (const OutlierEdge& edge : *edges) {
+        side.against[edge.views] =
+            EvidenceOfPose(scene_.relative_poses.at(edge.views));
+      }
+    }
+    return side;
+  }
+
+  double EvidenceOf(const std::vector<ViewPair>& pairs) const {
+    double sum = 0;
+    for (const ViewPair& pair : pairs) {
+      sum += EvidenceOfPose(scene_.relative_poses.at(pair));
+    }
+    return sum;
+  }
+
+  // Those first that most speaks against.
+  std::vector<Contest> ContestsNow() const {
+    std::vector<Contest> contests =
+        FindSceneContests(scene_, rotations_, now_.centers);
+    const auto excess = [&](const Contest& contest) {
+      return EvidenceOf(contest.contradictions) - EvidenceOf(contest.links);
+    };
+    std::stable_sort(contests.begin(), contests.end(),
+                     [&](const Contest& a, const Contest& b) {
+                       return excess(a) > excess(b);
+                     });
+    return contests;
+  }
+
+  // With the contradictions and without some links; nothing if that loses views
+  // or cannot be solved.
+  Result<std::optional<Side>> OtherSideOf(const Contest& contest,
+                                          std::vector<ViewPair> without) const {
+    for (const OutlierEdge& edge : now_.centers.outlier_edges) {
+      if (edge.reason == OutlierReason::kDirection &&
+          !std::binary_search(contest.contradictions.begin(),
+                              contest.contradictions.end(), edge.views)) {
+        without.push_back(edge.views);
+      }
+    }
+    Result<Side> other = Solve(without);
+    if (!other && other.error().code == ErrorCode::kCancelled) {
+      return tl::unexpected<Error>(other.error());
+    }
+    if (!other || other->NumPlaced() < now_.NumPlaced()) return std::nullopt;
+    return *std::move(other);
+  }
+
+  // Whether one was better, and is the solution now.
+  Result<bool> TryOtherSides() {
+    contests_.clear();
+    for (Contest& contest : ContestsNow()) {
+      const auto [entry, is_new] = is_decided_.emplace(
+          std::pair(contest.links, contest.contradictions), false);
+      if (is_new && is_decided_.size() <= MaxTried()) {
+        LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> both,
+                                OtherSideOf(contest, {}));
+        if (TakeIfBetter(&both)) return true;
+        LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> other,
+                                OtherSideOf(contest, contest.links));
+        if (TakeIfBetter(&other)) return true;
+        entry->second = other && Decides(*other) &&
+                        !WereLeftOutBefore(contest.contradictions);
+      }
+      if (!entry->second) contests_.push_back(std::move(contest));
+    }
+    return false;
+  }
+
+  bool TakeIfBetter(std::optional<Side>* side) {
+    if (!*side || (*side)->EvidenceAgainst() >= now_.EvidenceAgainst()) {
+      return false;
+    }
+    now_ = std::move(**side);
+    return true;
+  }
+
+  std::size_t MaxTried() const {
+    return std::max<std::size_t>(1, kMaxViewsTried / now_.NumPlaced());
+  }
+
+  // Whether so much more speaks against the other one.
+  bool Decides(const Side& other) const {
+    return other.EvidenceAgainstOnly(now_) >
+           2 * now_.EvidenceAgainstOnly(other);
+  }
+
+  bool WereLeftOutBefore(const std::vector<ViewPair>& pairs) const {
+    return std::any_of(pairs.begin(), pairs.end(), [&](const ViewPair& pair) {
+      return std::binary_search(left_out_before_.begin(),
+                                left_out_before_.end(), pair);
+    });
+  }
+
+  const Scene& scene_;
+  const SceneRotations& rotations_;
+  const PoseOptions& options_;
+  const RunContext& context_;
+  std::vector<ViewPair> left_out_before_;
+  Side now_;
+  // Of the contests that were tried, by links and contradictions.
+  std::map<std::pair<std::vector<ViewPair>, std::vector<ViewPair>>, bool>
+      is_decided_;
+  std::vector<Contest> contests_;
+};
+
+}  // namespace
+
+Result<WeighedCenters> SolveWeighedCenters(const Scene& scene,
+                                           const SceneRotations& rotations,
+                                           const PoseOptions& options,
+                                           const RunContext& context) {
+  return SideSearch(scene, rotations, options, context).Run();
+}
+
+}  // namespace lowlap
