@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/scale/internal/candidate_limits.h"
 #include "scale/even_evidence.h"
 
 namespace lowlap {
@@ -84,7 +85,7 @@ TEST(PerturbPose, GoesBothWays) {
 }
 
 // Its candidates move with the focal length of view i, of all geometries, or,
-// if `by_ratio`, by as many of their own ratios.
+// if `by_ratio`, by as many of their own ratios. Beyond 1 there are none.
 class MovedByGeometry : public testing::EvenEvidence {
  public:
   MovedByGeometry(std::vector<double> ratios, double num_tests,
@@ -98,6 +99,9 @@ class MovedByGeometry : public testing::EvenEvidence {
       moved.push_back(ratios()[n]);
       moved.back().log_ratio +=
           geometry.focal_i_px * (by_ratio_ ? ratios()[n].log_ratio : 1);
+      if (std::abs(geometry.focal_i_px) > 1) {
+        moved.back().status = CandidateStatus::kNegativeDepth;
+      }
     }
     return moved;
   }
@@ -132,6 +136,25 @@ TEST(PoseVariance, TakesTheMeanOfBothWays) {
   EXPECT_NEAR(variance, 0.05 * 0.05, 1e-15);
   std::swap(triplet.pose_perturbations[0], triplet.pose_perturbations[1]);
   EXPECT_EQ(PoseVariance(triplet, support, {{0, 0, 1}}), variance);
+}
+
+// As a motion whose direction nothing determines has them.
+TEST(PoseVariance, IsLargeWhereAnErrorLeavesNoRatioEitherWay) {
+  const RatioSupport support(testing::EvidenceOf(
+      {std::make_shared<MovedByGeometry>(std::vector<double>{0}, 1),
+       testing::Even({0}, 1)}));
+  const auto variance = [&](double there, double back,
+                            const std::vector<WeightedCandidate>& candidates) {
+    TripletView triplet;
+    triplet.pose_perturbations.emplace_back().focal_i_px = there;
+    triplet.pose_perturbations.emplace_back().focal_i_px = back;
+    return PoseVariance(triplet, support, candidates);
+  };
+  EXPECT_EQ(variance(2, -2, {{0, 0, 1}}),
+            kMaxLogRatioStddev * kMaxLogRatioStddev);
+  EXPECT_NEAR(variance(0.04, -2, {{0, 0, 1}}), 0.04 * 0.04 / 2, 1e-15);
+  EXPECT_NEAR(variance(-2, 0.04, {{0, 0, 1}}), 0.04 * 0.04 / 2, 1e-15);
+  EXPECT_EQ(variance(2, -2, {{0, 0, 1}, {1, 0, 1}}), 0);
 }
 
 TEST(PoseVariance, AveragesWhatMovesAndWhatDoesNot) {

@@ -3,9 +3,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/scale/internal/candidate_limits.h"
 #include "lowlap/scale/internal/criterion/even_rank.h"
 
 namespace lowlap {
@@ -51,6 +53,29 @@ std::vector<Sample> SampleKinds(
   return samples;
 }
 
+// Of the log ratios in a geometry; nothing where none is left.
+std::optional<double> ChangeOfMean(const TripletView& triplet,
+                                   const RatioSupport& support,
+                                   const std::vector<Sample>& samples,
+                                   const TripletGeometry& geometry) {
+  double sum = 0, weights = 0;
+  for (int k = 0; k < support.num_kinds(); ++k) {
+    const Sample& sample = samples[k];
+    const std::vector<RatioCandidate> moved =
+        support.kind(k).RatiosIn(triplet, geometry, sample.candidates);
+    for (std::size_t n = 0; n < moved.size(); ++n) {
+      if (moved[n].status != CandidateStatus::kValid) continue;
+      const double change =
+          moved[n].log_ratio -
+          support.kind(k).ratios()[sample.candidates[n]].log_ratio;
+      sum += sample.weights[n] * change;
+      weights += sample.weights[n];
+    }
+  }
+  if (!(weights > 0)) return std::nullopt;
+  return sum / weights;
+}
+
 }  // namespace
 
 std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
@@ -91,27 +116,19 @@ std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
 
 double PoseVariance(const TripletView& triplet, const RatioSupport& support,
                     const std::vector<WeightedCandidate>& candidates) {
-  double variance = 0;
-  if (triplet.pose_perturbations.empty()) return variance;
+  if (candidates.empty()) return 0;
   const std::vector<Sample> samples = SampleKinds(support, candidates);
-  for (const TripletGeometry& geometry : triplet.pose_perturbations) {
-    double sum = 0, weights = 0;
-    for (int k = 0; k < support.num_kinds(); ++k) {
-      const Sample& sample = samples[k];
-      const std::vector<RatioCandidate> moved =
-          support.kind(k).RatiosIn(triplet, geometry, sample.candidates);
-      for (std::size_t n = 0; n < moved.size(); ++n) {
-        if (moved[n].status != CandidateStatus::kValid) continue;
-        const double change =
-            moved[n].log_ratio -
-            support.kind(k).ratios()[sample.candidates[n]].log_ratio;
-        sum += sample.weights[n] * change;
-        weights += sample.weights[n];
-      }
+  const std::vector<TripletGeometry>& perturbed = triplet.pose_perturbations;
+  double variance = 0;
+  for (std::size_t n = 0; n + 1 < perturbed.size(); n += 2) {
+    const auto there = ChangeOfMean(triplet, support, samples, perturbed[n]);
+    const auto back = ChangeOfMean(triplet, support, samples, perturbed[n + 1]);
+    for (const std::optional<double>& change : {there, back}) {
+      if (change) variance += *change * *change / 2;
     }
-    if (weights > 0) variance += (sum / weights) * (sum / weights);
+    if (!there && !back) variance += kMaxLogRatioStddev * kMaxLogRatioStddev;
   }
-  return 0.5 * variance;  // every error moves both ways
+  return variance;
 }
 
 }  // namespace lowlap

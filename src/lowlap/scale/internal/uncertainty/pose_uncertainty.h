@@ -27,11 +27,14 @@ std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
 
 /// The variance of a weighted mean of the candidates' log ratios that comes
 /// from the errors of the two relative poses: all candidates move together with
-/// them, so that it does not fall with their number. Half the sum over
-/// `triplet.pose_perturbations`, which go both ways, of the squared change of
-/// the mean: a large error along a valley changes it far more on one side than
-/// on the other. The mean is taken over a sample of at most 24 candidates of
-/// each kind, even by ratio.
+/// them, so that it does not fall with their number. The sum over the errors of
+/// `triplet.pose_perturbations`, each there and back, of the mean of the two
+/// squared changes: a large error along a valley changes the ratio far more on
+/// one side than on the other. A way that leaves no candidate a valid ratio is
+/// one that the poses cannot be off, and counts as no change; if both are, the
+/// poses do not tell the ratio, and the error counts as kMaxLogRatioStddev. The
+/// mean is taken over a sample of at most 24 candidates of each kind, even by
+/// ratio.
 double PoseVariance(const TripletView& triplet, const RatioSupport& support,
                     const std::vector<WeightedCandidate>& candidates);
 
