@@ -3,6 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <vector>
+
 #include "averaging/true_ratios.h"
 #include "lowlap/averaging/internal/pose_warnings.h"
 #include "lowlap/evaluation/pose_errors.h"

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "averaging/true_ratios.h"
+#include "lowlap/averaging/strategies/internal/graph_scales.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/io/internal/json/scene_json.h"
@@ -128,34 +131,105 @@ TEST(WeighedCenters, AFalseOneWithMoreEvidenceIsContested) {
 }
 
 // Two false links, which contradict each other as well.
-std::vector<Link> TwoRightAndTwoFalse(double rotation_off_deg,
-                                      bool has_ratios) {
+std::vector<Link> TwoRightAndTwoFalse(double log10_nfa, bool has_ratios) {
   return {{{4, 6}},
           {{5, 7}},
-          {{5, 6}, -75, 90, rotation_off_deg, 0.03, has_ratios},
-          {{4, 7}, -75, -90, rotation_off_deg, 0.03, has_ratios}};
+          {{5, 6}, log10_nfa, 90, 0, 0.03, has_ratios},
+          {{4, 7}, log10_nfa, -90, 0, 0.03, has_ratios}};
 }
 
 TEST(WeighedCenters, ContradictionsThatContradictEachOtherAreNoContest) {
-  SyntheticScene synthetic = TwoGroups(TwoRightAndTwoFalse(0, true));
+  SyntheticScene synthetic = TwoGroups(TwoRightAndTwoFalse(-75, true));
   const PoseSummary summary = Solved(&synthetic);
   EXPECT_LT(LargestError(synthetic), 1e-6);
   EXPECT_EQ(summary.outlier_edges.size(), 2u);
   EXPECT_THAT(summary.contests, IsEmpty());
 }
 
-TEST(WeighedCenters, AContestStaysWhereTheOtherSideWouldLoseViews) {
-  SyntheticScene synthetic = TwoGroups(TwoRightAndTwoFalse(0, false));
-  EXPECT_EQ(Solved(&synthetic).contests.size(), 1u);
+// Less would contradict what is left without the links.
+TEST(WeighedCenters, NoViewIsGivenUpForASideWithMoreEvidence) {
+  SyntheticScene synthetic = TwoGroups(TwoRightAndTwoFalse(-150, false));
+  const PoseSummary summary = Solved(&synthetic);
+  EXPECT_EQ(summary.num_placed, 12);
   EXPECT_LT(LargestError(synthetic), 1e-6);
+  EXPECT_EQ(summary.contests.size(), 1u);
 }
 
+// The other side is solved without 4-7 as well, whatever is left out for it.
 TEST(WeighedCenters, AContestOfRotationsStays) {
-  SyntheticScene synthetic = TwoGroups(TwoRightAndTwoFalse(20, true));
+  std::vector<Link> links = TwoRightAndTwoFalse(-75, true);
+  links[3].rotation_off_deg = 5;
+  links[3].stddev_rad = 0.001;
+  SyntheticScene synthetic = TwoGroups(links);
   const PoseSummary summary = Solved(&synthetic);
+  EXPECT_LT(LargestError(synthetic), 1e-6);
   ASSERT_EQ(summary.outlier_edges.size(), 2u);
   EXPECT_EQ(summary.outlier_edges[0].reason, OutlierReason::kRotation);
-  EXPECT_EQ(summary.contests.size(), 1u);
+  EXPECT_EQ(summary.outlier_edges[1].reason, OutlierReason::kDirection);
+  ASSERT_EQ(summary.contests.size(), 1u);
+  EXPECT_EQ(summary.contests[0].contradictions.size(), 2u);
+}
+
+// Counts what it solves, and fails at the solution `fails_at`.
+class CountingAverager : public TranslationAverager {
+ public:
+  explicit CountingAverager(int fails_at = 0,
+                            ErrorCode code = ErrorCode::kNumerical)
+      : fails_at_(fails_at), code_(code) {}
+  std::string Name() const override { return "counting"; }
+  Result<TranslationSolution> Solve(const TranslationProblem& problem,
+                                    const RunContext& context) const override {
+    if (++count_ == fails_at_) return MakeError(code_, "as asked for");
+    return graph_.Solve(problem, context);
+  }
+  int count() const { return count_; }
+
+ private:
+  GraphScalesAverager graph_;
+  int fails_at_;
+  ErrorCode code_;
+  mutable int count_ = 0;
+};
+
+Result<PoseSummary> SolvedBy(std::shared_ptr<const CountingAverager> averager,
+                             const std::vector<Link>& links) {
+  PoseOptions options;
+  options.averager = std::move(averager);
+  SyntheticScene synthetic = TwoGroups(links);
+  return SolveScenePoses(&synthetic.scene, options, RunContext());
+}
+
+TEST(WeighedCenters, ARightSceneIsSolvedOnce) {
+  const auto averager = std::make_shared<CountingAverager>();
+  const auto summary = SolvedBy(averager, {{{4, 6}}, {{5, 7}}, {{5, 6}}});
+  ASSERT_TRUE(summary);
+  EXPECT_THAT(summary->outlier_edges, IsEmpty());
+  EXPECT_THAT(summary->contests, IsEmpty());
+  EXPECT_EQ(averager->count(), 1);
+}
+
+// The first two times it solves the scene as it is, and without the false
+// links.
+TEST(WeighedCenters, ASideThatCannotBeSolvedDecidesNothing) {
+  const std::vector<Link> links = TwoRightAndTwoFalse(-75, true);
+  const auto all = std::make_shared<CountingAverager>();
+  ASSERT_TRUE(SolvedBy(all, links));
+  ASSERT_GT(all->count(), 3);
+  int num_contested = 0;
+  for (int fails_at = 3; fails_at <= all->count(); ++fails_at) {
+    const auto summary =
+        SolvedBy(std::make_shared<CountingAverager>(fails_at), links);
+    ASSERT_TRUE(summary) << fails_at;
+    EXPECT_EQ(summary->num_placed, 12);
+    EXPECT_EQ(summary->outlier_edges.size(), 2u);
+    num_contested += summary->contests.empty() ? 0 : 1;
+    const auto stopped = SolvedBy(
+        std::make_shared<CountingAverager>(fails_at, ErrorCode::kCancelled),
+        links);
+    ASSERT_FALSE(stopped) << fails_at;
+    EXPECT_EQ(stopped.error().code, ErrorCode::kCancelled);
+  }
+  EXPECT_GT(num_contested, 0);
 }
 
 // Measured in renderings of a courtyard where doors, windows and benches stand
@@ -175,14 +249,6 @@ TEST(WeighedCenters, ALoopOfTwentyMeasuredViewsCloses) {
     EXPECT_LT(-scene->relative_poses.at(edge.views).log10_nfa, 100);
   }
   EXPECT_THAT(summary->contests, IsEmpty());
-}
-
-TEST(WeighedCenters, ARightSceneIsSolvedOnce) {
-  SyntheticScene synthetic = TwoGroups({{{4, 6}}, {{5, 7}}, {{5, 6}}});
-  const PoseSummary summary = Solved(&synthetic);
-  EXPECT_LT(LargestError(synthetic), 1e-6);
-  EXPECT_THAT(summary.outlier_edges, IsEmpty());
-  EXPECT_THAT(summary.contests, IsEmpty());
 }
 
 }  // namespace

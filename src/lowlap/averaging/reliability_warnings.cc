@@ -8,6 +8,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/internal/contests.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
 #include "lowlap/core/internal/union_find.h"
@@ -15,8 +16,6 @@
 
 namespace lowlap {
 namespace {
-
-double Evidence(double log10_nfa) { return 1 + std::max(0.0, -log10_nfa); }
 
 bool Contains(const std::vector<ViewPair>& sorted, const ViewPair& views) {
   return std::binary_search(sorted.begin(), sorted.end(), views);
@@ -60,7 +59,7 @@ class Warnings {
       }
       const bool agrees = Contains(agreement_.agreeing, views);
       for (const ViewId view : {views.first, views.second}) {
-        balance[view] += (agrees ? 1 : -1) * Evidence(pose.log10_nfa);
+        balance[view] += (agrees ? 1 : -1) * EvidenceOfNfa(pose.log10_nfa);
         if (!agrees) against[view].push_back(views);
       }
     }
@@ -341,12 +340,12 @@ class Warnings {
     for (const std::size_t r : articulation.ratios) {
       const ScaleRatio& ratio = agreeing_ratios_[r];
       if (Balance* const balance = balance_of(ratio.views)) {
-        balance->for_it += Evidence(ratio.log10_nfa);
+        balance->for_it += EvidenceOfNfa(ratio.log10_nfa);
       }
     }
     for (const ScaleRatio& ratio : rejected_ratios_) {
       if (Balance* const balance = balance_of(ratio.views)) {
-        balance->against += Evidence(ratio.log10_nfa);
+        balance->against += EvidenceOfNfa(ratio.log10_nfa);
         balance->rejected.push_back(ratio.views);
       }
     }

@@ -18,10 +18,6 @@ bool IsContested(const std::vector<ContestedLink>& contested,
 
 }  // namespace
 
-double EvidenceOfPose(const RelativePose& pose) {
-  return 1 + std::max(0.0, -pose.log10_nfa);
-}
-
 std::vector<Contest> FindSceneContests(const Scene& scene,
                                        const SceneRotations& rotations,
                                        const SceneCenters& centers) {
@@ -34,7 +30,7 @@ std::vector<Contest> FindSceneContests(const Scene& scene,
     const ViewPair views{centers.problem.views[edge.first],
                          centers.problem.views[edge.second]};
     if (!is_placed(views)) continue;
-    in_use[views] = EvidenceOfPose(scene.relative_poses.at(views));
+    in_use[views] = EvidenceOfNfa(scene.relative_poses.at(views).log10_nfa);
   }
   for (const OutlierEdge& edge : centers.kept_outliers) {
     in_use.erase(edge.views);
@@ -51,13 +47,14 @@ std::vector<Contest> FindSceneContests(const Scene& scene,
       const Mat3 turn =
           rotations.cam_from_world.at(edge.views.second).transpose() *
           pose.rotation * rotations.cam_from_world.at(edge.views.first);
-      rejected[edge.views] = {EvidenceOfPose(pose), turn, RotationStddev(pose)};
+      rejected[edge.views] = {EvidenceOfNfa(pose.log10_nfa), turn,
+                              RotationStddev(pose)};
     }
   }
   EvidenceOfRatios ratios;
   for (const ScaleRatio& ratio : scene.scale_ratios) {
     if (ratio.verdict == RatioVerdict::kMeaningful) {
-      ratios[ratio.views] = 1 - ratio.log10_nfa;
+      ratios[ratio.views] = EvidenceOfNfa(ratio.log10_nfa);
     }
   }
   std::vector<Contest> contests = FindContests(in_use, ratios, rejected);

@@ -12,8 +12,8 @@
 namespace lowlap {
 namespace {
 
-// Views of all solutions that are tried, so that large scenes, which solve
-// slowly, try few.
+// Views of all contests that are tried: large scenes, which solve slowly, try
+// few.
 constexpr std::size_t kMaxViewsTried = 3000;
 
 // A solution, and what contradicts it.
@@ -68,18 +68,19 @@ class SideSearch {
     for (const auto* edges :
          {&side.centers.outlier_edges, &side.centers.kept_outliers}) {
       for (const OutlierEdge& edge : *edges) {
-        side.against[edge.views] =
-            EvidenceOfPose(scene_.relative_poses.at(edge.views));
+        side.against[edge.views] = EvidenceOf(edge.views);
       }
     }
     return side;
   }
 
+  double EvidenceOf(const ViewPair& pair) const {
+    return EvidenceOfNfa(scene_.relative_poses.at(pair).log10_nfa);
+  }
+
   double EvidenceOf(const std::vector<ViewPair>& pairs) const {
     double sum = 0;
-    for (const ViewPair& pair : pairs) {
-      sum += EvidenceOfPose(scene_.relative_poses.at(pair));
-    }
+    for (const ViewPair& pair : pairs) sum += EvidenceOf(pair);
     return sum;
   }
 

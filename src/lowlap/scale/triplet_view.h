@@ -98,8 +98,8 @@ struct TripletView {
   ViewTriplet views;
   TripletGeometry geometry;
   /// The geometry with one standard deviation added along each independent
-  /// error of the two relative poses, and taken off; empty where that is
-  /// unknown.
+  /// error of the two relative poses and, next to it, taken off; empty where
+  /// that is unknown.
   std::vector<TripletGeometry> pose_perturbations;
   double image_area_px2 = 1;     // of the middle view
   double image_diagonal_px = 1;  // of the middle view

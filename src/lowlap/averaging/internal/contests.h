@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <vector>
 
@@ -9,7 +10,13 @@
 
 namespace lowlap {
 
-/// Relative poses, or ratios, with their evidence, 1 - min(0, log10 NFA).
+/// What a relative pose or a ratio weighs against others that contradict it:
+/// 1 - min(0, log10 NFA).
+inline double EvidenceOfNfa(double log10_nfa) {
+  return 1 + std::max(0.0, -log10_nfa);
+}
+
+/// Relative poses, or ratios, with their evidence (EvidenceOfNfa).
 using EvidenceOfPairs = std::map<ViewPair, double>;
 using EvidenceOfRatios = std::map<ViewTriplet, double>;
 

@@ -6,9 +6,6 @@
 
 namespace lowlap {
 
-/// 1 - min(0, log10 NFA): what a relative pose weighs against others.
-double EvidenceOfPose(const RelativePose& pose);
-
 /// FindContests among the placed views of a scene. Relative poses whose own
 /// matches do not bear them out, or that are off by a little only, contradict
 /// nothing; what is contested as a link of the rotations already is not again.

@@ -27,9 +27,9 @@ struct WeighedCenters {
 /// are. It is not where that solution loses a view or fails, nor where a
 /// contradiction is left out for its rotation, which stays as it is.
 ///
-/// Cost: two solutions for each contest, of so many that they have 3,000 views
-/// together; those against which most evidence speaks come first. Errors: those
-/// of SolveSceneCenters.
+/// Cost: two solutions for each contest, of the 3000 / n (at least one) against
+/// whose links most evidence speaks, n views being placed. Errors: those of
+/// SolveSceneCenters.
 Result<WeighedCenters> SolveWeighedCenters(const Scene& scene,
                                            const SceneRotations& rotations,
                                            const PoseOptions& options,
