@@ -157,6 +157,28 @@ TEST(PoseVariance, IsLargeWhereAnErrorLeavesNoRatioEitherWay) {
   EXPECT_EQ(variance(2, -2, {{0, 0, 1}, {1, 0, 1}}), 0);
 }
 
+// As a relative pose that few matches bear out has it: the candidates that are
+// left after such a turn are there by chance.
+TEST(PoseVariance, IsLargeWhereARotationIsOpen) {
+  const RatioSupport support(testing::EvidenceOf(
+      {std::make_shared<MovedByGeometry>(std::vector<double>{0}, 1)}));
+  const auto variance = [&](double step_rad, bool is_ij) {
+    TripletView triplet;
+    for (const double step : {step_rad, -step_rad}) {
+      TripletGeometry& moved = triplet.pose_perturbations.emplace_back();
+      (is_ij ? moved.cami_from_camj : moved.camk_from_camj).rotation =
+          RotationFromAngleAxis({0, step, 0});
+      moved.focal_i_px = 0.01 * step;
+    }
+    triplet.geometry.focal_i_px = 0;
+    return PoseVariance(triplet, support, {{0, 0, 1}});
+  };
+  for (const bool is_ij : {false, true}) {
+    EXPECT_EQ(variance(0.9, is_ij), kMaxLogRatioStddev * kMaxLogRatioStddev);
+    EXPECT_NEAR(variance(0.2, is_ij), 0.002 * 0.002, 1e-15);
+  }
+}
+
 TEST(PoseVariance, AveragesWhatMovesAndWhatDoesNot) {
   TripletView triplet;
   triplet.pose_perturbations.emplace_back().focal_i_px = 0.04;

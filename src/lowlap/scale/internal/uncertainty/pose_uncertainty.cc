@@ -76,6 +76,17 @@ std::optional<double> ChangeOfMean(const TripletView& triplet,
   return sum / weights;
 }
 
+// Whether an error turns a camera so far that it has no standard deviation to
+// speak of: large rotations do not add up.
+bool IsOpen(const TripletGeometry& geometry, const TripletGeometry& perturbed) {
+  constexpr double kMaxTurn_rad = 0.5;
+  return RotationAngleBetween(geometry.cami_from_camj.rotation,
+                              perturbed.cami_from_camj.rotation) >
+             kMaxTurn_rad ||
+         RotationAngleBetween(geometry.camk_from_camj.rotation,
+                              perturbed.camk_from_camj.rotation) > kMaxTurn_rad;
+}
+
 }  // namespace
 
 std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
@@ -123,10 +134,13 @@ double PoseVariance(const TripletView& triplet, const RatioSupport& support,
   for (std::size_t n = 0; n + 1 < perturbed.size(); n += 2) {
     const auto there = ChangeOfMean(triplet, support, samples, perturbed[n]);
     const auto back = ChangeOfMean(triplet, support, samples, perturbed[n + 1]);
+    if (IsOpen(triplet.geometry, perturbed[n]) || (!there && !back)) {
+      variance += kMaxLogRatioStddev * kMaxLogRatioStddev;
+      continue;
+    }
     for (const std::optional<double>& change : {there, back}) {
       if (change) variance += *change * *change / 2;
     }
-    if (!there && !back) variance += kMaxLogRatioStddev * kMaxLogRatioStddev;
   }
   return variance;
 }

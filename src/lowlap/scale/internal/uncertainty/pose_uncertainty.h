@@ -32,9 +32,10 @@ std::vector<TripletGeometry> PerturbPose(const TripletGeometry& geometry,
 /// squared changes: a large error along a valley changes the ratio far more on
 /// one side than on the other. A way that leaves no candidate a valid ratio is
 /// one that the poses cannot be off, and counts as no change; if both are, the
-/// poses do not tell the ratio, and the error counts as kMaxLogRatioStddev. The
-/// mean is taken over a sample of at most 24 candidates of each kind, even by
-/// ratio.
+/// poses do not tell the ratio, and the error counts as kMaxLogRatioStddev. So
+/// does one that turns a camera by more than half a radian, where candidates
+/// are left by chance. The mean is taken over a sample of at most 24 candidates
+/// of each kind, even by ratio.
 double PoseVariance(const TripletView& triplet, const RatioSupport& support,
                     const std::vector<WeightedCandidate>& candidates);
 
