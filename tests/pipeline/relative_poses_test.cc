@@ -7,6 +7,8 @@
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/scene/internal/open_pose.h"
+#include "matching/pattern_view.h"
 #include "support/matchers.h"
 #include "support/random_vectors.h"
 
@@ -149,6 +151,60 @@ TEST(WeakPose, CountsOnlyWhereNothingElseJoinsItsViews) {
   reports = EstimateRelativePoses(&scene, matches, nullptr, {}, {});
   ASSERT_THAT(reports, IsOk());
   EXPECT_EQ(scene.relative_poses.count({0, 2}), 1u);
+}
+
+// The first and the last view share a thing only, and nothing of what both see
+// around it.
+TEST(WeakPose, IsOpenWhereNothingElseJoinsItsViewsAndSurroundingsDiffer) {
+  Random random(4);
+  constexpr FeatureIndex kCloud = 600, kThing = 60;
+  std::vector<Vec3> points;
+  for (FeatureIndex n = 0; n < kCloud; ++n) points.push_back(Anywhere(&random));
+  for (FeatureIndex n = 0; n < kThing; ++n) {
+    points.push_back(
+        testing::UniformVec3(random, {-0.6, -0.5, 4}, {0.6, 0.5, 5}));
+  }
+  Scene scene = SceneOf(
+      points, {Vec3(0, 0, 0), Vec3(0.5, 0.04, 0), Vec3(1, 0.16, 0)}, 0.2);
+  std::map<ViewId, DetectedFeatures> detected;
+  for (const auto& [view, features] : scene.features) {
+    DetectedFeatures& of_view = detected[view];
+    of_view.features = features;
+    for (const Vec2& position_px : features.points_px) {
+      of_view.keypoints.push_back({position_px, 2});
+      of_view.point_descriptors.push_back(testing::RandomDescriptor(&random));
+    }
+  }
+  std::map<ViewPair, PairMatches> matches;
+  for (FeatureIndex n = 0; n < kCloud; n += 2) {
+    matches[{0, 1}].points.push_back({n, n});
+    matches[{1, 2}].points.push_back({n, n});
+  }
+  for (FeatureIndex n = kCloud; n < points.size(); ++n) {
+    matches[{0, 2}].points.push_back({n, n});
+  }
+  auto reports = EstimateRelativePoses(&scene, matches, &detected, {}, {});
+  ASSERT_THAT(reports, IsOk());
+  ASSERT_EQ(scene.relative_poses.count({0, 1}), 1u);
+  EXPECT_FALSE(IsOpen(scene.relative_poses.at({0, 1})));
+  EXPECT_EQ(scene.relative_poses.count({0, 2}), 0u);
+  EXPECT_THAT(reports->at(1).reason, HasSubstr("surrounds"));
+
+  matches.erase({1, 2});
+  reports = EstimateRelativePoses(&scene, matches, &detected, {}, {});
+  ASSERT_THAT(reports, IsOk());
+  ASSERT_EQ(scene.relative_poses.count({0, 2}), 1u);
+  EXPECT_TRUE(IsOpen(scene.relative_poses.at({0, 2})));
+  ASSERT_THAT(RefineRelativePoses(&scene, detected, {}, {}), IsOk());
+  EXPECT_TRUE(IsOpen(scene.relative_poses.at({0, 2})));
+
+  // With a part of what surrounds it, it is a pose like any other.
+  for (FeatureIndex n = 0; n < kCloud; n += 2) {
+    matches[{0, 2}].points.push_back({n, n});
+  }
+  reports = EstimateRelativePoses(&scene, matches, &detected, {}, {});
+  ASSERT_THAT(reports, IsOk());
+  EXPECT_FALSE(IsOpen(scene.relative_poses.at({0, 2})));
 }
 
 }  // namespace

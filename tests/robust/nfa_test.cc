@@ -53,6 +53,18 @@ TEST(LogFactorials, BinomialsEqualTheGammaFunctions) {
   }
 }
 
+TEST(BinomialTail, IsTheSumOfItsTerms) {
+  // 4 or 5 heads of 5: 6 of 32.
+  EXPECT_NEAR(Log10BinomialTail(5, 4, 0.5), std::log10(6.0 / 32), 1e-12);
+  EXPECT_NEAR(Log10BinomialTail(3, 3, 0.1), -3, 1e-12);
+  EXPECT_NEAR(Log10BinomialTail(2000, 2000, 0.5), 2000 * std::log10(0.5), 1e-9);
+  EXPECT_EQ(Log10BinomialTail(7, 0, 0.5), 0);
+  EXPECT_EQ(Log10BinomialTail(0, 0, 0.5), 0);
+  EXPECT_LE(Log10BinomialTail(400, 1, 0.9), 0);
+  EXPECT_EQ(Log10BinomialTail(7, 8, 0.5),
+            -std::numeric_limits<double>::infinity());
+}
+
 TEST(BestOfPartners, IsTheComplementOfAllMissing) {
   EXPECT_NEAR(BestOfPartners(0.1, 1), 0.1, 1e-15);
   EXPECT_NEAR(BestOfPartners(0.1, 10), 1 - std::pow(0.9, 10), 1e-14);

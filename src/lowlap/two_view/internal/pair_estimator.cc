@@ -12,6 +12,7 @@
 #include "lowlap/scene/validation.h"
 #include "lowlap/two_view/internal/search/kept_covariance.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
+#include "lowlap/two_view/internal/surroundings.h"
 
 namespace lowlap {
 namespace {
@@ -121,6 +122,21 @@ void UseGuidedMatches(const ViewMeasurements& first,
                   &result->lone_matches);
 }
 
+PoseWeakness WeaknessOf(const TwoViewResult& result,
+                        const ViewMeasurements& first,
+                        const ViewMeasurements& second) {
+  constexpr double kMaxLog10Chance = -3;
+  if (!(result.scattered_log10_nfa < 0)) {
+    return PoseWeakness::kMatchesSideBySide;
+  }
+  // Without them, features may be those with matches only.
+  const bool has_all = first.detected != nullptr && second.detected != nullptr;
+  return has_all && Log10ChanceOfSurroundings(first.features, second.features,
+                                              result.pose) < kMaxLog10Chance
+             ? PoseWeakness::kSurroundings
+             : PoseWeakness::kNone;
+}
+
 }  // namespace
 
 Status PairOptions::Validate() const {
@@ -218,8 +234,8 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
     estimate.reason = "the estimate is not usable: " + valid.error().message;
     return estimate;
   }
+  estimate.weakness = WeaknessOf(*result, first, second);
   estimate.pose = std::move(pose);
-  estimate.is_weak = !(result->scattered_log10_nfa < 0);
   estimate.lone_matches = std::move(result->lone_matches);
   return estimate;
 }

@@ -75,19 +75,6 @@ bool TakeLines(const PointPairs& pairs, int i, std::set<int>* taken) {
   return true;
 }
 
-/// log10 P(at least k of n events of chance p).
-double Log10BinomialTail(int n, int k, double p) {
-  double sum = 0, greatest = -1e300;
-  std::vector<double> terms;
-  for (int m = k; m <= n; ++m) {
-    terms.push_back(Log10Binomial(n, m) + m * std::log10(p) +
-                    (n - m) * std::log10(1 - p));
-    greatest = std::max(greatest, terms.back());
-  }
-  for (const double term : terms) sum += std::pow(10.0, term - greatest);
-  return greatest + std::log10(sum);
-}
-
 }  // namespace
 
 TranslationEvidence TestTranslation(const PointPairs& pairs,

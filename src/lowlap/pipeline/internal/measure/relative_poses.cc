@@ -10,6 +10,7 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/core/internal/union_find.h"
 #include "lowlap/pipeline/internal/measure/pair_report.h"
+#include "lowlap/scene/internal/open_pose.h"
 
 namespace lowlap {
 namespace {
@@ -98,7 +99,8 @@ void LogPairsWithoutParallax(const Scene& scene,
 
 // Weak poses count where nothing else joins their views with as much evidence:
 // those within one component of the other poses whose NFA is no greater are
-// dropped.
+// dropped. What is left of those whose surroundings do not match is open: it
+// may be of another place.
 void DropWeakPoses(std::vector<PairEstimate>* estimates) {
   const auto evidence_first = [](const PairEstimate* a, const PairEstimate* b) {
     return a->pose->log10_nfa < b->pose->log10_nfa;
@@ -107,7 +109,8 @@ void DropWeakPoses(std::vector<PairEstimate>* estimates) {
   std::map<ViewId, std::size_t> index_of_view;
   for (PairEstimate& estimate : *estimates) {
     if (!estimate.pose) continue;
-    (estimate.is_weak ? weak : others).push_back(&estimate);
+    (estimate.weakness != PoseWeakness::kNone ? weak : others)
+        .push_back(&estimate);
     for (const ViewId view :
          {estimate.pose->views.first, estimate.pose->views.second}) {
       index_of_view.emplace(view, index_of_view.size());
@@ -126,12 +129,18 @@ void DropWeakPoses(std::vector<PairEstimate>* estimates) {
     const ViewPair& views = estimate->pose->views;
     if (joined.Find(index_of_view.at(views.first)) !=
         joined.Find(index_of_view.at(views.second))) {
+      if (estimate->weakness == PoseWeakness::kSurroundings) {
+        estimate->pose->covariance = OpenCovariance();
+      }
       continue;
     }
     estimate->pose.reset();
     estimate->reason =
-        "only matches side by side agree with a motion, which things that look "
-        "alike do, too; other relative poses join the views";
+        estimate->weakness == PoseWeakness::kMatchesSideBySide
+            ? "only matches side by side agree with a motion, which things "
+              "that look alike do, too; other relative poses join the views"
+            : "what surrounds the matches does not match, as it is where "
+              "things look alike; other relative poses join the views";
   }
 }
 
