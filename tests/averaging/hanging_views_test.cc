@@ -64,6 +64,24 @@ TEST(HangingViews, NoneWhereOthersHold) {
   EXPECT_EQ(summary.reliability_warnings.size(), 1u);
 }
 
+// Three views that hold each other, among eight.
+TEST(HangingViews, AllOfASmallPart) {
+  for (const int num_doubtful : {3, 4, 5}) {
+    PoseSummary summary = Chain();
+    summary.components[0].push_back(7);
+    for (int n = 7; n > 7 - num_doubtful; --n) Doubt(n, &summary);
+    WarnOfHangingViews(&summary);
+    const std::size_t num_warnings = num_doubtful;
+    if (num_doubtful < 5) {
+      EXPECT_EQ(summary.reliability_warnings.size(), num_warnings);
+      continue;
+    }
+    ASSERT_EQ(summary.reliability_warnings.size(), num_warnings + 1);
+    EXPECT_THAT(summary.reliability_warnings.back().views,
+                ElementsAre(0, 1, 2));
+  }
+}
+
 // Whatever their ids.
 TEST(HangingViews, AllOfTwoPartsThatAreAsLarge) {
   PoseSummary summary = Chain();

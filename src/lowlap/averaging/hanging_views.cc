@@ -38,8 +38,9 @@ void WarnOfHangingViews(PoseSummary* summary) {
     // Nothing says which of two parts is in its place.
     const bool is_tie = report.groups.size() > 1 &&
                         report.groups[1].views.size() == largest.size();
+    const bool is_minority = 2 * largest.size() < placed.size();
     // Two views hold each other whatever is wrong.
-    if ((largest.size() > 2 && !is_tie) || placed.size() <= 2) {
+    if ((largest.size() > 2 && !is_tie && !is_minority) || placed.size() <= 2) {
       firm.insert(largest.begin(), largest.end());
     }
   }
