@@ -5,9 +5,11 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <Eigen/LU>
+#include <algorithm>
 
 #include "lowlap/two_view/internal/search/refine_relative_pose.h"
 #include "support/matchers.h"
+#include "tests/matching/pattern_view.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
@@ -23,18 +25,40 @@ using testing::RotationErrorDeg;
 using testing::TwoViewScene;
 using testing::TwoViewSceneOptions;
 
-/// A view of the scene in pixels, without what detectors know.
-ViewMeasurements Measure(const NormalizedFeatures& normalized) {
+Intrinsic Camera() {
   Intrinsic intrinsic;
   intrinsic.width_px = 1600;
   intrinsic.height_px = 1200;
   intrinsic.fx_px = intrinsic.fy_px = kFocalPx;
   intrinsic.principal_point_px = {799.5, 599.5};
+  return intrinsic;
+}
+
+ViewFeatures InPixels(const NormalizedFeatures& normalized) {
   ViewFeatures features;
   for (const Vec3& x : normalized.points) {
-    features.points_px.push_back(intrinsic.Project(x));
+    features.points_px.push_back(Camera().Project(x));
   }
-  return MeasureView(features, intrinsic, Vec2(1600, 1200), nullptr, {});
+  return features;
+}
+
+// With descriptors that match nothing.
+DetectedFeatures Detected(const NormalizedFeatures& normalized,
+                          Random* random) {
+  DetectedFeatures detected;
+  detected.features = InPixels(normalized);
+  for (const Vec2& position_px : detected.features.points_px) {
+    detected.keypoints.push_back({position_px, 2});
+    detected.point_descriptors.push_back(testing::RandomDescriptor(random));
+  }
+  return detected;
+}
+
+/// A view of the scene in pixels.
+ViewMeasurements Measure(const NormalizedFeatures& normalized,
+                         const DetectedFeatures* detected = nullptr) {
+  return MeasureView(InPixels(normalized), Camera(), Vec2(1600, 1200), detected,
+                     {});
 }
 
 PairEstimate Estimate(const TwoViewScene& scene) {
@@ -62,6 +86,36 @@ TEST(EstimatePair, GivesThePoseWithItsInliers) {
             1e-3);
   EXPECT_LT(DirectionErrorDeg(estimate.pose->direction, alone->pose.direction),
             1e-2);
+}
+
+// Two views of a cloud, of which only a corner matches. Without what detectors
+// know, the features may be those with matches only.
+TEST(EstimatePair, IsWeakWhereWhatSurroundsTheMatchesDoesNotMatch) {
+  TwoViewSceneOptions options;
+  options.num_right = 800;
+  options.noise_px = 0.3;
+  TwoViewScene scene = MakeTwoViewScene(options, 5);
+  Random random(6);
+  const DetectedFeatures first = Detected(scene.features1, &random);
+  const DetectedFeatures second = Detected(scene.features2, &random);
+  const auto weakness = [&](bool is_detected) {
+    const PairEstimate estimate = EstimatePair(
+        {3, 8}, Measure(scene.features1, is_detected ? &first : nullptr),
+        Measure(scene.features2, is_detected ? &second : nullptr),
+        {scene.matches, {}}, {}, 1);
+    EXPECT_TRUE(estimate.pose) << estimate.reason;
+    return estimate.weakness;
+  };
+  EXPECT_EQ(weakness(true), PoseWeakness::kNone);
+  const auto is_elsewhere = [&](const FeatureMatch& match) {
+    const Vec3& x = scene.features1.points[match.first];
+    return x.x() > -0.25 || x.y() > -0.05;
+  };
+  scene.matches.erase(
+      std::remove_if(scene.matches.begin(), scene.matches.end(), is_elsewhere),
+      scene.matches.end());
+  EXPECT_EQ(weakness(true), PoseWeakness::kSurroundings);
+  EXPECT_EQ(weakness(false), PoseWeakness::kNone);
 }
 
 TEST(EstimatePair, SaysWhyThereIsNoPose) {

@@ -1,7 +1,6 @@
 #include "lowlap/two_view/internal/surroundings.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <optional>
@@ -46,6 +45,7 @@ class SquaresOfView {
   SquaresOfView(const std::vector<Vec3>& points, const Box& box,
                 const std::vector<Seen>& inliers)
       : points_(points),
+        origin_(box.min()),
         side_(kSquareSide * box.diagonal().norm()),
         inliers_(inliers) {
     for (std::size_t n = 0; n < points.size(); ++n) {
@@ -94,12 +94,12 @@ class SquaresOfView {
   using Square = std::pair<int, int>;
 
   Square SquareOf(const Vec3& point) const {
-    return {static_cast<int>(std::floor(point.x() / side_)),
-            static_cast<int>(std::floor(point.y() / side_))};
+    const Vec2 place = (point.head<2>() - origin_) / side_;
+    return {static_cast<int>(place.x()), static_cast<int>(place.y())};
   }
 
   Vec2 CenterOf(const Square& square) const {
-    return side_ * Vec2(square.first + 0.5, square.second + 0.5);
+    return origin_ + side_ * Vec2(square.first + 0.5, square.second + 0.5);
   }
 
   double DepthNear(const Vec2& center) const {
@@ -116,6 +116,7 @@ class SquaresOfView {
   }
 
   const std::vector<Vec3>& points_;
+  const Vec2 origin_;
   const double side_;
   const std::vector<Seen>& inliers_;
   std::map<Square, std::vector<std::size_t>> squares_;
