@@ -78,7 +78,8 @@ std::optional<double> ChangeOfMean(const TripletView& triplet,
 
 // Whether an error turns a camera so far that it has no standard deviation to
 // speak of: large rotations do not add up.
-bool IsOpen(const TripletGeometry& geometry, const TripletGeometry& perturbed) {
+bool TurnsFar(const TripletGeometry& geometry,
+              const TripletGeometry& perturbed) {
   constexpr double kMaxTurn_rad = 0.5;
   return RotationAngleBetween(geometry.cami_from_camj.rotation,
                               perturbed.cami_from_camj.rotation) >
@@ -134,7 +135,7 @@ double PoseVariance(const TripletView& triplet, const RatioSupport& support,
   for (std::size_t n = 0; n + 1 < perturbed.size(); n += 2) {
     const auto there = ChangeOfMean(triplet, support, samples, perturbed[n]);
     const auto back = ChangeOfMean(triplet, support, samples, perturbed[n + 1]);
-    if (IsOpen(triplet.geometry, perturbed[n]) || (!there && !back)) {
+    if (TurnsFar(triplet.geometry, perturbed[n]) || (!there && !back)) {
       variance += kMaxLogRatioStddev * kMaxLogRatioStddev;
       continue;
     }
