@@ -123,6 +123,29 @@ TEST(WeighedCenters, WhatHasHardlyMoreEvidenceIsTakenAndContested) {
   EXPECT_THAT(summary.contests[0].contradictions, ElementsAre(ViewPair{5, 6}));
 }
 
+// As along a street of equal windows: most pairs take one window for another,
+// and agree that the camera has gone the other way.
+TEST(WeighedCenters, ManyWeakOnesDoNotBendWhatFewStrongOnesSay) {
+  SyntheticOptions options;
+  options.num_views = 14;
+  options.pairs = "all";
+  options.kind = SyntheticKind::kCorridor;
+  SyntheticScene synthetic = SceneWithTrueRatios(options);
+  std::size_t num_false = 0;
+  for (auto& [views, pose] : synthetic.scene.relative_poses) {
+    const std::uint32_t first = views.first.value();
+    const std::uint32_t apart = views.second.value() - first;
+    const bool is_false = apart > 2 && (first + apart) % 4 != 0;
+    pose.log10_nfa = apart > 2 ? -15 : -300;
+    if (is_false) pose.direction = -pose.direction;
+    num_false += is_false;
+  }
+  const PoseSummary summary = Solved(&synthetic);
+  EXPECT_EQ(summary.num_placed, 14);
+  EXPECT_LT(LargestError(synthetic), 1e-3);
+  EXPECT_EQ(summary.outlier_edges.size(), num_false);
+}
+
 TEST(WeighedCenters, AFalseOneWithMoreEvidenceIsContested) {
   SyntheticScene synthetic = TwoGroups(ExactAndFalse(-250));
   const PoseSummary summary = Solved(&synthetic);

@@ -52,6 +52,7 @@ class SideSearch {
 
   Result<WeighedCenters> Run() && {
     LOWLAP_ASSIGN_OR_RETURN(now_, Solve({}));
+    LOWLAP_RETURN_IF_ERROR(TryStrongestAlone());
     bool is_better = true;
     while (is_better) {
       LOWLAP_ASSIGN_OR_RETURN(is_better, TryOtherSides());
@@ -98,8 +99,49 @@ class SideSearch {
     return contests;
   }
 
-  // With the contradictions and without some links; nothing if that loses views
-  // or cannot be solved.
+  // What is built of the strongest relative poses is not bent by the others: of
+  // these, those that agree are taken in again.
+  Status TryStrongestAlone() {
+    if (now_.centers.outlier_edges.size() == rotations_.outliers.size() &&
+        now_.centers.kept_outliers.empty()) {
+      return {};
+    }
+    std::vector<ViewPair> weakest;
+    for (const auto& entry : scene_.relative_poses) {
+      if (!std::binary_search(left_out_before_.begin(), left_out_before_.end(),
+                              entry.first)) {
+        weakest.push_back(entry.first);
+      }
+    }
+    std::stable_sort(weakest.begin(), weakest.end(),
+                     [&](const ViewPair& a, const ViewPair& b) {
+                       return EvidenceOf(a) < EvidenceOf(b);
+                     });
+    // The fewest that lose no view, by halving.
+    const std::vector<ViewPair> all = weakest;
+    std::size_t num_strongest = all.size() / 2;
+    for (std::size_t step = all.size() / 4, n = 0; n < 3; ++n, step /= 2) {
+      weakest.resize(all.size() - num_strongest);
+      LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> side, SideWithout(weakest));
+      num_strongest = side ? num_strongest - step : num_strongest + step;
+      TakeIfBetter(&side);
+      weakest = all;
+    }
+    return {};
+  }
+
+  // Nothing if that loses views or cannot be solved.
+  Result<std::optional<Side>> SideWithout(
+      const std::vector<ViewPair>& without) const {
+    Result<Side> side = Solve(without);
+    if (!side && side.error().code == ErrorCode::kCancelled) {
+      return tl::unexpected<Error>(side.error());
+    }
+    if (!side || side->NumPlaced() < now_.NumPlaced()) return std::nullopt;
+    return *std::move(side);
+  }
+
+  // With the contradictions and without some links.
   Result<std::optional<Side>> OtherSideOf(const Contest& contest,
                                           std::vector<ViewPair> without) const {
     for (const OutlierEdge& edge : now_.centers.outlier_edges) {
@@ -109,12 +151,7 @@ class SideSearch {
         without.push_back(edge.views);
       }
     }
-    Result<Side> other = Solve(without);
-    if (!other && other.error().code == ErrorCode::kCancelled) {
-      return tl::unexpected<Error>(other.error());
-    }
-    if (!other || other->NumPlaced() < now_.NumPlaced()) return std::nullopt;
-    return *std::move(other);
+    return SideWithout(without);
   }
 
   // Whether one was better, and is the solution now.
