@@ -1,6 +1,7 @@
 #include "lowlap/averaging/internal/weighed_centers.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <utility>
@@ -99,8 +100,8 @@ class SideSearch {
     return contests;
   }
 
-  // What is built of the strongest relative poses is not bent by the others: of
-  // these, those that agree are taken in again.
+  // Where something contradicts. What is built of the strongest relative poses
+  // is not bent by the others; of these, those that agree are taken in again.
   Status TryStrongestAlone() {
     if (now_.centers.outlier_edges.size() == rotations_.outliers.size() &&
         now_.centers.kept_outliers.empty()) {
@@ -118,14 +119,14 @@ class SideSearch {
                        return EvidenceOf(a) < EvidenceOf(b);
                      });
     // The fewest that lose no view, by halving.
-    const std::vector<ViewPair> all = weakest;
-    std::size_t num_strongest = all.size() / 2;
-    for (std::size_t step = all.size() / 4, n = 0; n < 3; ++n, step /= 2) {
-      weakest.resize(all.size() - num_strongest);
-      LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> side, SideWithout(weakest));
+    std::size_t num_strongest = weakest.size() / 2, step = num_strongest / 2;
+    for (int n = 0; n < 3; ++n, step /= 2) {
+      const std::vector<ViewPair> without(
+          weakest.begin(),
+          weakest.end() - static_cast<std::ptrdiff_t>(num_strongest));
+      LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> side, SideWithout(without));
       num_strongest = side ? num_strongest - step : num_strongest + step;
       TakeIfBetter(&side);
-      weakest = all;
     }
     return {};
   }

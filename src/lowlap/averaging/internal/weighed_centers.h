@@ -14,12 +14,13 @@ struct WeighedCenters {
 /// The centres against which least speaks. SolveSceneCenters follows robust
 /// weights, which know the deviations of directions and not how much evidence a
 /// relative pose has, so that a false one may keep two right ones out; nor does
-/// it take in again what only a false one contradicted. For every contest
-/// (FindSceneContests) the scene is therefore solved again, with the
-/// contradictions beside the links, and with them instead of the links. If the
-/// relative poses that contradict such a solution, left out or kept, have less
-/// evidence together, and no view is lost, it is taken, and its own contests
-/// are looked at next.
+/// it take in again what only a false one contradicted. Where relative poses
+/// contradict it, the scene is therefore solved again: from its strongest
+/// relative poses, as few as lose no view; then, for every contest
+/// (FindSceneContests), with the contradictions beside the links, and with them
+/// instead of the links. If the relative poses that contradict such a solution,
+/// left out or kept, have less evidence together, and no view is lost, it is
+/// taken, and its own contests are looked at next.
 ///
 /// A contest is decided, and not listed, if those that contradict only the
 /// solution without the links have more than twice the evidence of those that
@@ -27,9 +28,9 @@ struct WeighedCenters {
 /// are. It is not where that solution loses a view or fails, nor where a
 /// contradiction is left out for its rotation, which stays as it is.
 ///
-/// Cost: two solutions for each contest, of the 3000 / n (at least one) against
-/// whose links most evidence speaks, n views being placed. Errors: those of
-/// SolveSceneCenters.
+/// Cost: three solutions, and two for each contest, of the 3000 / n (at least
+/// one) against whose links most evidence speaks, n views being placed. Errors:
+/// those of SolveSceneCenters.
 Result<WeighedCenters> SolveWeighedCenters(const Scene& scene,
                                            const SceneRotations& rotations,
                                            const PoseOptions& options,
