@@ -6,7 +6,6 @@
 #include "averaging/well_measured_scene.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/scene_poses.h"
-#include "lowlap/scene/internal/open_pose.h"
 
 namespace lowlap {
 namespace {
@@ -76,26 +75,6 @@ TEST(AdjustedWarnings, AnAdjustmentDeterminesWhatPosesDoNotTell) {
   adjusted.contradicted.clear();
   adjusted.direction_stddevs_rad = {{{5, 7}, 0.2}, {{6, 7}, 0.2}};
   EXPECT_EQ(count_warnings(), 1u);
-}
-
-// The structure of a pair whose surroundings do not match is of its matches.
-TEST(AdjustedWarnings, TheStructureDoesNotTellAnOpenPose) {
-  SyntheticScene synthetic = WellMeasuredScene("window:2");
-  Scene& scene = synthetic.scene;
-  for (const ViewPair& views : {ViewPair{5, 7}, ViewPair{6, 7}}) {
-    scene.relative_poses.at(views).covariance = OpenCovariance();
-  }
-  const auto summary = SolveScenePoses(&scene, PoseOptions(), RunContext());
-  ASSERT_TRUE(summary);
-  AdjustedEvidence adjusted;
-  adjusted.direction_stddevs_rad = {{{5, 7}, 0.02}, {{6, 7}, 0.02}};
-  adjusted.evidence_of_pairs = {{{5, 7}, -4}, {{6, 7}, -4}};
-  FirmEvidence firm;
-  const auto warnings =
-      FindReliabilityWarnings(scene, *summary->agreement, adjusted, &firm);
-  ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_EQ(warnings[0].reason, WarningReason::kUntoldPoses);
-  EXPECT_THAT(warnings[0].views, ElementsAre(7));
 }
 
 TEST(AdjustedWarnings, TheStructureMayHoldTheScaleThatARatioHardlyTells) {

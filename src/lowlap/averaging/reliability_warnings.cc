@@ -12,7 +12,6 @@
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
 #include "lowlap/core/internal/union_find.h"
-#include "lowlap/scene/internal/open_pose.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -149,10 +148,8 @@ class Warnings {
                               agreement_.placed.end(), view);
   }
 
-  // A direction, by the structure, and not by chance. An open pose is of one
-  // place or of two that look alike, and the structure with it.
+  // A direction, by the structure, and not by chance.
   bool IsKnown(const ViewPair& views) const {
-    if (IsOpen(scene_.relative_poses.at(views))) return false;
     const auto stddev = adjusted_.direction_stddevs_rad.find(views);
     if (stddev == adjusted_.direction_stddevs_rad.end() ||
         stddev->second > DiagnosisOptions().max_stddev) {

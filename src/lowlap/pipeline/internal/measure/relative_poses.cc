@@ -10,7 +10,6 @@
 #include "lowlap/core/internal/random.h"
 #include "lowlap/core/internal/union_find.h"
 #include "lowlap/pipeline/internal/measure/pair_report.h"
-#include "lowlap/scene/internal/open_pose.h"
 
 namespace lowlap {
 namespace {
@@ -99,8 +98,7 @@ void LogPairsWithoutParallax(const Scene& scene,
 
 // Weak poses count where nothing else joins their views with as much evidence:
 // those within one component of the other poses whose NFA is no greater are
-// dropped. What is left of those whose surroundings do not match is open: it
-// may be of another place.
+// dropped.
 void DropWeakPoses(std::vector<PairEstimate>* estimates) {
   const auto evidence_first = [](const PairEstimate* a, const PairEstimate* b) {
     return a->pose->log10_nfa < b->pose->log10_nfa;
@@ -129,9 +127,6 @@ void DropWeakPoses(std::vector<PairEstimate>* estimates) {
     const ViewPair& views = estimate->pose->views;
     if (joined.Find(index_of_view.at(views.first)) !=
         joined.Find(index_of_view.at(views.second))) {
-      if (estimate->weakness == PoseWeakness::kSurroundings) {
-        estimate->pose->covariance = OpenCovariance();
-      }
       continue;
     }
     estimate->pose.reset();
