@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/repeat_evidence.h"
+#include "lowlap/two_view/internal/evidence/repeat_evidence.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/surroundings.h"
+#include "lowlap/two_view/internal/evidence/surroundings.h"
 
 #include <gtest/gtest.h>
 

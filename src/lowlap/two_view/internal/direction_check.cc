@@ -9,11 +9,11 @@
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/matching/internal/lines/line_transfer.h"
 #include "lowlap/robust/internal/a_contrario_ransac.h"
+#include "lowlap/two_view/internal/evidence/translation_evidence.h"
 #include "lowlap/two_view/internal/kernels/two_point_kernel.h"
 #include "lowlap/two_view/internal/search/chance_support.h"
 #include "lowlap/two_view/internal/search/pose_search.h"
 #include "lowlap/two_view/internal/shuffled_matches.h"
-#include "lowlap/two_view/internal/translation_evidence.h"
 
 namespace lowlap {
 namespace {

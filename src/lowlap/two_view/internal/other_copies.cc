@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "lowlap/robust/internal/log_combinatorics.h"
+#include "lowlap/two_view/internal/evidence/repeat_evidence.h"
 #include "lowlap/two_view/internal/kernels/essential_kernel.h"
 #include "lowlap/two_view/internal/planes/planar_motion.h"
-#include "lowlap/two_view/internal/repeat_evidence.h"
 
 namespace lowlap {
 namespace {

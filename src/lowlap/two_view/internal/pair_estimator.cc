@@ -10,9 +10,9 @@
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/internal/pixel_unit.h"
 #include "lowlap/scene/validation.h"
+#include "lowlap/two_view/internal/evidence/surroundings.h"
 #include "lowlap/two_view/internal/search/kept_covariance.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
-#include "lowlap/two_view/internal/surroundings.h"
 
 namespace lowlap {
 namespace {

@@ -11,17 +11,17 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/two_view/internal/evidence/partial_evidence.h"
+#include "lowlap/two_view/internal/evidence/repeat_evidence.h"
+#include "lowlap/two_view/internal/evidence/translation_evidence.h"
 #include "lowlap/two_view/internal/other_copies.h"
-#include "lowlap/two_view/internal/partial_evidence.h"
 #include "lowlap/two_view/internal/planes/parallax_evidence.h"
 #include "lowlap/two_view/internal/planes/planar_motion.h"
-#include "lowlap/two_view/internal/repeat_evidence.h"
 #include "lowlap/two_view/internal/search/pose_from_search.h"
 #include "lowlap/two_view/internal/search/pose_search.h"
 #include "lowlap/two_view/internal/search/refine_relative_pose.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
 #include "lowlap/two_view/internal/shuffled_matches.h"
-#include "lowlap/two_view/internal/translation_evidence.h"
 
 namespace lowlap {
 namespace {

@@ -104,7 +104,8 @@ struct TwoViewResult {
 /// camera are no inliers. log10_nfa counts chance support as these very images
 /// give it (see ScoreAgainstChance), and of a pose only what does not repeat
 /// within its photograph (see FindEvidenceBeyondRepeats). Two different places
-/// that look alike without that still pass: only further views tell.
+/// that look alike without that still pass: what surrounds them
+/// (Log10ChanceOfSurroundings) and further views may tell.
 ///
 /// `pose` carries rotation, direction, point inliers in the order of
 /// `point_matches`, log10_nfa, point_threshold_px and covariance; its line

@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/partial_evidence.h"
+#include "lowlap/two_view/internal/evidence/partial_evidence.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "lowlap/two_view/internal/repeat_evidence.h"
+#include "lowlap/two_view/internal/evidence/repeat_evidence.h"
 
 #include <limits>
 #include <vector>
 
-#include "lowlap/two_view/internal/partial_evidence.h"
+#include "lowlap/two_view/internal/evidence/partial_evidence.h"
 
 namespace lowlap {
 namespace {

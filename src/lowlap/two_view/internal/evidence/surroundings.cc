@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/surroundings.h"
+#include "lowlap/two_view/internal/evidence/surroundings.h"
 
 #include <algorithm>
 #include <limits>
@@ -14,7 +14,9 @@
 namespace lowlap {
 namespace {
 
-// A share of the diagonal of the features' box.
+// A share of the diagonal of the features' box: some fifty squares a view, each
+// of them a place of its own. Half of that counts one unmatched wall as
+// several.
 constexpr double kSquareSide = 0.1;
 // What is nearer to the box's border may be cut off.
 constexpr double kMargin = 0.04;

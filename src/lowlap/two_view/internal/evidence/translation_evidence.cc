@@ -1,4 +1,4 @@
-#include "lowlap/two_view/internal/translation_evidence.h"
+#include "lowlap/two_view/internal/evidence/translation_evidence.h"
 
 #include <algorithm>
 #include <cmath>
