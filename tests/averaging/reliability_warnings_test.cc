@@ -282,6 +282,27 @@ TEST(ReliabilityWarnings, ViewsThatHangOnPosesThatAreHardlyDetermined) {
   }
 }
 
+// Things that look alike do so in every pair that sees them.
+TEST(ReliabilityWarnings, ViewsThatHangOnThingsThatMayOnlyLookAlike) {
+  for (const std::vector<ViewPair>& weak :
+       {std::vector<ViewPair>{{6, 7}}, {{5, 7}, {6, 7}}}) {
+    SyntheticScene synthetic = WellMeasuredScene("window:2");
+    for (const ViewPair& views : weak) {
+      synthetic.scene.relative_poses.at(views).weakness =
+          PoseWeakness::kSurroundings;
+    }
+    const auto warnings = WarningsOf(synthetic.scene);
+    if (weak.size() == 1) {
+      EXPECT_THAT(warnings, IsEmpty());
+      continue;
+    }
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0].reason, WarningReason::kUntoldPoses);
+    EXPECT_THAT(warnings[0].views, ElementsAre(7));
+    EXPECT_THAT(warnings[0].untold, ElementsAreArray(weak));
+  }
+}
+
 // The first view hangs on a weak ratio, whatever its relative pose is worth.
 TEST(ReliabilityWarnings, OnlyTheRelativePosesOfTheNamedViewsAreListed) {
   SyntheticScene synthetic = WellMeasuredScene("window:2");

@@ -71,7 +71,7 @@ TEST(SceneBinary, LayoutOfTheHeader) {
   const std::string bytes = FullSceneBytes();
   EXPECT_EQ(bytes.substr(0, 8), "\x89LOWLAP\n");
   EXPECT_EQ(LittleEndian(bytes, 8, 4), 5u);
-  EXPECT_EQ(LittleEndian(bytes, 12, 4), 15u);
+  EXPECT_EQ(LittleEndian(bytes, 12, 4), 16u);
   EXPECT_EQ(bytes.substr(16, 4), "ROOT");
   const std::string root = Payload(bytes, "ROOT");
   EXPECT_EQ(LittleEndian(root, 0, 8), FullScene().root_path.size());
@@ -152,10 +152,10 @@ TEST(SceneBinary, ForeignAndNewerFiles) {
               IsError(ErrorCode::kParse, "not a .lowlap file"));
   EXPECT_THAT(ParseSceneBinary(bytes + "x"),
               IsError(ErrorCode::kParse, "follows the last section"));
-  bytes[8] = 6;
+  bytes[8] = 7;
   EXPECT_THAT(ParseSceneBinary(bytes, "new.lowlap"),
               IsError(ErrorCode::kUnsupported,
-                      "new.lowlap: byte 8: version 6 is not 2 to 5"));
+                      "new.lowlap: byte 8: version 7 is not 2 to 6"));
 }
 
 TEST(SceneBinary, CovariancesAreOfPoses) {
@@ -165,6 +165,15 @@ TEST(SceneBinary, CovariancesAreOfPoses) {
   payload[8] = 99;
   EXPECT_THAT(ParseSceneBinary(WithPayload(bytes, "CCOV", payload)),
               IsError(ErrorCode::kInvalidScene, "there is no pose 99"));
+}
+
+TEST(SceneBinary, WeaknessesAreKnownOnes) {
+  const std::string bytes = FullSceneBytes();
+  std::string payload = Payload(bytes, "WEAK");
+  ASSERT_EQ(payload, std::string("\1\1\0", 3));
+  payload[1] = 2;
+  EXPECT_THAT(ParseSceneBinary(WithPayload(bytes, "WEAK", payload)),
+              IsError(ErrorCode::kParse, "section WEAK"));
 }
 
 TEST(SceneBinary, DamageIsLocated) {

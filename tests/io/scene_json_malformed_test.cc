@@ -169,8 +169,8 @@ INSTANTIATE_TEST_SUITE_P(
              "\"lowlap\": {}, \"root_path\"", ErrorCode::kParse, "$.lowlap",
              "\"version\" is missing"},
         Case{"OwnVersionUnknown", "\"root_path\"",
-             "\"lowlap\": {\"version\": 6}, \"root_path\"",
-             ErrorCode::kUnsupported, "$.lowlap.version", "version 6"}),
+             "\"lowlap\": {\"version\": 7}, \"root_path\"",
+             ErrorCode::kUnsupported, "$.lowlap.version", "version 7"}),
     kCaseName);
 
 // lowlap's part, damaged in the full scene.
@@ -207,6 +207,10 @@ INSTANTIATE_TEST_SUITE_P(
         Case{"SegmentTooLong", "\"segments\": [", "\"segments\": [1.0, ",
              ErrorCode::kParse, "$.lowlap.features[view=1].segments",
              "a multiple of 5"},
+        Case{"WeaknessUnknown", "\"weakness\": \"surroundings\"",
+             "\"weakness\": \"sky\"", ErrorCode::kParse,
+             "$.lowlap.relative_poses[views=1,4].weakness",
+             "weakness \"sky\" is not known"},
         Case{"PairOfThree", "\"views\": [1, 4]", "\"views\": [1, 4, 7]",
              ErrorCode::kParse, "$.lowlap.relative_poses[views=1,4,7].views",
              "two view ids"},

@@ -44,8 +44,23 @@ std::string OldFile(const char* name) {
   return std::string(LOWLAP_IO_TEST_DATA) + "/" + name;
 }
 
-Scene SceneOfVersion4() {
+Scene SceneOfVersion5() {
   Scene scene = FullScene();
+  for (auto& [views, pose] : scene.relative_poses) pose.weakness.reset();
+  return scene;
+}
+
+TEST(SceneFiles, FilesOfVersion5HaveNoWeaknesses) {
+  const Result<Scene> from_text = ReadSceneJson(OldFile("version_5.json"));
+  const Result<Scene> from_bytes = ReadSceneBinary(OldFile("version_5.lowlap"));
+  ASSERT_THAT(from_text, IsOk());
+  ASSERT_THAT(from_bytes, IsOk());
+  EXPECT_EQ(*from_text, SceneOfVersion5());
+  EXPECT_EQ(*from_bytes, SceneOfVersion5());
+}
+
+Scene SceneOfVersion4() {
+  Scene scene = SceneOfVersion5();
   for (auto& [id, pose] : scene.poses) pose.center_covariance.reset();
   return scene;
 }

@@ -95,10 +95,12 @@ Scene FullScene() {
   edge.alternatives.push_back(
       {edge.rotation.transpose(), -edge.direction, -1.0 / 3, edge.covariance});
   edge.alternatives.push_back({Mat3::Identity(), Vec3::UnitZ(), -2, {}});
+  edge.weakness = PoseWeakness::kSurroundings;
   scene.relative_poses[edge.views] = edge;
   edge.views = {4, 7};
   edge.covariance.reset();
   edge.alternatives.clear();
+  edge.weakness.reset();
   edge.line_inliers.clear();
   scene.relative_poses[edge.views] = edge;
 

@@ -104,9 +104,9 @@ TEST(EstimatePair, IsWeakWhereWhatSurroundsTheMatchesDoesNotMatch) {
         Measure(scene.features2, is_detected ? &second : nullptr),
         {scene.matches, {}}, {}, 1);
     EXPECT_TRUE(estimate.pose) << estimate.reason;
-    return estimate.weakness;
+    return estimate.pose->weakness;
   };
-  EXPECT_EQ(weakness(true), PoseWeakness::kNone);
+  EXPECT_EQ(weakness(true), std::nullopt);
   const auto is_elsewhere = [&](const FeatureMatch& match) {
     const Vec3& x = scene.features1.points[match.first];
     return x.x() > -0.25 || x.y() > -0.05;
@@ -115,7 +115,7 @@ TEST(EstimatePair, IsWeakWhereWhatSurroundsTheMatchesDoesNotMatch) {
       std::remove_if(scene.matches.begin(), scene.matches.end(), is_elsewhere),
       scene.matches.end());
   EXPECT_EQ(weakness(true), PoseWeakness::kSurroundings);
-  EXPECT_EQ(weakness(false), PoseWeakness::kNone);
+  EXPECT_EQ(weakness(false), std::nullopt);
 }
 
 TEST(EstimatePair, SaysWhyThereIsNoPose) {

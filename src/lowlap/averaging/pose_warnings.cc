@@ -78,8 +78,9 @@ std::string CauseOf(WarningReason reason) {
       return "the scale ratios that join them to the others disagree";
     case WarningReason::kUntoldPoses:
       return "they hang on relative poses that are hardly determined, that two "
-             "motions explain alike, or of too few matches to tell whether "
-             "they are right, which no other confirms";
+             "motions explain alike, that may join things which only look "
+             "alike, or of too few matches to tell whether they are right, "
+             "which no other confirms";
     case WarningReason::kUnheld:
       return "nothing that agrees with their places holds them";
     case WarningReason::kDoubtfulNeighbors:

@@ -38,8 +38,9 @@ enum class WarningReason {
   /// The ratios that give the views the scale of the others, across one camera
   /// or all of them, disagree with one another.
   kContradictedRatios,
-  /// Relative poses that neither their own matches nor the others bear out, or
-  /// that their matches hardly determine, are all that holds the views.
+  /// Relative poses that neither their own matches nor the others bear out,
+  /// that their matches hardly determine, or that have a weakness, are all that
+  /// holds the views.
   kUntoldPoses,
   /// What agrees with the solution does not hold the views: relative poses and
   /// ratios that contradict it were kept, since else they would be lost.

@@ -191,7 +191,8 @@ SolutionAgreement FindAgreement(const Scene& scene,
   comparison.FindThinTriangles(&agreement);
   const std::set<ViewPair> untold(matches.untold.begin(), matches.untold.end());
   for (const ViewPair& views : agreement.held) {
-    if (IsVague(scene.relative_poses.at(views))) {
+    const RelativePose& pose = scene.relative_poses.at(views);
+    if (IsVague(pose) || pose.weakness) {
       agreement.vague.push_back(views);
     } else if (untold.count(views) > 0) {
       agreement.untold.push_back(views);

@@ -2,12 +2,23 @@
 
 namespace lowlap {
 
+const char* PoseWeaknessName(PoseWeakness weakness) {
+  switch (weakness) {
+    case PoseWeakness::kMatchesSideBySide:
+      return "matches_side_by_side";
+    case PoseWeakness::kSurroundings:
+      return "surroundings";
+  }
+  return "";
+}
+
 bool operator==(const RelativePose& a, const RelativePose& b) {
   return a.views == b.views && a.rotation == b.rotation &&
          a.direction == b.direction && a.point_inliers == b.point_inliers &&
          a.line_inliers == b.line_inliers && a.log10_nfa == b.log10_nfa &&
          a.point_threshold_px == b.point_threshold_px &&
-         a.covariance == b.covariance && a.alternatives == b.alternatives;
+         a.covariance == b.covariance && a.alternatives == b.alternatives &&
+         a.weakness == b.weakness;
 }
 
 RigidTransform UnitTransform(const RelativePose& edge, ViewId from, ViewId to) {

@@ -24,6 +24,17 @@ struct AlternativeMotion {
   }
 };
 
+/// What speaks against a relative pose that its matches bear out.
+enum class PoseWeakness {
+  /// Matches that lie apart say nothing for it.
+  kMatchesSideBySide,
+  /// What surrounds its matches does not match.
+  kSurroundings,
+};
+
+/// "matches_side_by_side", "surroundings".
+const char* PoseWeaknessName(PoseWeakness weakness);
+
 /// Rotation and unit direction of a pair of views (first < second):
 ///   x_second = rotation x_first + lambda direction,  lambda > 0 unknown.
 struct RelativePose {
@@ -40,6 +51,9 @@ struct RelativePose {
   std::optional<Eigen::Matrix<double, 5, 5>> covariance;
   /// In the frames, and with the inliers, of the motion above.
   std::vector<AlternativeMotion> alternatives;
+  /// If there is one, the pose may join two places that look alike, and is to
+  /// be believed only as far as others confirm it.
+  std::optional<PoseWeakness> weakness;
 
   /// At unit baseline.
   RigidTransform Cam2FromCam1() const { return {rotation, direction}; }

@@ -29,8 +29,9 @@ struct SolutionAgreement {
   std::vector<ViewPair> agreeing, held, contradicting;
   /// Of those held: whose stated deviation, or half the distance of the two
   /// motions that explain them, is more than that of a weak ratio, so that they
-  /// would agree with anything; and others, of which their matches tell
-  /// nothing.
+  /// would agree with anything, and those with a weakness, since things that
+  /// look alike in two pairs do in a third; and others, of which their matches
+  /// tell nothing.
   std::vector<ViewPair> vague, untold;
   /// Triangles of those held, by end, middle and other end, whose directions
   /// are less than ten standard deviations from those of a line, as of a walk

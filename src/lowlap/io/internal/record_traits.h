@@ -4,6 +4,7 @@
 
 #include "lowlap/geometry/types.h"
 #include "lowlap/scene/intrinsic.h"
+#include "lowlap/scene/relative_pose.h"
 #include "lowlap/scene/scale_ratio.h"
 
 namespace lowlap {
@@ -29,9 +30,15 @@ inline const char* NameOf(CameraModel model) { return CameraModelName(model); }
 inline const char* NameOf(RatioVerdict verdict) {
   return RatioVerdictName(verdict);
 }
+inline const char* NameOf(PoseWeakness weakness) {
+  return PoseWeaknessName(weakness);
+}
 constexpr CameraModel LastOf(CameraModel) { return CameraModel::kSpherical; }
 constexpr RatioVerdict LastOf(RatioVerdict) {
   return RatioVerdict::kNoCandidates;
+}
+constexpr PoseWeakness LastOf(PoseWeakness) {
+  return PoseWeakness::kSurroundings;
 }
 
 }  // namespace lowlap

@@ -33,6 +33,7 @@ std::vector<std::string_view> SectionsOf(std::uint32_t version) {
   if (version == 3) sections.emplace_back("RATD");
   if (version >= 4) sections.emplace_back("GIVN");
   if (version >= 5) sections.emplace_back("CCOV");
+  if (version >= 6) sections.emplace_back("WEAK");
   return sections;
 }
 
@@ -76,6 +77,14 @@ void TransferCenterCovariances(BinaryRecord<Bytes>& record, SceneType& scene) {
   if constexpr (Bytes::kReads) SetCenterCovariances(covariances, scene);
 }
 
+// One for each relative pose, in their order.
+template <class Bytes, class SceneType>
+void TransferWeaknesses(BinaryRecord<Bytes>& record, SceneType& scene) {
+  for (auto& entry : scene.relative_poses) {
+    record.Optional("weakness", entry.second.weakness);
+  }
+}
+
 template <class Bytes, class SceneType>
 void TransferSection(std::string_view tag, Bytes& bytes, SceneType& scene) {
   BinaryRecord record(bytes);
@@ -109,6 +118,8 @@ void TransferSection(std::string_view tag, Bytes& bytes, SceneType& scene) {
     record.MapById(scene.given_intrinsics, kVisitIntrinsic);
   } else if (tag == "CCOV") {
     TransferCenterCovariances(record, scene);
+  } else if (tag == "WEAK") {
+    TransferWeaknesses(record, scene);
   }
 }
 

@@ -61,6 +61,8 @@ inline constexpr auto kVisitRelativePose = [](auto& record, auto& edge) {
   record.Flat("line_inliers", edge.line_inliers, kVisitPair);
   record.List("alternatives", edge.alternatives, kVisitAlternative,
               Presence::kMayBeMissing);
+  // A section of its own in the binary form.
+  if (kIsText) record.Optional("weakness", edge.weakness);
 };
 
 inline constexpr auto kVisitTrack = [](auto& record, auto& track) {

@@ -122,19 +122,20 @@ void UseGuidedMatches(const ViewMeasurements& first,
                   &result->lone_matches);
 }
 
-PoseWeakness WeaknessOf(const TwoViewResult& result,
-                        const ViewMeasurements& first,
-                        const ViewMeasurements& second) {
+std::optional<PoseWeakness> WeaknessOf(const TwoViewResult& result,
+                                       const ViewMeasurements& first,
+                                       const ViewMeasurements& second) {
   constexpr double kMaxLog10Chance = -3;
   if (!(result.scattered_log10_nfa < 0)) {
     return PoseWeakness::kMatchesSideBySide;
   }
   // Without them, features may be those with matches only.
   const bool has_all = first.detected != nullptr && second.detected != nullptr;
-  return has_all && Log10ChanceOfSurroundings(first.features, second.features,
-                                              result.pose) < kMaxLog10Chance
-             ? PoseWeakness::kSurroundings
-             : PoseWeakness::kNone;
+  if (has_all && Log10ChanceOfSurroundings(first.features, second.features,
+                                           result.pose) < kMaxLog10Chance) {
+    return PoseWeakness::kSurroundings;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -234,7 +235,7 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
     estimate.reason = "the estimate is not usable: " + valid.error().message;
     return estimate;
   }
-  estimate.weakness = WeaknessOf(*result, first, second);
+  pose.weakness = WeaknessOf(*result, first, second);
   estimate.pose = std::move(pose);
   estimate.lone_matches = std::move(result->lone_matches);
   return estimate;
@@ -277,6 +278,7 @@ RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,
   if (options.use_lines) input.line_matches = pose.line_inliers;
   RelativePose refined =
       Improve(input, pose, std::nullopt, options.two_view, lone_matches);
+  refined.weakness = pose.weakness;
   refined.line_inliers =
       FilterLineMatches(pose.line_inliers, first.features, second.features,
                         refined.Cam2FromCam1(), options.line_filter);

@@ -41,22 +41,11 @@ ViewMeasurements MeasureView(const ViewFeatures& features,
 TwoViewInput InputOf(const ViewPair& views, const ViewMeasurements& first,
                      const ViewMeasurements& second);
 
-/// What speaks against a pose that its matches bear out.
-enum class PoseWeakness {
-  kNone,
-  /// Matches that lie apart say nothing for it (ScatteredEvidence).
-  kMatchesSideBySide,
-  /// What surrounds the matches does not match (Log10ChanceOfSurroundings), to
-  /// one chance in a thousand.
-  kSurroundings,
-};
-
 struct PairEstimate {
   std::optional<RelativePose> pose;
   std::string reason;  // why there is none
   /// Point inliers that hold the pose alone (TwoViewResult).
   std::vector<FeatureMatch> lone_matches;
-  PoseWeakness weakness = PoseWeakness::kNone;
   /// No pose, since a rotation alone explains what the views see.
   bool no_parallax = false;
   /// Of the pose of least NFA, if any was meaningful.

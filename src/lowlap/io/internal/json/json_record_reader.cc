@@ -1,6 +1,24 @@
 #include "lowlap/io/internal/json/json_record_reader.h"
 
+#include <string>
+
 namespace lowlap {
+namespace {
+
+// An enumeration by the name of its value.
+template <class Kind>
+void ReadName(const JsonValue& json, const char* what, Kind& value) {
+  for (int n = 0; n <= static_cast<int>(LastOf(value)); ++n) {
+    const auto each = static_cast<Kind>(n);
+    if (json.String() == NameOf(each)) {
+      value = each;
+      return;
+    }
+  }
+  json.Fail(what + std::string(" \"") + json.String() + "\" is not known");
+}
+
+}  // namespace
 
 void Read(const JsonValue& json, std::vector<double>& value) {
   for (const JsonValue number : json.Elements()) {
@@ -33,15 +51,11 @@ void Read(const JsonValue& json, CameraModel& model) {
 }
 
 void Read(const JsonValue& json, RatioVerdict& verdict) {
-  for (const RatioVerdict each :
-       {RatioVerdict::kMeaningful, RatioVerdict::kNotMeaningful,
-        RatioVerdict::kNoCandidates}) {
-    if (json.String() == RatioVerdictName(each)) {
-      verdict = each;
-      return;
-    }
-  }
-  json.Fail("verdict \"" + json.String() + "\" is not known");
+  ReadName(json, "verdict", verdict);
+}
+
+void Read(const JsonValue& json, PoseWeakness& weakness) {
+  ReadName(json, "weakness", weakness);
 }
 
 }  // namespace lowlap

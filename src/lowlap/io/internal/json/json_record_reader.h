@@ -35,6 +35,7 @@ void Read(const JsonValue& json, ViewPair& views);
 void Read(const JsonValue& json, ViewTriplet& views);
 void Read(const JsonValue& json, CameraModel& model);
 void Read(const JsonValue& json, RatioVerdict& verdict);
+void Read(const JsonValue& json, PoseWeakness& weakness);
 
 /// Takes the numbers of a flat array, one after the other; without one, counts
 /// those that a visitor asks for.

@@ -107,8 +107,7 @@ void DropWeakPoses(std::vector<PairEstimate>* estimates) {
   std::map<ViewId, std::size_t> index_of_view;
   for (PairEstimate& estimate : *estimates) {
     if (!estimate.pose) continue;
-    (estimate.weakness != PoseWeakness::kNone ? weak : others)
-        .push_back(&estimate);
+    (estimate.pose->weakness ? weak : others).push_back(&estimate);
     for (const ViewId view :
          {estimate.pose->views.first, estimate.pose->views.second}) {
       index_of_view.emplace(view, index_of_view.size());
@@ -129,13 +128,13 @@ void DropWeakPoses(std::vector<PairEstimate>* estimates) {
         joined.Find(index_of_view.at(views.second))) {
       continue;
     }
-    estimate->pose.reset();
     estimate->reason =
-        estimate->weakness == PoseWeakness::kMatchesSideBySide
+        estimate->pose->weakness == PoseWeakness::kMatchesSideBySide
             ? "only matches side by side agree with a motion, which things "
               "that look alike do, too; other relative poses join the views"
             : "what surrounds the matches does not match, as it is where "
               "things look alike; other relative poses join the views";
+    estimate->pose.reset();
   }
 }
 
