@@ -36,7 +36,8 @@ def main(schema_path, writer):
                             "line_tracks", "scale_ratios", "line_structure")
                for key in own(name)(scene)
                if key not in ("covariance", "point_covariances",
-                              "alternatives", "second_mode")]
+                              "alternatives", "weakness",
+                              "second_mode")]
     records += [(data("views", 0), key) for key in data("views", 0)(scene)]
     records += [(data("intrinsics", 0), key)
                 for key in data("intrinsics", 0)(scene)]

@@ -70,7 +70,7 @@ std::string Payload(const std::string& bytes, const std::string& tag) {
 TEST(SceneBinary, LayoutOfTheHeader) {
   const std::string bytes = FullSceneBytes();
   EXPECT_EQ(bytes.substr(0, 8), "\x89LOWLAP\n");
-  EXPECT_EQ(LittleEndian(bytes, 8, 4), 5u);
+  EXPECT_EQ(LittleEndian(bytes, 8, 4), 6u);
   EXPECT_EQ(LittleEndian(bytes, 12, 4), 16u);
   EXPECT_EQ(bytes.substr(16, 4), "ROOT");
   const std::string root = Payload(bytes, "ROOT");

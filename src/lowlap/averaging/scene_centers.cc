@@ -1,9 +1,11 @@
 #include "lowlap/averaging/internal/scene_centers.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
 
+#include "lowlap/averaging/internal/contests.h"
 #include "lowlap/averaging/internal/contradicted_ratio.h"
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
@@ -224,19 +226,22 @@ class CenterSearch {
     for (const OutlierEdge& edge : wrong) needed->insert(edge.views);
   }
 
-  // Whether some of those that it was done without agree with the centres; the
-  // others get their errors.
+  // Whether some of those that it was done without agree with the centres, and
+  // their ratios as well; the others get their errors.
   bool TakeInAgain() {
     if (without_.empty()) return false;
     const std::size_t num_without = without_.size();
     const TranslationProblem with_all =
         MakeTranslationProblem(scene_, rotations_.cam_from_world,
                                PairsOf(rotations_.outliers), {}, false);
+    const std::map<ViewPair, double> balance = RatioBalance(with_all);
     std::map<ViewPair, double> error_deg;
     for (const DirectionResidual& residual :
          DirectionResiduals(with_all, now_.solution)) {
       if (without_.count(residual.views) == 0) continue;
-      if (IsOutlier(residual)) {
+      const auto of_ratios = balance.find(residual.views);
+      if (IsOutlier(residual) ||
+          (of_ratios != balance.end() && of_ratios->second < 0)) {
         error_deg[residual.views] = DegFromRad(residual.angle_rad);
       } else {
         without_.erase(residual.views);
@@ -247,6 +252,46 @@ class CenterSearch {
       if (found != error_deg.end()) edge.error_deg = found->second;
     }
     return without_.size() < num_without;
+  }
+
+  // Of the relative poses that it was done without: the evidence of the ratios
+  // to those in use that agree with the centres, less that of the others. An
+  // error of a length is one of a direction, along it and not across.
+  std::map<ViewPair, double> RatioBalance(
+      const TranslationProblem& with_all) const {
+    std::set<ViewPair> in_use;
+    for (const DirectionEdge& edge : now_.problem.edges) {
+      if (now_.solution.component[edge.first] == 0 &&
+          now_.solution.component[edge.second] == 0) {
+        in_use.insert(ViewsOf(now_.problem, edge));
+      }
+    }
+    const auto length = [&](const DirectionEdge& edge) {
+      return (now_.solution.center_in_world[edge.second] -
+              now_.solution.center_in_world[edge.first])
+          .norm();
+    };
+    std::map<ViewPair, double> balance;
+    for (const RatioMeasurement& ratio : with_all.ratios) {
+      const DirectionEdge& from = with_all.edges[ratio.reference];
+      const DirectionEdge& to = with_all.edges[ratio.target];
+      const ViewPair pair1 = ViewsOf(with_all, from);
+      const ViewPair pair2 = ViewsOf(with_all, to);
+      const bool is_used1 = in_use.count(pair1) > 0;
+      if (is_used1 == (in_use.count(pair2) > 0)) continue;
+      const double error =
+          std::abs(std::log(length(to) / length(from)) - ratio.log_ratio);
+      const double evidence = EvidenceOfNfa(ratio.log10_nfa);
+      balance[is_used1 ? pair2 : pair1] +=
+          error <= LimitsOf(options_).DirectionRad(0, ratio.stddev) ? evidence
+                                                                    : -evidence;
+    }
+    return balance;
+  }
+
+  static ViewPair ViewsOf(const TranslationProblem& problem,
+                          const DirectionEdge& edge) {
+    return OrderedPair(problem.views[edge.first], problem.views[edge.second]);
   }
 
   const Scene& scene_;

@@ -8,6 +8,7 @@
 
 #include "lowlap/averaging/internal/contests.h"
 #include "lowlap/averaging/internal/scene_contests.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
@@ -23,6 +24,11 @@ struct Side {
   EvidenceOfPairs against;
 
   int NumPlaced() const { return centers.solution.NumPlaced(); }
+  /// Beyond what is left out for its rotation.
+  bool IsContradicted(const SceneRotations& rotations) const {
+    return centers.outlier_edges.size() > rotations.outliers.size() ||
+           !centers.kept_outliers.empty();
+  }
   double EvidenceAgainst() const {
     double sum = 0;
     for (const auto& entry : against) sum += entry.second;
@@ -35,6 +41,11 @@ struct Side {
     }
     return sum;
   }
+};
+
+struct Found {
+  Side side;
+  std::vector<Contest> contests;
 };
 
 class SideSearch {
@@ -51,14 +62,16 @@ class SideSearch {
     std::sort(left_out_before_.begin(), left_out_before_.end());
   }
 
-  Result<WeighedCenters> Run() && {
+  Result<Found> Run() && {
     LOWLAP_ASSIGN_OR_RETURN(now_, Solve({}));
     LOWLAP_RETURN_IF_ERROR(TryStrongestAlone());
     bool is_better = true;
     while (is_better) {
       LOWLAP_ASSIGN_OR_RETURN(is_better, TryOtherSides());
+      if (is_better) continue;
+      LOWLAP_ASSIGN_OR_RETURN(is_better, TryWithoutOne());
     }
-    return WeighedCenters{std::move(now_.centers), std::move(contests_)};
+    return Found{std::move(now_), std::move(contests_)};
   }
 
  private:
@@ -103,10 +116,7 @@ class SideSearch {
   // Where something contradicts. What is built of the strongest relative poses
   // is not bent by the others; of these, those that agree are taken in again.
   Status TryStrongestAlone() {
-    if (now_.centers.outlier_edges.size() == rotations_.outliers.size() &&
-        now_.centers.kept_outliers.empty()) {
-      return {};
-    }
+    if (!now_.IsContradicted(rotations_)) return {};
     std::vector<ViewPair> weakest;
     for (const auto& entry : scene_.relative_poses) {
       if (!std::binary_search(left_out_before_.begin(), left_out_before_.end(),
@@ -142,17 +152,48 @@ class SideSearch {
     return *std::move(side);
   }
 
+  // What is left out now, but for some.
+  std::vector<ViewPair> LeftOutBut(const std::vector<ViewPair>& some) const {
+    std::vector<ViewPair> left_out;
+    for (const OutlierEdge& edge : now_.centers.outlier_edges) {
+      if (edge.reason == OutlierReason::kDirection &&
+          !std::binary_search(some.begin(), some.end(), edge.views)) {
+        left_out.push_back(edge.views);
+      }
+    }
+    return left_out;
+  }
+
   // With the contradictions and without some links.
   Result<std::optional<Side>> OtherSideOf(const Contest& contest,
                                           std::vector<ViewPair> without) const {
-    for (const OutlierEdge& edge : now_.centers.outlier_edges) {
-      if (edge.reason == OutlierReason::kDirection &&
-          !std::binary_search(contest.contradictions.begin(),
-                              contest.contradictions.end(), edge.views)) {
-        without.push_back(edge.views);
-      }
+    for (const ViewPair& pair : LeftOutBut(contest.contradictions)) {
+      without.push_back(pair);
     }
     return SideWithout(without);
+  }
+
+  // Whether one relative pose in use, the weakest first, bent the solution.
+  Result<bool> TryWithoutOne() {
+    if (!now_.IsContradicted(rotations_)) return false;
+    std::vector<ViewPair> in_use;
+    for (const DirectionEdge& edge : now_.centers.problem.edges) {
+      in_use.push_back({now_.centers.problem.views[edge.first],
+                        now_.centers.problem.views[edge.second]});
+    }
+    std::stable_sort(in_use.begin(), in_use.end(),
+                     [&](const ViewPair& a, const ViewPair& b) {
+                       return EvidenceOf(a) < EvidenceOf(b);
+                     });
+    const std::vector<ViewPair> left_out = LeftOutBut({});
+    for (const ViewPair& pair : in_use) {
+      if (num_left_out_alone_++ >= MaxTried()) break;
+      std::vector<ViewPair> without = left_out;
+      without.push_back(pair);
+      LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> side, SideWithout(without));
+      if (TakeIfBetter(&side)) return true;
+    }
+    return false;
   }
 
   // Whether one was better, and is the solution now.
@@ -211,7 +252,22 @@ class SideSearch {
   std::map<std::pair<std::vector<ViewPair>, std::vector<ViewPair>>, bool>
       is_decided_;
   std::vector<Contest> contests_;
+  std::size_t num_left_out_alone_ = 0;
 };
+
+bool IsVagueRatio(const ScaleRatio& ratio) {
+  return ratio.verdict == RatioVerdict::kMeaningful &&
+         ratio.log_ratio_stddev > DiagnosisOptions().max_stddev;
+}
+
+// Leaves ratios that hardly say anything to views that nothing else places.
+Scene WithVagueRatiosWeak(const Scene& scene) {
+  Scene result = scene;
+  for (ScaleRatio& ratio : result.scale_ratios) {
+    if (IsVagueRatio(ratio)) ratio.verdict = RatioVerdict::kNotMeaningful;
+  }
+  return result;
+}
 
 }  // namespace
 
@@ -219,7 +275,24 @@ Result<WeighedCenters> SolveWeighedCenters(const Scene& scene,
                                            const SceneRotations& rotations,
                                            const PoseOptions& options,
                                            const RunContext& context) {
-  return SideSearch(scene, rotations, options, context).Run();
+  LOWLAP_ASSIGN_OR_RETURN(Found found,
+                          SideSearch(scene, rotations, options, context).Run());
+  const bool has_vague = std::any_of(scene.scale_ratios.begin(),
+                                     scene.scale_ratios.end(), IsVagueRatio);
+  if (has_vague && found.side.IsContradicted(rotations)) {
+    const Scene other_scene = WithVagueRatiosWeak(scene);
+    Result<Found> other =
+        SideSearch(other_scene, rotations, options, context).Run();
+    if (!other && other.error().code == ErrorCode::kCancelled) {
+      return tl::unexpected<Error>(other.error());
+    }
+    if (other && other->side.NumPlaced() >= found.side.NumPlaced() &&
+        other->side.EvidenceAgainst() < found.side.EvidenceAgainst()) {
+      found = *std::move(other);
+    }
+  }
+  return WeighedCenters{std::move(found.side.centers),
+                        std::move(found.contests)};
 }
 
 }  // namespace lowlap

@@ -26,7 +26,8 @@ struct SceneCenters {
 /// that are weak for views that nothing else places, and without relative poses
 /// whose directions contradict the centres. It is done without the relative
 /// poses `without` from the start; those of them that agree with what comes out
-/// are taken in again. Errors: those of the strategy.
+/// are taken in again, unless the ratios across them mostly disagree. Errors:
+/// those of the strategy.
 Result<SceneCenters> SolveSceneCenters(const Scene& scene,
                                        const SceneRotations& rotations,
                                        const std::vector<ViewPair>& without,
