@@ -1,5 +1,6 @@
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "lowlap/scene/scene.h"
@@ -150,7 +151,15 @@ void BindSceneParts(py::module_& module) {
             return IndexArray(self.cast<const RelativePose&>().line_inliers,
                               self);
           },
-          "(m, 2): indices of the segment, likewise.");
+          "(m, 2): indices of the segment, likewise.")
+      .def_property_readonly(
+          "weakness",
+          [](const RelativePose& pose) -> std::optional<std::string> {
+            if (!pose.weakness) return std::nullopt;
+            return PoseWeaknessName(*pose.weakness);
+          },
+          "What speaks against the pose though its matches bear it out:\n"
+          "\"matches_side_by_side\", \"surroundings\" or None.");
 
   py::class_<Landmark>(module, "Landmark", "A point of the structure.")
       .def_readonly("position", &Landmark::position, "(3,).")

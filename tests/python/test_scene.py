@@ -1,5 +1,6 @@
 import collections.abc
 import gc
+import json
 import pickle
 import tempfile
 import unittest
@@ -39,6 +40,19 @@ class SceneTest(unittest.TestCase):
                          [views[id].filename for id, _ in views.items()])
         self.assertIn((0, 1), self.scene.relative_poses)
         self.assertEqual(self.scene.relative_poses[0, 1].views, (0, 1))
+
+    def test_weaknesses_have_names(self):
+        self.assertIsNone(self.scene.relative_poses[0, 1].weakness)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "scene.json"
+            self.scene.write(file)
+            content = json.loads(file.read_text())
+            pose = content["lowlap"]["relative_poses"][0]
+            pose["weakness"] = "surroundings"
+            file.write_text(json.dumps(content))
+            views = tuple(pose["views"])
+            read = lowlap.read(file).relative_poses[views]
+        self.assertEqual(read.weakness, "surroundings")
 
     def test_arrays_are_on_the_scenes_memory(self):
         features = self.scene.features[0]

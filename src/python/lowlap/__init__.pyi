@@ -65,6 +65,7 @@ class RelativePose:
     covariance: Optional[Doubles]
     point_inliers: Indices
     line_inliers: Indices
+    weakness: Optional[str]
 
 class Landmark:
     position: Doubles
