@@ -40,8 +40,18 @@ TEST(SceneFiles, FullSceneSurvivesBothForms) {
 }
 
 // Written by the last programs of their versions from FullScene.
-std::string OldFile(const char* name) {
+std::string OldFile(const std::string& name) {
   return std::string(LOWLAP_IO_TEST_DATA) + "/" + name;
+}
+
+void ExpectOldFiles(const std::string& version, const Scene& expected) {
+  const Result<Scene> from_text = ReadSceneJson(OldFile(version + ".json"));
+  const Result<Scene> from_bytes =
+      ReadSceneBinary(OldFile(version + ".lowlap"));
+  ASSERT_THAT(from_text, IsOk());
+  ASSERT_THAT(from_bytes, IsOk());
+  EXPECT_EQ(*from_text, expected);
+  EXPECT_EQ(*from_bytes, expected);
 }
 
 Scene SceneOfVersion5() {
@@ -51,12 +61,7 @@ Scene SceneOfVersion5() {
 }
 
 TEST(SceneFiles, FilesOfVersion5HaveNoWeaknesses) {
-  const Result<Scene> from_text = ReadSceneJson(OldFile("version_5.json"));
-  const Result<Scene> from_bytes = ReadSceneBinary(OldFile("version_5.lowlap"));
-  ASSERT_THAT(from_text, IsOk());
-  ASSERT_THAT(from_bytes, IsOk());
-  EXPECT_EQ(*from_text, SceneOfVersion5());
-  EXPECT_EQ(*from_bytes, SceneOfVersion5());
+  ExpectOldFiles("version_5", SceneOfVersion5());
 }
 
 Scene SceneOfVersion4() {
@@ -66,23 +71,13 @@ Scene SceneOfVersion4() {
 }
 
 TEST(SceneFiles, FilesOfVersion4HaveNoCovariancesOfCentres) {
-  const Result<Scene> from_text = ReadSceneJson(OldFile("version_4.json"));
-  const Result<Scene> from_bytes = ReadSceneBinary(OldFile("version_4.lowlap"));
-  ASSERT_THAT(from_text, IsOk());
-  ASSERT_THAT(from_bytes, IsOk());
-  EXPECT_EQ(*from_text, SceneOfVersion4());
-  EXPECT_EQ(*from_bytes, SceneOfVersion4());
+  ExpectOldFiles("version_4", SceneOfVersion4());
 }
 
 TEST(SceneFiles, FilesOfVersion3HaveTheThreeKindsOfTheirTime) {
-  const Result<Scene> from_text = ReadSceneJson(OldFile("version_3.json"));
-  const Result<Scene> from_bytes = ReadSceneBinary(OldFile("version_3.lowlap"));
-  ASSERT_THAT(from_text, IsOk());
-  ASSERT_THAT(from_bytes, IsOk());
   Scene expected = SceneOfVersion4();
   expected.given_intrinsics.clear();
-  EXPECT_EQ(*from_text, expected);
-  EXPECT_EQ(*from_bytes, expected);
+  ExpectOldFiles("version_3", expected);
 }
 
 // Version 2 had neither second modes nor shares of information, and no section

@@ -1,13 +1,13 @@
 #include "lowlap/averaging/internal/scene_centers.h"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <utility>
 
 #include "lowlap/averaging/internal/contests.h"
 #include "lowlap/averaging/internal/contradicted_ratio.h"
 #include "lowlap/averaging/internal/error_limits.h"
+#include "lowlap/averaging/internal/problem_errors.h"
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
@@ -27,16 +27,12 @@ std::vector<DirectionResidual> DirectionResiduals(
     const TranslationProblem& problem, const TranslationSolution& solution) {
   std::vector<DirectionResidual> residuals;
   for (const DirectionEdge& edge : problem.edges) {
-    if (solution.component[edge.first] != 0 ||
-        solution.component[edge.second] != 0) {
-      continue;
-    }
-    const Vec3 baseline = solution.center_in_world[edge.second] -
-                          solution.center_in_world[edge.first];
+    if (!IsPlaced(solution, edge)) continue;
+    const Vec3 baseline = BaselineOf(solution, edge);
     if (!(baseline.norm() > 0)) continue;
-    residuals.push_back(
-        {ViewPair{problem.views[edge.first], problem.views[edge.second]},
-         AngleBetween(baseline, edge.direction_in_world), edge.stddev_rad});
+    residuals.push_back({ViewsOf(problem, edge),
+                         AngleBetween(baseline, edge.direction_in_world),
+                         edge.stddev_rad});
   }
   return residuals;
 }
@@ -261,37 +257,23 @@ class CenterSearch {
       const TranslationProblem& with_all) const {
     std::set<ViewPair> in_use;
     for (const DirectionEdge& edge : now_.problem.edges) {
-      if (now_.solution.component[edge.first] == 0 &&
-          now_.solution.component[edge.second] == 0) {
+      if (IsPlaced(now_.solution, edge)) {
         in_use.insert(ViewsOf(now_.problem, edge));
       }
     }
-    const auto length = [&](const DirectionEdge& edge) {
-      return (now_.solution.center_in_world[edge.second] -
-              now_.solution.center_in_world[edge.first])
-          .norm();
-    };
     std::map<ViewPair, double> balance;
     for (const RatioMeasurement& ratio : with_all.ratios) {
-      const DirectionEdge& from = with_all.edges[ratio.reference];
-      const DirectionEdge& to = with_all.edges[ratio.target];
-      const ViewPair pair1 = ViewsOf(with_all, from);
-      const ViewPair pair2 = ViewsOf(with_all, to);
+      const ViewPair pair1 = ViewsOf(with_all, with_all.edges[ratio.reference]);
+      const ViewPair pair2 = ViewsOf(with_all, with_all.edges[ratio.target]);
       const bool is_used1 = in_use.count(pair1) > 0;
       if (is_used1 == (in_use.count(pair2) > 0)) continue;
-      const double error =
-          std::abs(std::log(length(to) / length(from)) - ratio.log_ratio);
+      const double error = LogRatioError(with_all, now_.solution, ratio);
       const double evidence = EvidenceOfNfa(ratio.log10_nfa);
       balance[is_used1 ? pair2 : pair1] +=
           error <= LimitsOf(options_).DirectionRad(0, ratio.stddev) ? evidence
                                                                     : -evidence;
     }
     return balance;
-  }
-
-  static ViewPair ViewsOf(const TranslationProblem& problem,
-                          const DirectionEdge& edge) {
-    return OrderedPair(problem.views[edge.first], problem.views[edge.second]);
   }
 
   const Scene& scene_;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/internal/problem_errors.h"
 
 namespace lowlap {
 namespace {
@@ -27,8 +28,7 @@ std::vector<Contest> FindSceneContests(const Scene& scene,
   };
   EvidenceOfPairs in_use;
   for (const DirectionEdge& edge : centers.problem.edges) {
-    const ViewPair views{centers.problem.views[edge.first],
-                         centers.problem.views[edge.second]};
+    const ViewPair views = ViewsOf(centers.problem, edge);
     if (!is_placed(views)) continue;
     in_use[views] = EvidenceOfNfa(scene.relative_poses.at(views).log10_nfa);
   }

@@ -1,12 +1,12 @@
 #include "lowlap/averaging/internal/solution_agreement.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/internal/problem_errors.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 #include "lowlap/averaging/strategies/internal/component_closure.h"
@@ -39,16 +39,17 @@ class Comparison {
 
   void SplitPoses(SolutionAgreement* agreement) const {
     for (const DirectionEdge& edge : problem_.edges) {
-      if (!IsPlaced(edge)) continue;
+      if (!IsPlaced(solution_, edge)) continue;
       const double limit_rad =
           options_.reach *
           std::max(options_.direction_stddev_rad, edge.stddev_rad);
       const double error_rad = ErrorRad(edge);
-      if (error_rad <= limit_rad) agreement->agreeing.push_back(ViewsOf(edge));
+      if (error_rad <= limit_rad)
+        agreement->agreeing.push_back(ViewsOf(problem_, edge));
       const bool is_held =
           error_rad <= std::max(limit_rad, 3 * options_.least_false_rad);
       (is_held ? agreement->held : agreement->contradicting)
-          .push_back(ViewsOf(edge));
+          .push_back(ViewsOf(problem_, edge));
     }
     std::sort(agreement->agreeing.begin(), agreement->agreeing.end());
   }
@@ -56,7 +57,7 @@ class Comparison {
   void FindThinTriangles(SolutionAgreement* agreement) const {
     std::map<ViewPair, const DirectionEdge*> edges;
     for (const DirectionEdge& edge : problem_.edges) {
-      edges.emplace(ViewsOf(edge), &edge);
+      edges.emplace(ViewsOf(problem_, edge), &edge);
     }
     const auto outwards = [&](ViewId from, const DirectionEdge& edge) -> Vec3 {
       return problem_.views[edge.first] == from
@@ -74,7 +75,7 @@ class Comparison {
         const DirectionEdge& opposite =
             *edges.at(OrderedPair(views[(n + 1) % 3], views[(n + 2) % 3]));
         const double stddev_here_rad = std::max(a.stddev_rad, b.stddev_rad);
-        const double length = Baseline(opposite).norm();
+        const double length = BaselineOf(solution_, opposite).norm();
         longest = std::max(longest, length);
         if (length < shortest) {
           shortest = length;
@@ -119,15 +120,14 @@ class Comparison {
     std::vector<RatioError> errors;
     std::vector<double> normalised;
     for (const RatioMeasurement& used : problem_.ratios) {
-      const DirectionEdge& from = problem_.edges[used.reference];
-      const DirectionEdge& to = problem_.edges[used.target];
-      if (ratios.count(used.views) == 0 || held.count(ViewsOf(from)) == 0 ||
-          held.count(ViewsOf(to)) == 0) {
+      const auto is_held = [&](std::size_t edge) {
+        return held.count(ViewsOf(problem_, problem_.edges[edge])) > 0;
+      };
+      if (ratios.count(used.views) == 0 || !is_held(used.reference) ||
+          !is_held(used.target)) {
         continue;
       }
-      const double error =
-          std::abs(std::log(Baseline(to).norm() / Baseline(from).norm()) -
-                   used.log_ratio);
+      const double error = LogRatioError(problem_, solution_, used);
       errors.push_back({used.views, error, used.stddev});
       normalised.push_back(error / used.stddev);
     }
@@ -144,22 +144,8 @@ class Comparison {
   }
 
  private:
-  ViewPair ViewsOf(const DirectionEdge& edge) const {
-    return OrderedPair(problem_.views[edge.first], problem_.views[edge.second]);
-  }
-
-  Vec3 Baseline(const DirectionEdge& edge) const {
-    return solution_.center_in_world[edge.second] -
-           solution_.center_in_world[edge.first];
-  }
-
-  bool IsPlaced(const DirectionEdge& edge) const {
-    return solution_.component[edge.first] == 0 &&
-           solution_.component[edge.second] == 0;
-  }
-
   double ErrorRad(const DirectionEdge& edge) const {
-    const Vec3 baseline = Baseline(edge);
+    const Vec3 baseline = BaselineOf(solution_, edge);
     return baseline.norm() > 0 ? AngleBetween(baseline, edge.direction_in_world)
                                : kPi;
   }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/internal/problem_errors.h"
 #include "lowlap/averaging/internal/scene_contests.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/core/internal/propagate.h"
@@ -167,9 +168,8 @@ class SideSearch {
   // With the contradictions and without some links.
   Result<std::optional<Side>> OtherSideOf(const Contest& contest,
                                           std::vector<ViewPair> without) const {
-    for (const ViewPair& pair : LeftOutBut(contest.contradictions)) {
-      without.push_back(pair);
-    }
+    const std::vector<ViewPair> others = LeftOutBut(contest.contradictions);
+    without.insert(without.end(), others.begin(), others.end());
     return SideWithout(without);
   }
 
@@ -178,8 +178,7 @@ class SideSearch {
     if (!now_.IsContradicted(rotations_)) return false;
     std::vector<ViewPair> in_use;
     for (const DirectionEdge& edge : now_.centers.problem.edges) {
-      in_use.push_back({now_.centers.problem.views[edge.first],
-                        now_.centers.problem.views[edge.second]});
+      in_use.push_back(ViewsOf(now_.centers.problem, edge));
     }
     std::stable_sort(in_use.begin(), in_use.end(),
                      [&](const ViewPair& a, const ViewPair& b) {
