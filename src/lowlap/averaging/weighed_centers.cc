@@ -1,258 +1,14 @@
 #include "lowlap/averaging/internal/weighed_centers.h"
 
 #include <algorithm>
-#include <cstddef>
-#include <map>
-#include <optional>
 #include <utility>
 
-#include "lowlap/averaging/internal/contests.h"
-#include "lowlap/averaging/internal/problem_errors.h"
-#include "lowlap/averaging/internal/scene_contests.h"
+#include "lowlap/averaging/internal/side_search.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
-
-// Views of all contests that are tried: large scenes, which solve slowly, try
-// few.
-constexpr std::size_t kMaxViewsTried = 3000;
-
-// A solution, and what contradicts it.
-struct Side {
-  SceneCenters centers;
-  EvidenceOfPairs against;
-
-  int NumPlaced() const { return centers.solution.NumPlaced(); }
-  /// Beyond what is left out for its rotation.
-  bool IsContradicted(const SceneRotations& rotations) const {
-    return centers.outlier_edges.size() > rotations.outliers.size() ||
-           !centers.kept_outliers.empty();
-  }
-  double EvidenceAgainst() const {
-    double sum = 0;
-    for (const auto& entry : against) sum += entry.second;
-    return sum;
-  }
-  double EvidenceAgainstOnly(const Side& other) const {
-    double sum = 0;
-    for (const auto& [views, evidence] : against) {
-      if (other.against.count(views) == 0) sum += evidence;
-    }
-    return sum;
-  }
-};
-
-struct Found {
-  Side side;
-  std::vector<Contest> contests;
-};
-
-class SideSearch {
- public:
-  SideSearch(const Scene& scene, const SceneRotations& rotations,
-             const PoseOptions& options, const RunContext& context)
-      : scene_(scene),
-        rotations_(rotations),
-        options_(options),
-        context_(context) {
-    for (const OutlierEdge& edge : rotations.outliers) {
-      left_out_before_.push_back(edge.views);
-    }
-    std::sort(left_out_before_.begin(), left_out_before_.end());
-  }
-
-  Result<Found> Run() && {
-    LOWLAP_ASSIGN_OR_RETURN(now_, Solve({}));
-    LOWLAP_RETURN_IF_ERROR(TryStrongestAlone());
-    bool is_better = true;
-    while (is_better) {
-      LOWLAP_ASSIGN_OR_RETURN(is_better, TryOtherSides());
-      if (is_better) continue;
-      LOWLAP_ASSIGN_OR_RETURN(is_better, TryWithoutOne());
-    }
-    return Found{std::move(now_), std::move(contests_)};
-  }
-
- private:
-  Result<Side> Solve(const std::vector<ViewPair>& without) const {
-    Side side;
-    LOWLAP_ASSIGN_OR_RETURN(
-        side.centers,
-        SolveSceneCenters(scene_, rotations_, without, options_, context_));
-    for (const auto* edges :
-         {&side.centers.outlier_edges, &side.centers.kept_outliers}) {
-      for (const OutlierEdge& edge : *edges) {
-        side.against[edge.views] = EvidenceOf(edge.views);
-      }
-    }
-    return side;
-  }
-
-  double EvidenceOf(const ViewPair& pair) const {
-    return EvidenceOfNfa(scene_.relative_poses.at(pair).log10_nfa);
-  }
-
-  double EvidenceOf(const std::vector<ViewPair>& pairs) const {
-    double sum = 0;
-    for (const ViewPair& pair : pairs) sum += EvidenceOf(pair);
-    return sum;
-  }
-
-  // Those first that most speaks against.
-  std::vector<Contest> ContestsNow() const {
-    std::vector<Contest> contests =
-        FindSceneContests(scene_, rotations_, now_.centers);
-    const auto excess = [&](const Contest& contest) {
-      return EvidenceOf(contest.contradictions) - EvidenceOf(contest.links);
-    };
-    std::stable_sort(contests.begin(), contests.end(),
-                     [&](const Contest& a, const Contest& b) {
-                       return excess(a) > excess(b);
-                     });
-    return contests;
-  }
-
-  // Where something contradicts. What is built of the strongest relative poses
-  // is not bent by the others; of these, those that agree are taken in again.
-  Status TryStrongestAlone() {
-    if (!now_.IsContradicted(rotations_)) return {};
-    std::vector<ViewPair> weakest;
-    for (const auto& entry : scene_.relative_poses) {
-      if (!std::binary_search(left_out_before_.begin(), left_out_before_.end(),
-                              entry.first)) {
-        weakest.push_back(entry.first);
-      }
-    }
-    std::stable_sort(weakest.begin(), weakest.end(),
-                     [&](const ViewPair& a, const ViewPair& b) {
-                       return EvidenceOf(a) < EvidenceOf(b);
-                     });
-    // The fewest that lose no view, by halving.
-    std::size_t num_strongest = weakest.size() / 2, step = num_strongest / 2;
-    for (int n = 0; n < 3; ++n, step /= 2) {
-      const std::vector<ViewPair> without(
-          weakest.begin(),
-          weakest.end() - static_cast<std::ptrdiff_t>(num_strongest));
-      LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> side, SideWithout(without));
-      num_strongest = side ? num_strongest - step : num_strongest + step;
-      TakeIfBetter(&side);
-    }
-    return {};
-  }
-
-  // Nothing if that loses views or cannot be solved.
-  Result<std::optional<Side>> SideWithout(
-      const std::vector<ViewPair>& without) const {
-    Result<Side> side = Solve(without);
-    if (!side && side.error().code == ErrorCode::kCancelled) {
-      return tl::unexpected<Error>(side.error());
-    }
-    if (!side || side->NumPlaced() < now_.NumPlaced()) return std::nullopt;
-    return *std::move(side);
-  }
-
-  // What is left out now, but for some.
-  std::vector<ViewPair> LeftOutBut(const std::vector<ViewPair>& some) const {
-    std::vector<ViewPair> left_out;
-    for (const OutlierEdge& edge : now_.centers.outlier_edges) {
-      if (edge.reason == OutlierReason::kDirection &&
-          !std::binary_search(some.begin(), some.end(), edge.views)) {
-        left_out.push_back(edge.views);
-      }
-    }
-    return left_out;
-  }
-
-  // With the contradictions and without some links.
-  Result<std::optional<Side>> OtherSideOf(const Contest& contest,
-                                          std::vector<ViewPair> without) const {
-    const std::vector<ViewPair> others = LeftOutBut(contest.contradictions);
-    without.insert(without.end(), others.begin(), others.end());
-    return SideWithout(without);
-  }
-
-  // Whether one relative pose in use, the weakest first, bent the solution.
-  Result<bool> TryWithoutOne() {
-    if (!now_.IsContradicted(rotations_)) return false;
-    std::vector<ViewPair> in_use;
-    for (const DirectionEdge& edge : now_.centers.problem.edges) {
-      in_use.push_back(ViewsOf(now_.centers.problem, edge));
-    }
-    std::stable_sort(in_use.begin(), in_use.end(),
-                     [&](const ViewPair& a, const ViewPair& b) {
-                       return EvidenceOf(a) < EvidenceOf(b);
-                     });
-    const std::vector<ViewPair> left_out = LeftOutBut({});
-    for (const ViewPair& pair : in_use) {
-      if (num_left_out_alone_++ >= MaxTried()) break;
-      std::vector<ViewPair> without = left_out;
-      without.push_back(pair);
-      LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> side, SideWithout(without));
-      if (TakeIfBetter(&side)) return true;
-    }
-    return false;
-  }
-
-  // Whether one was better, and is the solution now.
-  Result<bool> TryOtherSides() {
-    contests_.clear();
-    for (Contest& contest : ContestsNow()) {
-      const auto [entry, is_new] = is_decided_.emplace(
-          std::pair(contest.links, contest.contradictions), false);
-      if (is_new && is_decided_.size() <= MaxTried()) {
-        LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> both,
-                                OtherSideOf(contest, {}));
-        if (TakeIfBetter(&both)) return true;
-        LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> other,
-                                OtherSideOf(contest, contest.links));
-        if (TakeIfBetter(&other)) return true;
-        entry->second = other && Decides(*other) &&
-                        !WereLeftOutBefore(contest.contradictions);
-      }
-      if (!entry->second) contests_.push_back(std::move(contest));
-    }
-    return false;
-  }
-
-  bool TakeIfBetter(std::optional<Side>* side) {
-    if (!*side || (*side)->EvidenceAgainst() >= now_.EvidenceAgainst()) {
-      return false;
-    }
-    now_ = std::move(**side);
-    return true;
-  }
-
-  std::size_t MaxTried() const {
-    return std::max<std::size_t>(1, kMaxViewsTried / now_.NumPlaced());
-  }
-
-  // Whether so much more speaks against the other one.
-  bool Decides(const Side& other) const {
-    return other.EvidenceAgainstOnly(now_) >
-           2 * now_.EvidenceAgainstOnly(other);
-  }
-
-  bool WereLeftOutBefore(const std::vector<ViewPair>& pairs) const {
-    return std::any_of(pairs.begin(), pairs.end(), [&](const ViewPair& pair) {
-      return std::binary_search(left_out_before_.begin(),
-                                left_out_before_.end(), pair);
-    });
-  }
-
-  const Scene& scene_;
-  const SceneRotations& rotations_;
-  const PoseOptions& options_;
-  const RunContext& context_;
-  std::vector<ViewPair> left_out_before_;
-  Side now_;
-  // Of the contests that were tried, by links and contradictions.
-  std::map<std::pair<std::vector<ViewPair>, std::vector<ViewPair>>, bool>
-      is_decided_;
-  std::vector<Contest> contests_;
-  std::size_t num_left_out_alone_ = 0;
-};
 
 bool IsVagueRatio(const ScaleRatio& ratio) {
   return ratio.verdict == RatioVerdict::kMeaningful &&
@@ -274,20 +30,29 @@ Result<WeighedCenters> SolveWeighedCenters(const Scene& scene,
                                            const SceneRotations& rotations,
                                            const PoseOptions& options,
                                            const RunContext& context) {
-  LOWLAP_ASSIGN_OR_RETURN(Found found,
-                          SideSearch(scene, rotations, options, context).Run());
-  const bool has_vague = std::any_of(scene.scale_ratios.begin(),
-                                     scene.scale_ratios.end(), IsVagueRatio);
-  if (has_vague && found.side.IsContradicted(rotations)) {
-    const Scene other_scene = WithVagueRatiosWeak(scene);
-    Result<Found> other =
-        SideSearch(other_scene, rotations, options, context).Run();
+  LOWLAP_ASSIGN_OR_RETURN(
+      SideFound found,
+      SearchSides(scene, rotations, options, SideStart::kStrongest, context));
+  const auto try_other = [&](const Scene& same, SideStart start) -> Status {
+    Result<SideFound> other =
+        SearchSides(same, rotations, options, start, context);
     if (!other && other.error().code == ErrorCode::kCancelled) {
       return tl::unexpected<Error>(other.error());
     }
     if (other && other->side.NumPlaced() >= found.side.NumPlaced() &&
         other->side.EvidenceAgainst() < found.side.EvidenceAgainst()) {
       found = *std::move(other);
+    }
+    return {};
+  };
+  if (found.side.IsContradicted(rotations)) {
+    LOWLAP_RETURN_IF_ERROR(try_other(scene, SideStart::kGrown));
+    if (std::any_of(scene.scale_ratios.begin(), scene.scale_ratios.end(),
+                    IsVagueRatio)) {
+      const Scene same = WithVagueRatiosWeak(scene);
+      for (const SideStart start : {SideStart::kStrongest, SideStart::kGrown}) {
+        LOWLAP_RETURN_IF_ERROR(try_other(same, start));
+      }
     }
   }
   return WeighedCenters{std::move(found.side.centers),

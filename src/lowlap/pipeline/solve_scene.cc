@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/averaging/internal/evidence_against.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
@@ -189,7 +190,8 @@ Result<RatioSummary> EstimateBelievedRatios(Scene* scene,
 
 // Relative poses that are a little off bend what many others hold already, but
 // may be all that holds a view, or all that closes a loop: they are left out if
-// that loses no view, and leaves no part of the views to its ratios alone.
+// that loses no view, leaves no part of the views to its ratios alone, and has
+// no more evidence against it.
 Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
                                  const PoseOptions& options,
                                  const RunContext& context, StageLog* stages) {
@@ -207,10 +209,12 @@ Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
   }
   AddMatchVerdicts(rotations.matches, &*fewer);
   const std::map<PoseId, Pose> poses = scene->poses;
+  const double against_all = EvidenceAgainstPoses(*scene, options);
   auto solved = SolveScenePoses(scene, *fewer, strict, context);
   if (!solved && solved.error().code == ErrorCode::kCancelled) return solved;
   if (solved && solved->num_placed >= all->num_placed &&
       solved->IsDoubtful() <= all->IsDoubtful() &&
+      EvidenceAgainstPoses(*scene, options) <= against_all &&
       CountScaleParts(*scene, *solved) <= CountScaleParts(*scene, *all)) {
     return solved;
   }

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/internal/error_limits.h"
+#include "lowlap/averaging/translation_problem.h"
+
+namespace lowlap {
+
+/// The relative poses that contradict centres that grow by evidence, one view
+/// after the other, as incremental reconstruction places them: a start that no
+/// false relative pose bends before right ones outvote it, for those that many
+/// false ones bend together.
+///
+/// It begins with the ratio whose weakest part (either relative pose, or the
+/// ratio) has most evidence. A view may be placed where a ratio of one of its
+/// relative poses to one between placed views puts it. For the place speak the
+/// relative poses to placed views whose directions agree with it, within
+/// `limits`, and whose ratios agree by evidence, too; the others speak against
+/// it. The view and place for which most speaks comes next. Where nothing has
+/// more for it than against it, the next ratio among the views that are left
+/// begins another part.
+///
+/// What joins parts is not judged. `evidence` holds every edge of `problem`.
+/// Cost: for each view placed, ten places each for the views near it, times the
+/// ratios of their relative poses.
+std::vector<ViewPair> ContradictionsOfGrowth(const TranslationProblem& problem,
+                                             const EvidenceOfPairs& evidence,
+                                             const ErrorLimits& limits);
+
+}  // namespace lowlap
