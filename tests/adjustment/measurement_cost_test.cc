@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <limits>
+#include <vector>
 
+#include "lowlap/geometry/internal/rotation.h"
 #include "test_scene.h"
 
 namespace lowlap {
@@ -16,9 +19,11 @@ using test::TestSceneOptions;
 constexpr NoiseScale kNoise{0.5, 2};
 constexpr double kWorth = 16;  // of one observation: (t / s)^2
 
-double CostOf(const Scene& scene) {
+double CostOf(const Scene& scene,
+              const std::vector<RelativePosePrior>& priors = {}) {
   const CameraSet cameras(scene);
   StructureState state;
+  state.priors = priors;
   state.points = LoadPoints(scene, cameras);
   state.lines = LoadLines(scene, cameras, false);
   const Result<double> cost =
@@ -48,6 +53,43 @@ TEST(MeasurementCostTest, TracksOfTwoViewsAreNotAsked) {
   options.noise_px = 1;
   options.point_outliers = 0.2;
   EXPECT_EQ(CostOf(MakeTestScene(options).scene), 0);
+}
+
+// The points of two views alone, whose relative pose is known; then the second
+// view is turned by so much.
+struct Pair {
+  std::size_t num_points = 0;
+  double cost = 0;
+};
+
+Pair TurnedPair(double degrees) {
+  TestSceneOptions options;
+  options.max_point_views = 2;
+  options.max_line_views = 2;
+  Scene scene = MakeTestScene(options).scene;
+  auto& [views, measured] = *scene.relative_poses.begin();
+  measured.covariance = 1e-6 * Eigen::Matrix<double, 5, 5>::Identity();
+  Pair pair;
+  for (const auto& [id, track] : scene.point_tracks) {
+    pair.num_points +=
+        track.front().view == views.first && track.back().view == views.second;
+  }
+  const auto priors = LoadRelativePosePriors(scene, CameraSet(scene));
+  Pose& pose = scene.poses.at(scene.views.at(views.second).pose_id);
+  pose.rotation = RotationFromAngleAxis(RadFromDeg(degrees) * Vec3::UnitX()) *
+                  pose.rotation;
+  pair.cost = CostOf(scene, priors);
+  return pair;
+}
+
+TEST(MeasurementCostTest, ARelativePoseThatIsLeftAltogetherCosts) {
+  EXPECT_EQ(TurnedPair(0).cost, 0);
+  EXPECT_EQ(TurnedPair(8).cost, 0);  // though no point fits
+  const Pair pair = TurnedPair(20);
+  ASSERT_GT(pair.num_points, 10u);
+  const double all = kWorth * static_cast<double>(pair.num_points);
+  EXPECT_GT(pair.cost, 0.7 * all);
+  EXPECT_LE(pair.cost, all);
 }
 
 // With a point's three unknowns, or a line's four, found from the track.

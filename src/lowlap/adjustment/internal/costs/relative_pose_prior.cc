@@ -15,17 +15,6 @@ const double kDirectionFloorRad = RadFromDeg(0.3);
 const double kMaxRotationRad = RadFromDeg(10);
 const double kMaxDirectionRad = RadFromDeg(30);
 
-bool Agrees(const RelativePose& pose, const PoseState& first,
-            const PoseState& second) {
-  const RigidTransform cam2_from_cam1 =
-      second.CamFromWorld() * first.CamFromWorld().Inverse();
-  return cam2_from_cam1.translation.norm() > 0 &&
-         RotationAngleBetween(pose.rotation, cam2_from_cam1.rotation) <
-             kMaxRotationRad &&
-         AngleBetween(pose.direction, cam2_from_cam1.translation) <
-             kMaxDirectionRad;
-}
-
 }  // namespace
 
 bool RelativePoseCost::Evaluate(const double* const* parameters,
@@ -92,10 +81,8 @@ std::vector<RelativePosePrior> LoadRelativePosePriors(
     RelativePosePrior prior;
     prior.first = cameras.views[first].pose;
     prior.second = cameras.views[second].pose;
-    if (prior.first == prior.second || !Agrees(pose, cameras.poses[prior.first],
-                                               cameras.poses[prior.second])) {
-      continue;
-    }
+    prior.cam2_from_cam1 = pose.Cam2FromCam1();
+    if (prior.first == prior.second || !IsKept(prior, cameras)) continue;
     Eigen::Matrix<double, 5, 5> covariance = *pose.covariance;
     covariance.topLeftCorner<3, 3>() +=
         kRotationFloorRad * kRotationFloorRad * Mat3::Identity();
@@ -110,6 +97,17 @@ std::vector<RelativePosePrior> LoadRelativePosePriors(
     priors.push_back(prior);
   }
   return priors;
+}
+
+bool IsKept(const RelativePosePrior& prior, const CameraSet& cameras) {
+  const RigidTransform cam2_from_cam1 =
+      cameras.poses[prior.second].CamFromWorld() *
+      cameras.poses[prior.first].CamFromWorld().Inverse();
+  return cam2_from_cam1.translation.norm() > 0 &&
+         RotationAngleBetween(prior.cam2_from_cam1.rotation,
+                              cam2_from_cam1.rotation) < kMaxRotationRad &&
+         AngleBetween(prior.cam2_from_cam1.translation,
+                      cam2_from_cam1.translation) < kMaxDirectionRad;
 }
 
 }  // namespace lowlap

@@ -39,12 +39,17 @@ class RelativePoseCost final : public ceres::SizedCostFunction<5, 4, 3, 4, 3> {
 struct RelativePosePrior {
   int first = -1;  // indices into CameraSet::poses
   int second = -1;
+  RigidTransform cam2_from_cam1;  // with a translation of length 1
   MeasuredRelativePose measured;
 };
 
+/// Whether the poses still agree with it, to within ten degrees of rotation and
+/// thirty of direction.
+bool IsKept(const RelativePosePrior& prior, const CameraSet& cameras);
+
 /// The relative poses of the scene that state a covariance and that the poses
-/// agree with to within ten degrees of rotation and thirty of direction (the
-/// others are false, and the loss would only be slow to say so). What a
+/// agree with (IsKept; the others are false, and the loss would only be slow to
+/// say so). What a
 /// relative pose knows beyond the points and lines of the scene is the common
 /// direction of parallel lines and the shape of the points' errors; where
 /// structure is thin, that holds the poses. To the stated covariance come 0.1

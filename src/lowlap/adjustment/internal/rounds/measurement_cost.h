@@ -18,7 +18,11 @@ namespace lowlap {
 /// whatever each had in use.
 ///
 /// Tracks of two views are not asked: they were chosen by a relative pose, and
-/// bear out its errors.
+/// bear out its errors. But cameras that have left a relative pose altogether,
+/// which they began with (IsKept), have lost what may be all that holds one
+/// part of them to the other: the points that its two views alone see cost t^2
+/// / s^2 each, less as much for each that fits all the same, if these are
+/// fewer.
 ///
 /// Error: kCancelled.
 Result<double> MeasurementCost(const CameraSet& cameras,
