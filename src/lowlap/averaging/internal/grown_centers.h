@@ -18,9 +18,10 @@ namespace lowlap {
 /// relative poses to one between placed views puts it. For the place speak the
 /// relative poses to placed views whose directions agree with it, within
 /// `limits`, and whose ratios agree by evidence, too; the others speak against
-/// it. The view and place for which most speaks comes next. Where nothing has
-/// more for it than against it, the next ratio among the views that are left
-/// begins another part.
+/// it. Of its places a view takes the one with the most evidence for it less
+/// that against it, and of the views that comes next for whose place most
+/// speaks, whatever speaks against it: weak links wait. Where no ratio leads
+/// on, the next one among the views that are left begins another part.
 ///
 /// What joins parts is not judged. `evidence` holds every edge of `problem`.
 /// Cost: for each view placed, ten places each for the views near it, times the
