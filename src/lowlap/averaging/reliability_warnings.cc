@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/centers/internal/contests.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rigidity/internal/scale_articulations.h"
 #include "lowlap/core/internal/union_find.h"

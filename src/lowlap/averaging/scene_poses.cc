@@ -4,10 +4,10 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/centers/internal/weighed_centers.h"
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/internal/hanging_views.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
-#include "lowlap/averaging/internal/weighed_centers.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 

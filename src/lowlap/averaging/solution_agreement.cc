@@ -11,7 +11,6 @@
 #include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 #include "lowlap/averaging/strategies/internal/component_closure.h"
 #include "lowlap/core/internal/median.h"
-#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/robust/internal/median_deviation.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -43,7 +42,7 @@ class Comparison {
       const double limit_rad =
           options_.reach *
           std::max(options_.direction_stddev_rad, edge.stddev_rad);
-      const double error_rad = ErrorRad(edge);
+      const double error_rad = DirectionErrorRad(solution_, edge);
       if (error_rad <= limit_rad)
         agreement->agreeing.push_back(ViewsOf(problem_, edge));
       const bool is_held =
@@ -144,12 +143,6 @@ class Comparison {
   }
 
  private:
-  double ErrorRad(const DirectionEdge& edge) const {
-    const Vec3 baseline = BaselineOf(solution_, edge);
-    return baseline.norm() > 0 ? AngleBetween(baseline, edge.direction_in_world)
-                               : kPi;
-  }
-
   const Scene& scene_;
   const TranslationProblem& problem_;
   const TranslationSolution& solution_;

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/averaging/internal/evidence_against.h"
+#include "lowlap/averaging/centers/internal/evidence_against.h"
 #include "lowlap/averaging/rigidity/internal/rigidity.h"
 #include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"

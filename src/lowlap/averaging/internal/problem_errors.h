@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "lowlap/averaging/translation_problem.h"
+#include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -24,6 +25,15 @@ inline Vec3 BaselineOf(const TranslationSolution& solution,
                        const DirectionEdge& edge) {
   return solution.center_in_world[edge.second] -
          solution.center_in_world[edge.first];
+}
+
+/// The angle between a measured direction and that of the centres; pi if these
+/// coincide.
+inline double DirectionErrorRad(const TranslationSolution& solution,
+                                const DirectionEdge& edge) {
+  const Vec3 baseline = BaselineOf(solution, edge);
+  return baseline.norm() > 0 ? AngleBetween(baseline, edge.direction_in_world)
+                             : kPi;
 }
 
 /// How far a measured log ratio is from that of the centres. Its views must be

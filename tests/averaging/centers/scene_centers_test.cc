@@ -1,4 +1,4 @@
-#include "lowlap/averaging/internal/scene_centers.h"
+#include "lowlap/averaging/centers/internal/scene_centers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

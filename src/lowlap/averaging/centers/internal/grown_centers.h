@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/centers/internal/contests.h"
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/translation_problem.h"
 

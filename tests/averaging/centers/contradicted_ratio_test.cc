@@ -1,4 +1,4 @@
-#include "lowlap/averaging/internal/contradicted_ratio.h"
+#include "lowlap/averaging/centers/internal/contradicted_ratio.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

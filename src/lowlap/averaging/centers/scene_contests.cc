@@ -1,9 +1,9 @@
-#include "lowlap/averaging/internal/scene_contests.h"
+#include "lowlap/averaging/centers/internal/scene_contests.h"
 
 #include <algorithm>
 #include <set>
 
-#include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/centers/internal/contests.h"
 #include "lowlap/averaging/internal/problem_errors.h"
 
 namespace lowlap {

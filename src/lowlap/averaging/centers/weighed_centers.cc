@@ -1,9 +1,9 @@
-#include "lowlap/averaging/internal/weighed_centers.h"
+#include "lowlap/averaging/centers/internal/weighed_centers.h"
 
 #include <algorithm>
 #include <utility>
 
-#include "lowlap/averaging/internal/side_search.h"
+#include "lowlap/averaging/centers/internal/side_search.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/core/internal/propagate.h"
 

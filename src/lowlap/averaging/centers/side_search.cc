@@ -1,4 +1,4 @@
-#include "lowlap/averaging/internal/side_search.h"
+#include "lowlap/averaging/centers/internal/side_search.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -7,12 +7,11 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/centers/internal/grown_centers.h"
+#include "lowlap/averaging/centers/internal/scene_contests.h"
 #include "lowlap/averaging/internal/error_limits.h"
-#include "lowlap/averaging/internal/grown_centers.h"
 #include "lowlap/averaging/internal/problem_errors.h"
-#include "lowlap/averaging/internal/scene_contests.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {
@@ -80,8 +79,7 @@ class SideSearch {
     const SceneCenters& centers = side->centers;
     for (const DirectionEdge& edge : little_turned_.edges) {
       if (IsPlaced(centers.solution, edge) &&
-          AngleBetween(BaselineOf(centers.solution, edge),
-                       edge.direction_in_world) <=
+          DirectionErrorRad(centers.solution, edge) <=
               LimitsOf(options_).DirectionRad(centers.sigma_rad,
                                               edge.stddev_rad)) {
         side->against.erase(ViewsOf(little_turned_, edge));

@@ -1,6 +1,6 @@
-#include "lowlap/averaging/internal/evidence_against.h"
+#include "lowlap/averaging/centers/internal/evidence_against.h"
 
-#include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/centers/internal/contests.h"
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/geometry/internal/rotation.h"
 

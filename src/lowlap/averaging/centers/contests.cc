@@ -1,4 +1,4 @@
-#include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/centers/internal/contests.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,9 +1,9 @@
-#include "lowlap/averaging/internal/evidence_against.h"
+#include "lowlap/averaging/centers/internal/evidence_against.h"
 
 #include <gtest/gtest.h>
 
 #include "averaging/true_ratios.h"
-#include "lowlap/averaging/internal/contests.h"
+#include "lowlap/averaging/centers/internal/contests.h"
 #include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {

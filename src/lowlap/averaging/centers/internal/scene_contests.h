@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lowlap/averaging/internal/scene_centers.h"
+#include "lowlap/averaging/centers/internal/scene_centers.h"
 
 namespace lowlap {
 

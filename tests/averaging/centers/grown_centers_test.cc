@@ -1,4 +1,4 @@
-#include "lowlap/averaging/internal/grown_centers.h"
+#include "lowlap/averaging/centers/internal/grown_centers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

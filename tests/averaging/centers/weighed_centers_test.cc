@@ -1,4 +1,4 @@
-#include "lowlap/averaging/internal/weighed_centers.h"
+#include "lowlap/averaging/centers/internal/weighed_centers.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

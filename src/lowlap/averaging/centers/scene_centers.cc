@@ -1,16 +1,15 @@
-#include "lowlap/averaging/internal/scene_centers.h"
+#include "lowlap/averaging/centers/internal/scene_centers.h"
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "lowlap/averaging/internal/contests.h"
-#include "lowlap/averaging/internal/contradicted_ratio.h"
+#include "lowlap/averaging/centers/internal/contests.h"
+#include "lowlap/averaging/centers/internal/contradicted_ratio.h"
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/internal/problem_errors.h"
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {
@@ -28,11 +27,9 @@ std::vector<DirectionResidual> DirectionResiduals(
   std::vector<DirectionResidual> residuals;
   for (const DirectionEdge& edge : problem.edges) {
     if (!IsPlaced(solution, edge)) continue;
-    const Vec3 baseline = BaselineOf(solution, edge);
-    if (!(baseline.norm() > 0)) continue;
+    if (!(BaselineOf(solution, edge).norm() > 0)) continue;
     residuals.push_back({ViewsOf(problem, edge),
-                         AngleBetween(baseline, edge.direction_in_world),
-                         edge.stddev_rad});
+                         DirectionErrorRad(solution, edge), edge.stddev_rad});
   }
   return residuals;
 }

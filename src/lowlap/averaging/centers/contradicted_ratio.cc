@@ -1,4 +1,4 @@
-#include "lowlap/averaging/internal/contradicted_ratio.h"
+#include "lowlap/averaging/centers/internal/contradicted_ratio.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/averaging/internal/problem_errors.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {
@@ -18,16 +18,10 @@ double Cost(const TranslationProblem& problem,
   double cost = 0;
   for (std::size_t e = 0; e < problem.edges.size(); ++e) {
     const DirectionEdge& edge = problem.edges[e];
-    if (solution.component[edge.first] != 0 ||
-        solution.component[edge.second] != 0) {
-      continue;
-    }
-    const Vec3 baseline = solution.center_in_world[edge.second] -
-                          solution.center_in_world[edge.first];
-    lengths[e] = baseline.norm();
-    const double angle_rad =
-        lengths[e] > 0 ? AngleBetween(baseline, edge.direction_in_world) : kPi;
-    cost += std::log1p(std::pow(angle_rad / edge.stddev_rad, 2));
+    if (!IsPlaced(solution, edge)) continue;
+    lengths[e] = BaselineOf(solution, edge).norm();
+    cost += std::log1p(
+        std::pow(DirectionErrorRad(solution, edge) / edge.stddev_rad, 2));
   }
   for (const RatioMeasurement& ratio : problem.ratios) {
     const double from = lengths[ratio.reference], to = lengths[ratio.target];

@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "lowlap/averaging/internal/contests.h"
-#include "lowlap/averaging/internal/scene_centers.h"
+#include "lowlap/averaging/centers/internal/contests.h"
+#include "lowlap/averaging/centers/internal/scene_centers.h"
 
 namespace lowlap {
 

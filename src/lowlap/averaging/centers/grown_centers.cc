@@ -1,4 +1,4 @@
-#include "lowlap/averaging/internal/grown_centers.h"
+#include "lowlap/averaging/centers/internal/grown_centers.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "lowlap/averaging/internal/problem_errors.h"
-#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {
@@ -32,10 +31,10 @@ class Growth {
         edges_of_(problem.views.size()),
         ratios_of_(problem.edges.size()),
         contradicts_(problem.edges.size(), 0),
-        part_(problem.views.size(), -1),
-        center_(problem.views.size()),
         best_(problem.views.size()),
         is_stale_(problem.views.size(), 0) {
+    now_.component.assign(problem.views.size(), -1);
+    now_.center_in_world.assign(problem.views.size(), Vec3::Zero());
     for (std::size_t n = 0; n < problem.edges.size(); ++n) {
       const DirectionEdge& edge = problem.edges[n];
       edges_of_[edge.first].push_back(n);
@@ -58,7 +57,7 @@ class Growth {
       }
       Begin(seed);
       while (PlaceNext()) continue;
-      ++now_;
+      ++now_.num_components;
     }
     std::vector<ViewPair> result;
     for (std::size_t n = 0; n < problem_.edges.size(); ++n) {
@@ -70,8 +69,11 @@ class Growth {
   }
 
  private:
-  bool IsUsed(std::size_t view) const { return part_[view] >= 0; }
-  bool IsHere(std::size_t view) const { return part_[view] == now_; }
+  bool IsUsed(std::size_t view) const { return now_.component[view] >= 0; }
+  // In the part that grows.
+  bool IsHere(std::size_t view) const {
+    return now_.component[view] == now_.num_components;
+  }
   std::size_t OtherEnd(std::size_t edge, std::size_t view) const {
     return problem_.edges[edge].first == view ? problem_.edges[edge].second
                                               : problem_.edges[edge].first;
@@ -108,13 +110,18 @@ class Growth {
   // The other end of the edge, so far from `view`.
   Vec3 Along(std::size_t edge, std::size_t view, double length) const {
     const Vec3 step = length * problem_.edges[edge].direction_in_world;
-    return problem_.edges[edge].first == view ? Vec3(center_[view] + step)
-                                              : Vec3(center_[view] - step);
+    return problem_.edges[edge].first == view
+               ? Vec3(now_.center_in_world[view] + step)
+               : Vec3(now_.center_in_world[view] - step);
+  }
+
+  void Set(std::size_t view, const Vec3& center) {
+    now_.component[view] = now_.num_components;
+    now_.center_in_world[view] = center;
   }
 
   void PutAt(std::size_t view, const Vec3& center) {
-    part_[view] = now_;
-    center_[view] = center;
+    Set(view, center);
     for (const std::size_t edge : edges_of_[view]) {
       const std::size_t other = OtherEnd(edge, view);
       if (!IsUsed(other)) {
@@ -184,14 +191,13 @@ class Growth {
   }
 
   Place Weighed(std::size_t view, const Vec3& center) {
-    part_[view] = now_;
-    center_[view] = center;
+    Set(view, center);
     Place place{center, 0, 0};
     for (const std::size_t edge : edges_of_[view]) {
       if (!IsHere(OtherEnd(edge, view))) continue;
       (Agrees(edge) ? place.evidence : place.against) += evidence_[edge];
     }
-    part_[view] = -1;
+    now_.component[view] = -1;
     return place;
   }
 
@@ -200,18 +206,13 @@ class Growth {
            IsHere(problem_.edges[edge].second);
   }
 
-  double LengthOf(std::size_t edge) const { return BaselineOf(edge).norm(); }
-
-  Vec3 BaselineOf(std::size_t edge) const {
-    return center_[problem_.edges[edge].second] -
-           center_[problem_.edges[edge].first];
+  double LengthOf(std::size_t edge) const {
+    return BaselineOf(now_, problem_.edges[edge]).norm();
   }
 
   bool DirectionAgrees(std::size_t edge) const {
-    const Vec3 baseline = BaselineOf(edge);
-    return baseline.norm() > 0 &&
-           AngleBetween(baseline, problem_.edges[edge].direction_in_world) <=
-               limits_.DirectionRad(0, problem_.edges[edge].stddev_rad);
+    return DirectionErrorRad(now_, problem_.edges[edge]) <=
+           limits_.DirectionRad(0, problem_.edges[edge].stddev_rad);
   }
 
   // Its ratios, too, to those whose directions agree. An error of a length is
@@ -227,9 +228,7 @@ class Growth {
           !DirectionAgrees(other)) {
         continue;
       }
-      const double error = std::abs(
-          std::log(LengthOf(ratio.target) / LengthOf(ratio.reference)) -
-          ratio.log_ratio);
+      const double error = LogRatioError(problem_, now_, ratio);
       const double evidence = EvidenceOfNfa(ratio.log10_nfa);
       balance +=
           error <= limits_.DirectionRad(0, ratio.stddev) ? evidence : -evidence;
@@ -243,11 +242,10 @@ class Growth {
   std::vector<std::vector<std::size_t>> ratios_of_;  // by edge
   std::vector<double> evidence_;                     // by edge
   std::vector<char> contradicts_;                    // by edge
-  std::vector<int> part_;                            // by view; -1: none yet
-  std::vector<Vec3> center_;                         // by view
   std::vector<std::optional<Place>> best_;           // by view
   std::vector<char> is_stale_;                       // by view: of best_
-  int now_ = 0;
+  // Its parts in their order; the one that grows is not counted yet.
+  TranslationSolution now_;
 };
 
 }  // namespace
