@@ -6,6 +6,7 @@
 
 #include "lowlap/two_view/internal/relative_pose_estimator.h"
 #include "tests/support/matchers.h"
+#include "tests/support/num_trials.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
@@ -15,6 +16,7 @@ using testing::DirectionErrorDeg;
 using testing::IsError;
 using testing::IsOk;
 using testing::MakeTwoViewScene;
+using testing::NumTrials;
 using testing::RotationErrorDeg;
 using testing::TwoViewScene;
 using testing::TwoViewSceneOptions;
@@ -197,7 +199,7 @@ TEST(EstimateRelativePose, ACopyOfAnImageHasNoDirection) {
 TEST(EstimateRelativePose, PureRotationsAreRarelyTakenForTranslations) {
   // One in a thousand is promised.
   int num_false = 0;
-  for (int seed = 0; seed < 100; ++seed) {
+  for (int seed = 0; seed < NumTrials(100); ++seed) {
     TwoViewSceneOptions options;
     options.baseline = 0;
     options.num_right = 20 + 10 * (seed % 10);
