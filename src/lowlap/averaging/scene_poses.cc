@@ -74,13 +74,9 @@ PoseSummary Summarize(const Scene& scene, const SceneRotations& rotations,
   const std::set<ViewId> placed = centers.PlacedViews();
   PoseSummary summary = CountPlaced(scene, centers, placed);
   AddRotationDoubts(rotations, placed, &summary);
-  // Where false directions are the rule, they are no measure of the others.
-  const double typical_rad =
-      std::min(centers.sigma_rad,
-               RadFromDeg(kLittleOfDirectionsDeg) / options.outlier_reach);
   summary.agreement = std::make_shared<const SolutionAgreement>(
       FindAgreement(scene, centers.problem, centers.solution, rotations.matches,
-                    {options.outlier_reach, typical_rad,
+                    {options.outlier_reach, centers.sigma_rad,
                      RadFromDeg(options.least_false_deg)}));
   summary.reliability_warnings = FindReliabilityWarnings(
       scene, *summary.agreement, {}, &summary.firm_evidence);

@@ -36,8 +36,10 @@ EvidenceOfPairs EqualEvidence(const TranslationProblem& problem,
 }
 
 std::vector<ViewPair> Contradictions(const TranslationProblem& problem,
-                                     const EvidenceOfPairs& evidence) {
-  return ContradictionsOfGrowth(problem, evidence, {5.0, RadFromDeg(1.0)});
+                                     const EvidenceOfPairs& evidence,
+                                     std::size_t max_starts = 10) {
+  return ContradictionsOfGrowth(problem, evidence, {5.0, RadFromDeg(1.0)},
+                                max_starts);
 }
 
 // Moves a view for one edge alone: its direction, and its ratios, of which
@@ -93,6 +95,36 @@ TEST(ContradictionsOfGrowth, TheSideWithMoreEvidencePlacesAView) {
                     ViewPair{id(begin + 2), id(6)}))
         << of_false;
   }
+}
+
+// The strongest ratio is that of two false relative poses, which outvote one
+// right one at a time, and not all of them.
+TEST(ContradictionsOfGrowth, OfSeveralStartsTheOneCountsThatMostAgreesWith) {
+  RandomProblem made = MakeRandomProblem(7, AllPairs(0, 7), 5);
+  TranslationProblem& problem = made.problem;
+  const auto is_false = [&](std::size_t n) {
+    return problem.edges[n].first < 2 && problem.edges[n].second == 6;
+  };
+  EvidenceOfPairs evidence = EqualEvidence(problem, 30);
+  std::vector<std::size_t> false_edges;
+  for (std::size_t n = 0; n < problem.edges.size(); ++n) {
+    if (!is_false(n)) continue;
+    false_edges.push_back(n);
+    evidence[ViewsOf(problem, problem.edges[n])] = 40;
+  }
+  MoveFor(false_edges, 6, made.centers[6] + Vec3(6, -5, 4), &made);
+  for (RatioMeasurement& ratio : problem.ratios) {
+    if (is_false(ratio.reference) && is_false(ratio.target)) {
+      ratio.log10_nfa = -60;
+    }
+  }
+  const auto id = [&](std::size_t view) { return problem.views[view]; };
+  EXPECT_THAT(Contradictions(problem, evidence, 1),
+              ElementsAre(ViewPair{id(2), id(6)}, ViewPair{id(3), id(6)},
+                          ViewPair{id(4), id(6)}, ViewPair{id(5), id(6)}));
+  EXPECT_THAT(Contradictions(problem, evidence, 10),
+              ElementsAre(ViewPair{id(0), id(6)}, ViewPair{id(1), id(6)}));
+  EXPECT_THAT(Contradictions(problem, evidence, 0), IsEmpty());
 }
 
 // As of two places that look alike, one behind the other.

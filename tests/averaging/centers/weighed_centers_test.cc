@@ -294,5 +294,35 @@ TEST(WeighedCenters, AFacadeOfWindowsThatLookAlikeIsNotBent) {
   EXPECT_LT(EvaluatePoses(*scene, truth).position.max, 0.3);  // of 17 m
 }
 
+// Measured in renderings of other ones, along which the cameras are nearly on a
+// line: a window that is taken for the next makes a baseline too short, or
+// turns it round.
+struct WindowWalk {
+  const char* file;
+  int num_views;
+};
+class WalkAlongWindows : public ::testing::TestWithParam<WindowWalk> {};
+
+TEST_P(WalkAlongWindows, IsAsLongAsItWas) {
+  auto scene = ReadSceneJson(std::string(LOWLAP_AVERAGING_TEST_DATA) + "/" +
+                             GetParam().file);
+  ASSERT_TRUE(scene) << scene.error().ToString();
+  const GroundTruth truth = GroundTruthFromScene(*scene);
+  const auto summary = SolveScenePoses(&*scene, PoseOptions(), RunContext());
+  ASSERT_TRUE(summary);
+  EXPECT_EQ(summary->num_placed, GetParam().num_views);
+  // Of a walk of 11 to 25 m.
+  EXPECT_LT(EvaluatePoses(*scene, truth).position.max, 0.1);
+}
+
+// In the first, of solutions that agree with directions of as much evidence,
+// the ratios tell. In the second, all centres solved at once are so wrong that
+// no direction stands out. In the third, the strongest ratio is a false one.
+INSTANTIATE_TEST_SUITE_P(Measured, WalkAlongWindows,
+                         ::testing::Values(WindowWalk{"walk_of_six.json", 6},
+                                           WindowWalk{"walk_of_four.json", 4},
+                                           WindowWalk{"walk_of_seven.json",
+                                                      7}));
+
 }  // namespace
 }  // namespace lowlap

@@ -47,18 +47,26 @@ class Growth {
     }
   }
 
-  std::vector<ViewPair> Run() && {
-    for (const RatioMeasurement& seed : StrongestFirst()) {
-      const DirectionEdge& edge1 = problem_.edges[seed.reference];
-      const DirectionEdge& edge2 = problem_.edges[seed.target];
-      if (IsUsed(edge1.first) || IsUsed(edge1.second) || IsUsed(edge2.first) ||
-          IsUsed(edge2.second)) {
-        continue;
-      }
-      Begin(seed);
-      while (PlaceNext()) continue;
-      ++now_.num_components;
+  void Run(const std::vector<RatioMeasurement>& seeds, std::size_t begin) {
+    BeginIfNew(seeds[begin]);
+    for (const RatioMeasurement& seed : seeds) BeginIfNew(seed);
+  }
+
+  /// Of the relative poses that agree with the centres.
+  double EvidenceFor() const {
+    double sum = 0;
+    for (std::size_t n = 0; n < problem_.edges.size(); ++n) {
+      if (IsBorneOut(n)) sum += evidence_[n];
     }
+    return sum;
+  }
+
+  bool Agrees(const RatioMeasurement& ratio) const {
+    return IsBorneOut(ratio.reference) && IsBorneOut(ratio.target) &&
+           RatioAgrees(ratio);
+  }
+
+  std::vector<ViewPair> Contradictions() const {
     std::vector<ViewPair> result;
     for (std::size_t n = 0; n < problem_.edges.size(); ++n) {
       if (contradicts_[n]) {
@@ -79,17 +87,23 @@ class Growth {
                                               : problem_.edges[edge].first;
   }
 
-  std::vector<RatioMeasurement> StrongestFirst() const {
-    std::vector<RatioMeasurement> ratios = problem_.ratios;
-    const auto strength = [&](const RatioMeasurement& ratio) {
-      return std::min({evidence_[ratio.reference], evidence_[ratio.target],
-                       EvidenceOfNfa(ratio.log10_nfa)});
-    };
-    std::stable_sort(ratios.begin(), ratios.end(),
-                     [&](const RatioMeasurement& a, const RatioMeasurement& b) {
-                       return strength(a) > strength(b);
-                     });
-    return ratios;
+  // In one part, and not contradicted there.
+  bool IsBorneOut(std::size_t n) const {
+    const DirectionEdge& edge = problem_.edges[n];
+    return IsUsed(edge.first) && !contradicts_[n] &&
+           now_.component[edge.first] == now_.component[edge.second];
+  }
+
+  void BeginIfNew(const RatioMeasurement& seed) {
+    const DirectionEdge& edge1 = problem_.edges[seed.reference];
+    const DirectionEdge& edge2 = problem_.edges[seed.target];
+    if (IsUsed(edge1.first) || IsUsed(edge1.second) || IsUsed(edge2.first) ||
+        IsUsed(edge2.second)) {
+      return;
+    }
+    Begin(seed);
+    while (PlaceNext()) continue;
+    ++now_.num_components;
   }
 
   void Begin(const RatioMeasurement& seed) {
@@ -228,12 +242,15 @@ class Growth {
           !DirectionAgrees(other)) {
         continue;
       }
-      const double error = LogRatioError(problem_, now_, ratio);
       const double evidence = EvidenceOfNfa(ratio.log10_nfa);
-      balance +=
-          error <= limits_.DirectionRad(0, ratio.stddev) ? evidence : -evidence;
+      balance += RatioAgrees(ratio) ? evidence : -evidence;
     }
     return balance >= 0;
+  }
+
+  bool RatioAgrees(const RatioMeasurement& ratio) const {
+    return LogRatioError(problem_, now_, ratio) <=
+           limits_.DirectionRad(0, ratio.stddev);
   }
 
   const TranslationProblem& problem_;
@@ -248,12 +265,42 @@ class Growth {
   TranslationSolution now_;
 };
 
+std::vector<RatioMeasurement> StrongestFirst(const TranslationProblem& problem,
+                                             const EvidenceOfPairs& evidence) {
+  const auto evidence_of = [&](std::size_t edge) {
+    return evidence.at(ViewsOf(problem, problem.edges[edge]));
+  };
+  std::vector<std::pair<double, std::size_t>> order;
+  for (std::size_t n = 0; n < problem.ratios.size(); ++n) {
+    const RatioMeasurement& ratio = problem.ratios[n];
+    order.emplace_back(
+        -std::min({evidence_of(ratio.reference), evidence_of(ratio.target),
+                   EvidenceOfNfa(ratio.log10_nfa)}),
+        n);
+  }
+  std::sort(order.begin(), order.end());
+  std::vector<RatioMeasurement> ratios;
+  for (const auto& [strength, n] : order) ratios.push_back(problem.ratios[n]);
+  return ratios;
+}
+
 }  // namespace
 
 std::vector<ViewPair> ContradictionsOfGrowth(const TranslationProblem& problem,
                                              const EvidenceOfPairs& evidence,
-                                             const ErrorLimits& limits) {
-  return Growth(problem, evidence, limits).Run();
+                                             const ErrorLimits& limits,
+                                             std::size_t max_starts) {
+  const std::vector<RatioMeasurement> seeds = StrongestFirst(problem, evidence);
+  std::vector<ViewPair> contradictions;
+  double most = 0;
+  for (std::size_t n = 0; n < std::min(seeds.size(), max_starts); ++n) {
+    Growth growth(problem, evidence, limits);
+    growth.Run(seeds, n);
+    if (growth.EvidenceFor() <= most) continue;
+    most = growth.EvidenceFor();
+    contradictions = growth.Contradictions();
+  }
+  return contradictions;
 }
 
 }  // namespace lowlap

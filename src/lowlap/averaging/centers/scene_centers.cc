@@ -6,6 +6,7 @@
 
 #include "lowlap/averaging/centers/internal/contests.h"
 #include "lowlap/averaging/centers/internal/contradicted_ratio.h"
+#include "lowlap/averaging/centers/internal/length_balance.h"
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/internal/problem_errors.h"
 #include "lowlap/averaging/strategies/internal/graph_scales.h"
@@ -142,7 +143,12 @@ class CenterSearch {
   // eroded round by round.
   std::vector<OutlierEdge> OutliersOf(const TranslationSolution& solution) {
     const auto residuals = DirectionResiduals(now_.problem, solution);
-    if (now_.sigma_rad == 0) now_.sigma_rad = TypicalAngle(residuals);
+    if (now_.sigma_rad == 0) {
+      // Where false directions are the rule, they are no measure of the others.
+      now_.sigma_rad =
+          std::min(TypicalAngle(residuals),
+                   RadFromDeg(kLittleOfDirectionsDeg) / options_.outlier_reach);
+    }
     std::vector<OutlierEdge> outliers;
     for (const DirectionResidual& residual : residuals) {
       if (IsOutlier(residual)) {
@@ -247,9 +253,7 @@ class CenterSearch {
     return without_.size() < num_without;
   }
 
-  // Of the relative poses that it was done without: the evidence of the ratios
-  // to those in use that agree with the centres, less that of the others. An
-  // error of a length is one of a direction, along it and not across.
+  // What the ratios to relative poses in use say of the length of each.
   std::map<ViewPair, double> RatioBalance(
       const TranslationProblem& with_all) const {
     std::set<ViewPair> in_use;
@@ -258,17 +262,15 @@ class CenterSearch {
         in_use.insert(ViewsOf(now_.problem, edge));
       }
     }
+    std::vector<char> is_believed;
+    for (const DirectionEdge& edge : with_all.edges) {
+      is_believed.push_back(in_use.count(ViewsOf(with_all, edge)) > 0);
+    }
+    const std::vector<double> of_edges =
+        LengthBalance(with_all, now_.solution, LimitsOf(options_), is_believed);
     std::map<ViewPair, double> balance;
-    for (const RatioMeasurement& ratio : with_all.ratios) {
-      const ViewPair pair1 = ViewsOf(with_all, with_all.edges[ratio.reference]);
-      const ViewPair pair2 = ViewsOf(with_all, with_all.edges[ratio.target]);
-      const bool is_used1 = in_use.count(pair1) > 0;
-      if (is_used1 == (in_use.count(pair2) > 0)) continue;
-      const double error = LogRatioError(with_all, now_.solution, ratio);
-      const double evidence = EvidenceOfNfa(ratio.log10_nfa);
-      balance[is_used1 ? pair2 : pair1] +=
-          error <= LimitsOf(options_).DirectionRad(0, ratio.stddev) ? evidence
-                                                                    : -evidence;
+    for (std::size_t n = 0; n < of_edges.size(); ++n) {
+      balance[ViewsOf(with_all, with_all.edges[n])] = of_edges[n];
     }
     return balance;
   }

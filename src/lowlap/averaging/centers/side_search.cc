@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "lowlap/averaging/centers/internal/grown_centers.h"
+#include "lowlap/averaging/centers/internal/length_balance.h"
 #include "lowlap/averaging/centers/internal/scene_contests.h"
 #include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/internal/problem_errors.h"
@@ -70,6 +71,7 @@ class SideSearch {
       }
     }
     EraseBorneOut(&side);
+    AddContradictedLengths(&side);
     return side;
   }
 
@@ -84,6 +86,17 @@ class SideSearch {
                                               edge.stddev_rad)) {
         side->against.erase(ViewsOf(little_turned_, edge));
       }
+    }
+  }
+
+  void AddContradictedLengths(Side* side) const {
+    const SceneCenters& centers = side->centers;
+    for (const std::size_t edge :
+         ContradictedLengths(centers.problem, centers.solution,
+                             LimitsOf(options_), centers.sigma_rad)) {
+      const ViewPair pair =
+          ViewsOf(centers.problem, centers.problem.edges[edge]);
+      side->against[pair] = EvidenceOf(pair);
     }
   }
 
@@ -151,8 +164,8 @@ class SideSearch {
       evidence[pair] = EvidenceOf(pair);
     }
     std::vector<ViewPair> without;
-    for (const ViewPair& pair :
-         ContradictionsOfGrowth(problem, evidence, LimitsOf(options_))) {
+    for (const ViewPair& pair : ContradictionsOfGrowth(
+             problem, evidence, LimitsOf(options_), MaxTried())) {
       if (!IsLeftOutBefore(pair)) without.push_back(pair);
     }
     LOWLAP_ASSIGN_OR_RETURN(std::optional<Side> side, SideWithout(without));
@@ -286,8 +299,10 @@ class SideSearch {
 }  // namespace
 
 bool Side::IsContradicted(const SceneRotations& rotations) const {
-  return centers.outlier_edges.size() > rotations.outliers.size() ||
-         !centers.kept_outliers.empty();
+  const std::vector<ViewPair> turned = PairsOf(rotations.outliers);
+  return std::any_of(against.begin(), against.end(), [&](const auto& entry) {
+    return std::find(turned.begin(), turned.end(), entry.first) == turned.end();
+  });
 }
 
 double Side::EvidenceAgainst() const {

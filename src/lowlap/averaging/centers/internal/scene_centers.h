@@ -16,7 +16,9 @@ struct SceneCenters {
   std::vector<OutlierEdge> kept_outliers;
   std::vector<ViewTriplet> left_out_ratios;
   std::set<ViewTriplet> weak_ratios;
-  /// Robust deviation of the directions from the centres; 0 without any.
+  /// Robust deviation of the directions from the centres of the first solution,
+  /// as far as `outlier_reach` of it are little (kLittleOfDirectionsDeg); 0
+  /// without any.
   double sigma_rad = 0;
 
   std::set<ViewId> PlacedViews() const;

@@ -7,9 +7,10 @@
 
 namespace lowlap {
 
-/// Centres, and the relative poses that contradict them, in use or not. What is
-/// left out for a little turn alone (no more than directions may be off) does
-/// not, if its direction agrees.
+/// Centres, and the relative poses that contradict them, in use or not, by
+/// their directions or their lengths (ContradictedLengths). What is left out
+/// for a little turn alone (no more than directions may be off) does not, if
+/// its direction agrees.
 struct Side {
   SceneCenters centers;
   EvidenceOfPairs against;
