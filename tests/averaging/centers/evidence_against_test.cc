@@ -5,6 +5,7 @@
 #include "averaging/true_ratios.h"
 #include "lowlap/averaging/centers/internal/contests.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
@@ -40,6 +41,18 @@ TEST(EvidenceAgainstPoses, WhatIsOffFurtherThanADirectionMayBe) {
             EvidenceOfNfa(-25));
   EXPECT_EQ(EvidenceAgainstPoses(SceneWithOneTurned(180), options),
             EvidenceOfNfa(-25));
+}
+
+TEST(EvidenceAgainstPoses, WhatIsTooShortByItsRatios) {
+  Scene scene = SceneWithOneTurned(0);
+  const auto error = [](ViewId a, ViewId b) {
+    return OrderedPair(a, b) == ViewPair{1, 3} ? -0.5 : 0.0;
+  };
+  for (ScaleRatio& ratio : scene.scale_ratios) {
+    const ViewTriplet& v = ratio.views;
+    ratio.log_ratio += error(v.middle, v.last) - error(v.first, v.middle);
+  }
+  EXPECT_EQ(EvidenceAgainstPoses(scene, PoseOptions()), EvidenceOfNfa(-25));
 }
 
 TEST(EvidenceAgainstPoses, AViewWithoutAPoseContradictsNothing) {

@@ -47,8 +47,10 @@ class Growth {
     }
   }
 
-  void Run(const std::vector<RatioMeasurement>& seeds, std::size_t begin) {
-    BeginIfNew(seeds[begin]);
+  /// Begins with `first`, and further parts with the first of `seeds` that can.
+  void Run(const RatioMeasurement& first,
+           const std::vector<RatioMeasurement>& seeds) {
+    BeginIfNew(first);
     for (const RatioMeasurement& seed : seeds) BeginIfNew(seed);
   }
 
@@ -59,11 +61,6 @@ class Growth {
       if (IsBorneOut(n)) sum += evidence_[n];
     }
     return sum;
-  }
-
-  bool Agrees(const RatioMeasurement& ratio) const {
-    return IsBorneOut(ratio.reference) && IsBorneOut(ratio.target) &&
-           RatioAgrees(ratio);
   }
 
   std::vector<ViewPair> Contradictions() const {
@@ -295,7 +292,7 @@ std::vector<ViewPair> ContradictionsOfGrowth(const TranslationProblem& problem,
   double most = 0;
   for (std::size_t n = 0; n < std::min(seeds.size(), max_starts); ++n) {
     Growth growth(problem, evidence, limits);
-    growth.Run(seeds, n);
+    growth.Run(seeds[n], seeds);
     if (growth.EvidenceFor() <= most) continue;
     most = growth.EvidenceFor();
     contradictions = growth.Contradictions();
