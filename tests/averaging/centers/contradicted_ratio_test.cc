@@ -114,5 +114,52 @@ TEST(ContradictedRatio, IsKeptIfAViewWouldBeLost) {
   EXPECT_FALSE(without->has_value());
 }
 
+// Fails where it is asked.
+class MayNotBeAsked : public TranslationAverager {
+ public:
+  std::string Name() const override { return "may_not_be_asked"; }
+  Result<TranslationSolution> Solve(const TranslationProblem&,
+                                    const RunContext&) const override {
+    return MakeError(ErrorCode::kNumerical, "asked");
+  }
+};
+
+TEST(ContradictedRatio, IsNotSoughtAmongRatiosThatOthersOutvote) {
+  TranslationProblem problem;
+  problem.views = {0, 1, 2, 3};
+  problem.edges.resize(3);
+  TranslationSolution solution;
+  solution.component.assign(4, 0);
+  solution.center_in_world = {Vec3::Zero(), Vec3::UnitX(), Vec3::UnitY(),
+                              Vec3::UnitZ()};
+  solution.num_components = 1;
+  for (std::size_t e = 0; e < 3; ++e) {
+    problem.edges[e].first = 0;
+    problem.edges[e].second = e + 1;
+    problem.edges[e].direction_in_world = solution.center_in_world[e + 1];
+    problem.edges[e].stddev_rad = 0.01;
+  }
+  const auto add_ratio = [&](std::size_t reference, std::size_t target) {
+    RatioMeasurement ratio;
+    ratio.reference = reference;
+    ratio.target = target;
+    ratio.log_ratio = 3;  // not that of the solution
+    ratio.stddev = 0.01;
+    problem.ratios.push_back(ratio);
+  };
+  const auto solve = [&] {
+    return SolveWithoutContradictedRatio(
+        problem, MayNotBeAsked(), solution,
+        [](const TranslationSolution&) { return true; }, RunContext());
+  };
+  add_ratio(0, 1);
+  add_ratio(1, 2);
+  EXPECT_FALSE(solve()) << "each is the only one of its edges";
+  add_ratio(0, 2);
+  const auto without = solve();
+  ASSERT_TRUE(without) << without.error().ToString();
+  EXPECT_FALSE(without->has_value());
+}
+
 }  // namespace
 }  // namespace lowlap

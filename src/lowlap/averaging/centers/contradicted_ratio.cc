@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <utility>
 #include <vector>
 
 #include "lowlap/averaging/internal/problem_errors.h"
+#include "lowlap/core/internal/graph_blocks.h"
 #include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
@@ -36,6 +38,21 @@ double MinusLogNfa(const RatioMeasurement& ratio) {
   return std::log(10) * std::max(0.0, -ratio.log10_nfa);
 }
 
+// Pairs of edges, the lesser first, which one ratio alone ties to each other.
+std::set<std::pair<std::size_t, std::size_t>> SoleTies(
+    const TranslationProblem& problem) {
+  std::vector<std::vector<std::size_t>> tied(problem.edges.size());
+  for (const RatioMeasurement& ratio : problem.ratios) {
+    tied[ratio.reference].push_back(ratio.target);
+    tied[ratio.target].push_back(ratio.reference);
+  }
+  std::set<std::pair<std::size_t, std::size_t>> ties;
+  for (const std::vector<std::size_t>& block : FindBlocks(tied)) {
+    if (block.size() == 2) ties.insert(std::minmax(block[0], block[1]));
+  }
+  return ties;
+}
+
 }  // namespace
 
 Result<std::optional<SolutionWithoutRatio>> SolveWithoutContradictedRatio(
@@ -45,11 +62,13 @@ Result<std::optional<SolutionWithoutRatio>> SolveWithoutContradictedRatio(
     const RunContext& context) {
   constexpr std::size_t kMaxTried = 50;
   double least_cost = Cost(problem, solution);
+  const auto sole_ties = SoleTies(problem);
   std::vector<std::size_t> candidates;
   for (std::size_t r = 0; r < problem.ratios.size(); ++r) {
-    const DirectionEdge& edge = problem.edges[problem.ratios[r].reference];
-    if (solution.component[edge.first] == 0 &&
-        MinusLogNfa(problem.ratios[r]) < least_cost) {
+    const RatioMeasurement& ratio = problem.ratios[r];
+    if (solution.component[problem.edges[ratio.reference].first] == 0 &&
+        sole_ties.count(std::minmax(ratio.reference, ratio.target)) > 0 &&
+        MinusLogNfa(ratio) < least_cost) {
       candidates.push_back(r);
     }
   }

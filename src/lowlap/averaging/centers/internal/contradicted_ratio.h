@@ -24,8 +24,9 @@ struct SolutionWithoutRatio {
 ///   -log NFA    of the ratio that it does not use.
 /// Of the solutions without one ratio that `agrees` accepts, that place as many
 /// views in component 0 and cost less than `solution`, the cheapest; nullopt if
-/// there is none. At most 50 ratios are tried, least evidence first. Errors:
-/// those of the strategy.
+/// there is none. Tried are ratios without which two groups have no scale in
+/// common (others averaging itself outvotes), at most 50, least evidence first.
+/// Errors: those of the strategy.
 Result<std::optional<SolutionWithoutRatio>> SolveWithoutContradictedRatio(
     const TranslationProblem& problem, const TranslationAverager& averager,
     const TranslationSolution& solution,
