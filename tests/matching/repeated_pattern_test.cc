@@ -48,6 +48,22 @@ TEST(RepeatedPattern, HoldsTheCopiesAndFewOfTheRest) {
   }
 }
 
+// Only so many points are looked at for translations.
+TEST(RepeatedPattern, HoldsCopiesOfSmallThings) {
+  PatternView view = EmptyView();
+  Random random(9);
+  constexpr int kLargeMotif = 30;
+  AddPattern(kColumns, kRows, kLargeMotif, 0.3, ObliqueCamera(), &random,
+             &view);
+  AddOthers(2000 - kColumns * kRows * kLargeMotif, &random, &view);
+  const int num_large = static_cast<int>(view.keypoints.size());
+  AddPattern(kColumns, kRows, kMotif, 0.1, ObliqueCamera(), &random, &view);
+  const int num_all = static_cast<int>(view.keypoints.size());
+  for (int n = num_large; n < num_all; ++n) view.keypoints[n].scale_px = 1;
+  const RepeatedPattern pattern = RepeatedPattern::Find(view.View());
+  EXPECT_GT(CountIn(pattern, num_large, num_all), kInPattern / 2);
+}
+
 TEST(RepeatedPattern, KnowsWhichPlacesAreCopies) {
   const PatternView view = TiledView(60, 1);
   const RepeatedPattern pattern = RepeatedPattern::Find(view.View());

@@ -32,16 +32,6 @@ struct PointCandidate {
   std::int32_t distance2;
 };
 
-std::int32_t SquaredDistance(const PointDescriptor& a,
-                             const PointDescriptor& b) {
-  std::int32_t sum = 0;
-  for (std::size_t k = 0; k < a.size(); ++k) {
-    const std::int32_t difference = static_cast<std::int32_t>(a[k]) - b[k];
-    sum += difference * difference;
-  }
-  return sum;
-}
-
 // The view's points by longitude, without those that have none. `axes` has
 // the baseline as its third row.
 std::vector<PolarPoint> ToPolar(const PointView& view, const Mat3& axes) {

@@ -7,6 +7,17 @@
 
 namespace lowlap {
 
+/// Of the Euclidean distance.
+inline std::int32_t SquaredDistance(const PointDescriptor& a,
+                                    const PointDescriptor& b) {
+  std::int32_t sum = 0;
+  for (std::size_t k = 0; k < a.size(); ++k) {
+    const std::int32_t difference = static_cast<std::int32_t>(a[k]) - b[k];
+    sum += difference * difference;
+  }
+  return sum;
+}
+
 /// The nearest and the second nearest descriptor of a database, by squared
 /// Euclidean distance. Equal distances: the lowest index.
 struct NearestTwo {

@@ -15,9 +15,6 @@ constexpr int kColumns = 12;  // parts of the image
 constexpr int kRows = 9;
 constexpr std::size_t kMaxPartners = 8;
 constexpr double kMaxDistanceRatio = 1.5;
-/// From one copy to the next the distance changes a little. (The orientation of
-/// a point that looks the same in several is one of them.)
-constexpr double kMaxScaleFactor = 1.6;
 /// A place is known to this many scales of its keypoint.
 constexpr double kToleranceScales = 1.5;
 
@@ -30,17 +27,6 @@ struct Candidate {
            std::tie(other.distance2, other.partner);
   }
 };
-
-bool AreAlike(const PointView& view, int first, int second) {
-  const Keypoint& a = view.keypoints[first];
-  const Keypoint& b = view.keypoints[second];
-  const double apart_px =
-      (view.features.points[first] - view.features.points[second]).norm() *
-      view.features.focal_px;
-  const double larger = std::max(a.scale_px, b.scale_px);
-  return apart_px > kWindowScales * larger &&
-         larger < kMaxScaleFactor * std::min(a.scale_px, b.scale_px);
-}
 
 /// Members of `points` by the part of the image that they lie in.
 std::vector<std::vector<int>> Parts(const PointView& view,
@@ -66,6 +52,22 @@ std::vector<std::vector<int>> Parts(const PointView& view,
 
 }  // namespace
 
+bool MayBeCopies(const PointView& view, int first, int second) {
+  const Keypoint& a = view.keypoints[first];
+  const Keypoint& b = view.keypoints[second];
+  const double apart_px =
+      (view.features.points[first] - view.features.points[second]).norm() *
+      view.features.focal_px;
+  const double larger = std::max(a.scale_px, b.scale_px);
+  return apart_px > kWindowScales * larger &&
+         larger < kMaxScaleFactor * std::min(a.scale_px, b.scale_px);
+}
+
+double PlaceTolerance(const PointView& view, int point) {
+  return kToleranceScales * view.keypoints[point].scale_px /
+         view.features.focal_px;
+}
+
 std::vector<AlikePlaces> FindAlikePlaces(const PointView& view,
                                          const std::vector<int>& points) {
   const auto descriptors_of = [&](const std::vector<int>& members) {
@@ -85,7 +87,7 @@ std::vector<AlikePlaces> FindAlikePlaces(const PointView& view,
     const auto nearest = FindNearestTwo(queries, descriptors_of(part));
     for (std::size_t n = 0; n < points.size(); ++n) {
       const int partner = part[nearest[n].index];
-      if (AreAlike(view, points[n], points[partner])) {
+      if (MayBeCopies(view, points[n], points[partner])) {
         candidates[n].push_back({nearest[n].distance2, partner});
       }
     }
@@ -105,9 +107,7 @@ std::vector<AlikePlaces> FindAlikePlaces(const PointView& view,
       places.second = points[candidate.partner];
       places.from = view.features.points[places.first];
       places.to = view.features.points[places.second];
-      places.tolerance = kToleranceScales *
-                         view.keypoints[places.second].scale_px /
-                         view.features.focal_px;
+      places.tolerance = PlaceTolerance(view, places.second);
       result.push_back(places);
     }
   }

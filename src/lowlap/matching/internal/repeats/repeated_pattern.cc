@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "lowlap/matching/internal/repeats/alike_places.h"
+#include "lowlap/matching/internal/repeats/copied_points.h"
 #include "lowlap/matching/internal/repeats/translation_search.h"
 
 namespace lowlap {
@@ -53,10 +54,11 @@ RepeatedPattern RepeatedPattern::Find(const PointView& view) {
         {pattern.focal_px_ * view.features.points[point].hnormalized(),
          view.keypoints[point].scale_px});
   }
+  pattern.has_point_ = FindCopiedPoints(view, pattern.translations_);
   for (std::size_t n = 0; n < view.keypoints.size(); ++n) {
     const Vec3& x = view.features.points[n];
-    pattern.has_point_.push_back(x.z() != 0 &&
-                                 pattern.Covers(x, view.keypoints[n].scale_px));
+    if (x.z() == 0 || pattern.has_point_[n]) continue;
+    pattern.has_point_[n] = pattern.Covers(x, view.keypoints[n].scale_px);
   }
   return pattern;
 }

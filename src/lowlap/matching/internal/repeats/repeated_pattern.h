@@ -21,12 +21,14 @@ class RepeatedPattern {
   /// that look alike, one after the other, while they are meaningful
   /// (TranslationSearch): the points that they take and those they take them
   /// to. An edge that looks alike all along is none: partners drawn at random
-  /// fit it as well. Of many points those of the largest scales are looked at.
-  /// Panoramas, and points at infinity, have no patterns.
+  /// fit it as well. Of many points those of the largest scales are looked at
+  /// for translations; all, for whether these take them to their like
+  /// (FindCopiedPoints). Panoramas, and points at infinity, have no patterns.
   static RepeatedPattern Find(const PointView& view);
 
   bool IsEmpty() const { return members_.empty(); }
-  /// Of the view that it was found in: whether the pattern covers its point.
+  /// Of the view that it was found in: whether the pattern covers its point, or
+  /// the point has a copy.
   bool HasPoint(FeatureIndex point) const {
     return !IsEmpty() && has_point_[point];
   }
