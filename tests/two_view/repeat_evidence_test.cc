@@ -4,13 +4,16 @@
 
 #include "support/matchers.h"
 #include "tests/two_view/tiled_pair.h"
+#include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
 namespace {
 
+using testing::DirectionErrorDeg;
 using testing::IsError;
 using testing::IsOk;
 using testing::kInPattern;
+using testing::RotationErrorDeg;
 using testing::TiledPair;
 
 std::optional<EvidenceBeyondRepeats> Evidence(const TwoViewInput& input,
@@ -66,6 +69,36 @@ TEST(EvidenceBeyondRepeats, IsNotAskedForWhereNoMatchRepeats) {
   EXPECT_FALSE(Evidence(input, pair.TruePose()));
   input.repeats1 = nullptr;
   EXPECT_FALSE(Evidence(input, pair.TruePose()));
+}
+
+// Each tile with its neighbour: they agree on a motion, too, and are more.
+TEST(EstimateRelativePose, HearsWhatDoesNotRepeat) {
+  constexpr int kOthers = 100;
+  const TiledPair pair(kOthers);
+  TwoViewInput input = pair.Input();
+  input.point_matches.clear();
+  for (FeatureIndex n = 0; n < kInPattern + kOthers; ++n) {
+    const bool is_in_pattern = n < kInPattern;
+    if (is_in_pattern && n % testing::kColumns + 1 == testing::kColumns) {
+      continue;
+    }
+    input.point_matches.push_back({n, is_in_pattern ? n + 1 : n});
+  }
+  const RigidTransform truth = pair.cam2_from_cam1;
+  const auto heard = EstimateRelativePose(input, {}, 1);
+  ASSERT_THAT(heard, IsOk());
+  EXPECT_LT(RotationErrorDeg(heard->pose.rotation, truth.rotation), 0.2);
+  EXPECT_LT(
+      DirectionErrorDeg(heard->pose.direction, truth.translation.normalized()),
+      1);
+  EXPECT_LT(heard->log10_nfa_with_repeats, 2 * heard->pose.log10_nfa);
+
+  input.repeats1 = input.repeats2 = nullptr;
+  const auto deceived = EstimateRelativePose(input, {}, 1);
+  ASSERT_THAT(deceived, IsOk());
+  EXPECT_GT(DirectionErrorDeg(deceived->pose.direction,
+                              truth.translation.normalized()),
+            5);
 }
 
 // A wall alone has two motions: neither counts for its pattern.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -247,6 +248,37 @@ Result<TwoViewResult> EstimateFrom(const TwoViewInput& input,
   return result;
 }
 
+std::size_t CountCommon(const std::vector<FeatureMatch>& a,
+                        const std::vector<FeatureMatch>& b) {
+  const std::set<FeatureMatch> of_a(a.begin(), a.end());
+  return static_cast<std::size_t>(std::count_if(
+      b.begin(), b.end(),
+      [&](const FeatureMatch& match) { return of_a.count(match) > 0; }));
+}
+
+// Many copies may agree on a motion of their own. If what does not repeat
+// speaks more for another one, that is the result, and `matches` are what does
+// not repeat.
+void HearWhatDoesNotRepeat(const TwoViewInput& input,
+                           const TwoViewOptions& options, Random& random,
+                           ShuffledMatches* matches, TwoViewResult* result) {
+  const auto others = MatchesBeyondRepeats(input, *matches);
+  if (!others) return;
+  ShuffledMatches unrepeated = SomeOf(*matches, *others);
+  auto other = EstimateFrom(input, unrepeated, options, random);
+  if (!other) return;
+  const RelativePose& pose = other->pose;
+  if (2 * CountCommon(pose.point_inliers, result->pose.point_inliers) >=
+          pose.point_inliers.size() ||
+      pose.log10_nfa >=
+          EvidenceOfSome(input, *matches, *others, result->pose, options)) {
+    return;
+  }
+  other->log10_nfa_with_repeats = result->log10_nfa_with_repeats;
+  *result = *std::move(other);
+  *matches = std::move(unrepeated);
+}
+
 }  // namespace
 
 Status TwoViewOptions::Validate() const {
@@ -295,6 +327,10 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
     if (others.empty()) break;
     matches = SomeOf(matches, TheRest(others, matches.pairs.size()));
     result = EstimateFrom(input, matches, options, random);
+  }
+  if (result) {
+    result->log10_nfa_with_repeats = result->pose.log10_nfa;
+    HearWhatDoesNotRepeat(input, options, random, &matches, &*result);
   }
   if (result && result->HasDirection()) {
     result->scattered_log10_nfa =
