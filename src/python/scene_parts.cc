@@ -159,7 +159,7 @@ void BindSceneParts(py::module_& module) {
             return PoseWeaknessName(*pose.weakness);
           },
           "What speaks against the pose though its matches bear it out:\n"
-          "\"matches_side_by_side\", \"surroundings\" or None.");
+          "\"matches_side_by_side\", \"surroundings\", \"repeats\" or None.");
 
   py::class_<Landmark>(module, "Landmark", "A point of the structure.")
       .def_readonly("position", &Landmark::position, "(3,).")

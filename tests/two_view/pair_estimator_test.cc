@@ -10,6 +10,7 @@
 #include "lowlap/two_view/internal/search/refine_relative_pose.h"
 #include "support/matchers.h"
 #include "tests/matching/pattern_view.h"
+#include "tests/two_view/tiled_pair.h"
 #include "tests/two_view/two_view_scene.h"
 
 namespace lowlap {
@@ -116,6 +117,24 @@ TEST(EstimatePair, IsWeakWhereWhatSurroundsTheMatchesDoesNotMatch) {
       scene.matches.end());
   EXPECT_EQ(weakness(true), PoseWeakness::kSurroundings);
   EXPECT_EQ(weakness(false), std::nullopt);
+}
+
+TEST(EstimatePair, IsWeakWhereNearlyAllRepeats) {
+  const auto weakness = [](int num_others) {
+    const testing::TiledPair pair(num_others);
+    ViewMeasurements first, second;
+    first.features = pair.view1.features;
+    first.repeats = pair.repeats1;
+    second.features = pair.view2.features;
+    second.repeats = pair.repeats2;
+    first.image_size_px = second.image_size_px = Vec2(1600, 1200);
+    const PairEstimate estimate =
+        EstimatePair({3, 8}, first, second, {pair.matches, {}}, {}, 1);
+    EXPECT_TRUE(estimate.pose) << estimate.reason;
+    return estimate.pose->weakness;
+  };
+  EXPECT_EQ(weakness(30), PoseWeakness::kRepeats);
+  EXPECT_EQ(weakness(300), std::nullopt);
 }
 
 TEST(EstimatePair, SaysWhyThereIsNoPose) {

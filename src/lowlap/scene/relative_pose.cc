@@ -8,6 +8,8 @@ const char* PoseWeaknessName(PoseWeakness weakness) {
       return "matches_side_by_side";
     case PoseWeakness::kSurroundings:
       return "surroundings";
+    case PoseWeakness::kRepeats:
+      return "repeats";
   }
   return "";
 }

@@ -30,9 +30,11 @@ enum class PoseWeakness {
   kMatchesSideBySide,
   /// What surrounds its matches does not match.
   kSurroundings,
+  /// Nearly all that bears it out repeats within its photographs.
+  kRepeats,
 };
 
-/// "matches_side_by_side", "surroundings".
+/// "matches_side_by_side", "surroundings", "repeats".
 const char* PoseWeaknessName(PoseWeakness weakness);
 
 /// Rotation and unit direction of a pair of views (first < second):

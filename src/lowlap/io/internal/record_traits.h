@@ -37,8 +37,6 @@ constexpr CameraModel LastOf(CameraModel) { return CameraModel::kSpherical; }
 constexpr RatioVerdict LastOf(RatioVerdict) {
   return RatioVerdict::kNoCandidates;
 }
-constexpr PoseWeakness LastOf(PoseWeakness) {
-  return PoseWeakness::kSurroundings;
-}
+constexpr PoseWeakness LastOf(PoseWeakness) { return PoseWeakness::kRepeats; }
 
 }  // namespace lowlap

@@ -126,8 +126,14 @@ std::optional<PoseWeakness> WeaknessOf(const TwoViewResult& result,
                                        const ViewMeasurements& first,
                                        const ViewMeasurements& second) {
   constexpr double kMaxLog10Chance = -3;
+  // Of a pattern some copies are missed (RepeatedPattern), and agree as well.
+  constexpr double kMinShareOfEvidence = 0.25;
   if (!(result.scattered_log10_nfa < 0)) {
     return PoseWeakness::kMatchesSideBySide;
+  }
+  if (result.pose.log10_nfa >
+      kMinShareOfEvidence * result.log10_nfa_with_repeats) {
+    return PoseWeakness::kRepeats;
   }
   // Without them, features may be those with matches only.
   const bool has_all = first.detected != nullptr && second.detected != nullptr;

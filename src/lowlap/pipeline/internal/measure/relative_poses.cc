@@ -96,6 +96,21 @@ void LogPairsWithoutParallax(const Scene& scene,
                   names + (count > kMaxNamed ? ", ..." : ""));
 }
 
+std::string Explanation(PoseWeakness weakness) {
+  switch (weakness) {
+    case PoseWeakness::kMatchesSideBySide:
+      return "only matches side by side agree with a motion, which things that "
+             "look alike do, too";
+    case PoseWeakness::kSurroundings:
+      return "what surrounds the matches does not match, as it is where things "
+             "look alike";
+    case PoseWeakness::kRepeats:
+      return "nearly all that agrees with a motion repeats within the "
+             "photographs, and would agree elsewhere, too";
+  }
+  return "";
+}
+
 // Weak poses count where nothing else joins their views with as much evidence:
 // those within one component of the other poses whose NFA is no greater are
 // dropped.
@@ -128,12 +143,8 @@ void DropWeakPoses(std::vector<PairEstimate>* estimates) {
         joined.Find(index_of_view.at(views.second))) {
       continue;
     }
-    estimate->reason =
-        estimate->pose->weakness == PoseWeakness::kMatchesSideBySide
-            ? "only matches side by side agree with a motion, which things "
-              "that look alike do, too; other relative poses join the views"
-            : "what surrounds the matches does not match, as it is where "
-              "things look alike; other relative poses join the views";
+    estimate->reason = Explanation(*estimate->pose->weakness) +
+                       "; other relative poses join the views";
     estimate->pose.reset();
   }
 }
