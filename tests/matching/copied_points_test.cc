@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/matching/pattern_view.h"
 
@@ -67,6 +68,16 @@ TEST(CopiedPoints, AreOfOneSizeAndWhereTheTranslationLeads) {
   EXPECT_FALSE(FindCopiedPoints(view.View(), {ToNextColumn()})[500]);
   view.Add(Vec3(0.102, 0, 1), Resembling(descriptor, &random), 2);
   EXPECT_TRUE(FindCopiedPoints(view.View(), {ToNextColumn()})[500]);
+}
+
+TEST(CopiedPoints, AreNoneBeyondTheHorizon) {
+  PatternView view = FrontalView(8);
+  Random random(9);
+  view.Add(Vec3(1 - std::pow(2, -53), 0.1, 1),
+           testing::RandomDescriptor(&random), 2);
+  const ConjugateTranslation away = {Vec3(0, 0.1, -1), Vec3(1, 0, 0)};
+  ASSERT_GT(away.Map(view.features.points.back())->y(), 1e12);
+  EXPECT_FALSE(FindCopiedPoints(view.View(), {away}).back());
 }
 
 TEST(CopiedPoints, AreNoneWithoutTranslationsOrRays) {

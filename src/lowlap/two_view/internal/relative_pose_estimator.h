@@ -107,12 +107,12 @@ struct TwoViewResult {
 /// visibility (positive depths) of all inliers; matches behind a
 /// camera are no inliers. log10_nfa counts chance support as these very images
 /// give it (see ScoreAgainstChance), and of a pose only what does not repeat
-/// within its photograph (see FindEvidenceBeyondRepeats). Where that speaks more
-/// for another motion, of whose inliers the first explains less than half, it
-/// is the result: one window for the next of a facade agree on a motion, too,
-/// and may be more. Two different places that look alike without that still
-/// pass: what surrounds them (Log10ChanceOfSurroundings) and further views may
-/// tell.
+/// within its photograph (see FindEvidenceBeyondRepeats). Where that speaks
+/// more for another motion, of whose inliers the first explains less than half,
+/// it is the result: one window for the next of a facade agree on a motion,
+/// too, and may be more. Two different places that look alike without that
+/// still pass: what surrounds them (Log10ChanceOfSurroundings) and further
+/// views may tell.
 ///
 /// `pose` carries rotation, direction, point inliers in the order of
 /// `point_matches`, log10_nfa, point_threshold_px and covariance; its line

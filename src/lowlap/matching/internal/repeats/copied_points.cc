@@ -32,8 +32,11 @@ class PlaceIndex {
   /// that are a band above or below.
   template <class Visit>
   void ForEachNear(const Vec3& x, double reach, const Visit& visit) const {
-    const double last = BandOf(x.y() + reach);
-    for (double band = BandOf(x.y() - reach); band <= last; ++band) {
+    if (places_.empty()) return;
+    // Translations lead far out near the vanishing line.
+    const double first = std::max(BandOf(x.y() - reach), places_.front().band);
+    const double last = std::min(BandOf(x.y() + reach), places_.back().band);
+    for (double band = first; band <= last; ++band) {
       auto place = std::lower_bound(places_.begin(), places_.end(),
                                     Place{band, x.x() - reach, 0});
       for (; place != places_.end() && place->band == band &&
