@@ -172,6 +172,11 @@ TEST(SceneBinary, WeaknessesAreKnownOnes) {
   std::string payload = Payload(bytes, "WEAK");
   ASSERT_EQ(payload, std::string("\1\1\0", 3));
   payload[1] = 2;
+  const auto scene = ParseSceneBinary(WithPayload(bytes, "WEAK", payload));
+  ASSERT_TRUE(scene);
+  EXPECT_EQ(scene->relative_poses.begin()->second.weakness,
+            PoseWeakness::kRepeats);
+  payload[1] = 3;
   EXPECT_THAT(ParseSceneBinary(WithPayload(bytes, "WEAK", payload)),
               IsError(ErrorCode::kParse, "section WEAK"));
 }
