@@ -36,6 +36,7 @@ TEST(CopiedPoints, AreThoseThatATranslationTakesToTheirLike) {
     const std::vector<bool> copied =
         FindCopiedPoints(view.View(), {ToNextColumn()});
     ASSERT_EQ(copied.size(), view.keypoints.size());
+    // Of many copies each is alike wherever it looks, and a few are missed.
     EXPECT_GT(std::count(copied.begin(), copied.begin() + kInPattern, true),
               0.8 * kInPattern);
     // Chance alone finds one in twenty where something happens to be.
@@ -46,7 +47,6 @@ TEST(CopiedPoints, AreThoseThatATranslationTakesToTheirLike) {
 
 TEST(CopiedPoints, NeedNotBeTheNearestOfThePhotograph) {
   PatternView view = FrontalView(4);
-  Random random(5);
   // Beside each copy of the first point something that looks still more alike.
   const PointDescriptor descriptor = view.descriptors[0];
   for (int n = 0; n < kColumns * kRows; ++n) {

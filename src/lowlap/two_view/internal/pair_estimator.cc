@@ -126,7 +126,9 @@ std::optional<PoseWeakness> WeaknessOf(const TwoViewResult& result,
                                        const ViewMeasurements& first,
                                        const ViewMeasurements& second) {
   constexpr double kMaxLog10Chance = -3;
-  // Of a pattern some copies are missed (RepeatedPattern), and agree as well.
+  // Of a pattern some copies are missed (RepeatedPattern), and agree as well:
+  // an eighth of the evidence for false poses of equal windows, where a third
+  // and more of it is left for right ones.
   constexpr double kMinShareOfEvidence = 0.25;
   if (!(result.scattered_log10_nfa < 0)) {
     return PoseWeakness::kMatchesSideBySide;

@@ -23,7 +23,8 @@ class PlaceIndex {
       : band_height_(kBandPx / view.features.focal_px) {
     for (std::size_t n = 0; n < view.features.points.size(); ++n) {
       const Vec3& x = view.features.points[n];
-      if (x.z() != 0) places_.push_back({BandOf(x.y()), x.x(), n});
+      if (x.z() != 0)
+        places_.push_back({BandOf(x.y()), x.x(), static_cast<int>(n)});
     }
     std::sort(places_.begin(), places_.end());
   }
@@ -52,7 +53,7 @@ class PlaceIndex {
 
   struct Place {
     double band, x;
-    std::size_t point;
+    int point;
 
     bool operator<(const Place& other) const {
       return std::tie(band, x, point) <
@@ -79,21 +80,19 @@ class CopySearch {
     const std::size_t stride =
         std::max<std::size_t>(1, view.descriptors.size() / kSampleSize);
     for (std::size_t n = 0; n < view.descriptors.size(); n += stride) {
-      sample_.push_back(n);
+      sample_.push_back(static_cast<int>(n));
     }
   }
 
-  bool HasCopy(std::size_t point) const {
+  bool HasCopy(int point) const {
     std::int32_t least_distance2 = std::numeric_limits<std::int32_t>::max();
     int num_candidates = 0;
     for (const ConjugateTranslation& translation : translations_) {
       const auto place = translation.Map(view_.features.points[point]);
       if (!place) continue;
-      const double reach =
-          kMaxScaleFactor * PlaceTolerance(view_, static_cast<int>(point));
-      index_.ForEachNear(*place, reach, [&](std::size_t other) {
-        if (!IsAt(*place, other) || !MayBeCopies(view_, static_cast<int>(point),
-                                                 static_cast<int>(other))) {
+      const double reach = kMaxScaleFactor * PlaceTolerance(view_, point);
+      index_.ForEachNear(*place, reach, [&](int other) {
+        if (!IsAt(*place, other) || !MayBeCopies(view_, point, other)) {
           return;
         }
         ++num_candidates;
@@ -107,23 +106,23 @@ class CopySearch {
   }
 
  private:
-  bool IsAt(const Vec3& place, std::size_t point) const {
+  bool IsAt(const Vec3& place, int point) const {
     return (view_.features.points[point] - place).norm() <
-           PlaceTolerance(view_, static_cast<int>(point));
+           PlaceTolerance(view_, point);
   }
 
-  bool IsBeyondChance(std::size_t point, std::int32_t distance2,
+  bool IsBeyondChance(int point, std::int32_t distance2,
                       int num_candidates) const {
     const double most_alike =
         kMaxByChance * static_cast<double>(sample_.size()) / num_candidates;
-    double num_alike = 1;  // as if the copy were in the sample
-    for (const std::size_t other : sample_) {
+    int num_alike = 1;  // as if the copy were in the sample
+    for (const int other : sample_) {
       if (num_alike >= most_alike) return false;
       if (other == point) continue;
-      num_alike += SquaredDistance(view_.descriptors[point],
-                                   view_.descriptors[other]) <= distance2
-                       ? 1
-                       : 0;
+      if (SquaredDistance(view_.descriptors[point], view_.descriptors[other]) <=
+          distance2) {
+        ++num_alike;
+      }
     }
     return num_alike < most_alike;
   }
@@ -131,7 +130,7 @@ class CopySearch {
   const PointView& view_;
   PlaceIndex index_;
   std::vector<ConjugateTranslation> translations_;  // either way
-  std::vector<std::size_t> sample_;
+  std::vector<int> sample_;
 };
 
 }  // namespace
@@ -143,7 +142,8 @@ std::vector<bool> FindCopiedPoints(
   if (translations.empty()) return has_copy;
   const CopySearch search(view, translations);
   for (std::size_t n = 0; n < has_copy.size(); ++n) {
-    has_copy[n] = view.features.points[n].z() != 0 && search.HasCopy(n);
+    has_copy[n] =
+        view.features.points[n].z() != 0 && search.HasCopy(static_cast<int>(n));
   }
   return has_copy;
 }

@@ -14,7 +14,7 @@ namespace lowlap {
 /// the translations lead and s the share of the photograph's points that look
 /// at least as much alike, the expected number of accidental copies, c s, must
 /// be below 1/20. s is measured on an even sample of 500 points. None for
-/// points at infinity. O(n log n + n t), n points and t translations.
+/// points at infinity. O(n (t log n + 500)), n points and t translations.
 std::vector<bool> FindCopiedPoints(
     const PointView& view,
     const std::vector<ConjugateTranslation>& translations);
