@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "lowlap/core/ids.h"
 #include "lowlap/geometry/types.h"
 #include "lowlap/scene/intrinsic.h"
 
@@ -30,11 +31,16 @@ struct ViewFeatures {
   /// variance in its better direction. Empty: round.
   std::vector<Vec3> point_covariances;
   std::vector<LineSegment> segments;
+  /// Those that belong to a pattern which repeats in the photograph, ascending:
+  /// where a match of one copy is right, that of the next would look as good.
+  std::vector<FeatureIndex> repeated_points;
+  std::vector<FeatureIndex> repeated_segments;
 
   friend bool operator==(const ViewFeatures& a, const ViewFeatures& b) {
     return a.points_px == b.points_px &&
            a.point_covariances == b.point_covariances &&
-           a.segments == b.segments;
+           a.segments == b.segments && a.repeated_points == b.repeated_points &&
+           a.repeated_segments == b.repeated_segments;
   }
 };
 

@@ -9,7 +9,22 @@
 namespace lowlap {
 namespace {
 
-// Where the first non-finite feature of a view stands in its flat arrays.
+Status ValidateRepeated(const std::vector<FeatureIndex>& repeated,
+                        std::size_t count, const std::string& place) {
+  for (std::size_t n = 0; n < repeated.size(); ++n) {
+    if (repeated[n] >= count) {
+      return Invalid("the view has only " + std::to_string(count) +
+                         " features of this kind",
+                     place + IndexPlace(n));
+    }
+    if (n > 0 && repeated[n] <= repeated[n - 1]) {
+      return Invalid("indices must ascend", place + IndexPlace(n));
+    }
+  }
+  return {};
+}
+
+// Where the first invalid feature of a view stands in its flat arrays.
 Status ValidateViewFeatures(const ViewFeatures& features,
                             const std::string& place) {
   for (std::size_t n = 0; n < features.points_px.size(); ++n) {
@@ -45,7 +60,11 @@ Status ValidateViewFeatures(const ViewFeatures& features,
                      place + ".segments" + IndexPlace(5 * n + 4));
     }
   }
-  return {};
+  LOWLAP_RETURN_IF_ERROR(ValidateRepeated(features.repeated_points,
+                                          features.points_px.size(),
+                                          place + ".repeated_points"));
+  return ValidateRepeated(features.repeated_segments, features.segments.size(),
+                          place + ".repeated_segments");
 }
 
 Status ValidateMatches(const std::vector<FeatureMatch>& matches,

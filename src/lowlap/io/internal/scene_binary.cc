@@ -33,7 +33,10 @@ std::vector<std::string_view> SectionsOf(std::uint32_t version) {
   if (version == 3) sections.emplace_back("RATD");
   if (version >= 4) sections.emplace_back("GIVN");
   if (version >= 5) sections.emplace_back("CCOV");
-  if (version >= 6) sections.emplace_back("WEAK");
+  if (version >= 6) {
+    sections.emplace_back("WEAK");
+    sections.emplace_back("REPT");
+  }
   return sections;
 }
 
@@ -85,6 +88,12 @@ void TransferWeaknesses(BinaryRecord<Bytes>& record, SceneType& scene) {
   }
 }
 
+// One for each view of FEAT, in their order.
+template <class Bytes, class SceneType>
+void TransferRepeated(BinaryRecord<Bytes>& record, SceneType& scene) {
+  for (auto& entry : scene.features) kVisitRepeated(record, entry.second);
+}
+
 template <class Bytes, class SceneType>
 void TransferSection(std::string_view tag, Bytes& bytes, SceneType& scene) {
   BinaryRecord record(bytes);
@@ -120,6 +129,8 @@ void TransferSection(std::string_view tag, Bytes& bytes, SceneType& scene) {
     TransferCenterCovariances(record, scene);
   } else if (tag == "WEAK") {
     TransferWeaknesses(record, scene);
+  } else if (tag == "REPT") {
+    TransferRepeated(record, scene);
   }
 }
 

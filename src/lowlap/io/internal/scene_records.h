@@ -30,6 +30,13 @@ inline constexpr auto kVisitCenterCovariance = [](auto& record,
   record.Member("covariance", covariance);
 };
 
+inline constexpr auto kVisitRepeated = [](auto& record, auto& features) {
+  record.Flat("repeated_points", features.repeated_points, VisitItem(),
+              Presence::kMayBeMissing);
+  record.Flat("repeated_segments", features.repeated_segments, VisitItem(),
+              Presence::kMayBeMissing);
+};
+
 inline constexpr auto kVisitFeatures = [](auto& record, auto& features) {
   record.Flat("points", features.points_px, VisitItem());
   record.Flat("point_covariances", features.point_covariances, VisitItem(),
@@ -39,6 +46,8 @@ inline constexpr auto kVisitFeatures = [](auto& record, auto& features) {
     flat.Item(segment.end_px);
     flat.Item(segment.stddev_px);
   });
+  // A section of its own in the binary form.
+  if (std::decay_t<decltype(record)>::kIsText) kVisitRepeated(record, features);
 };
 
 inline constexpr auto kVisitAlternative = [](auto& record, auto& motion) {

@@ -36,6 +36,15 @@ class Renumbering {
     features->resize(kept);
   }
 
+  /// Of a list of indices those that are kept, renumbered.
+  void KeepKnown(std::vector<FeatureIndex>* indices) const {
+    std::vector<FeatureIndex> kept;
+    for (const FeatureIndex index : *indices) {
+      if (new_index_[index] != kInvalidId) kept.push_back(new_index_[index]);
+    }
+    *indices = std::move(kept);
+  }
+
   void Apply(FeatureIndex* index) const {
     if (*index < new_index_.size()) *index = new_index_[*index];
   }
@@ -102,7 +111,9 @@ void KeepMatchedFeatures(Scene* scene) {
     segments.at(view).Number();
     points.at(view).Compact(&features.points_px);
     points.at(view).Compact(&features.point_covariances);
+    points.at(view).KeepKnown(&features.repeated_points);
     segments.at(view).Compact(&features.segments);
+    segments.at(view).KeepKnown(&features.repeated_segments);
   }
   VisitPointRefs(scene, [&](ViewId view, FeatureIndex* index) {
     if (points.count(view) > 0) points.at(view).Apply(index);

@@ -51,7 +51,8 @@ template <class Outcome, class Test>
 Result<std::vector<Result<Outcome>>> TestOnce(
     const SceneFeatures& features, const std::vector<ViewTriplet>& triplets,
     const EvidenceKinds& kinds, int num_tests, const RunContext& context,
-    const char* stage, const Test& test) {
+    const char* stage, const Test& test,
+    TripletContent content = TripletContent::kAll) {
   const std::vector<std::size_t> order = LargestFirst(features.scene, triplets);
   std::vector<Status> made(triplets.size());
   std::vector<Result<Outcome>> results(triplets.size());
@@ -61,7 +62,8 @@ Result<std::vector<Result<Outcome>>> TestOnce(
         Result<Outcome>& result = results[order[n]];
         RatioOf(*result).views = views;
         if (!features.HasAll(views)) return;
-        const Result<TripletView> triplet = MakeTripletView(features, views);
+        const Result<TripletView> triplet =
+            MakeTripletView(features, views, content);
         if (!triplet) {
           made[order[n]] = tl::unexpected<Error>(triplet.error());
           return;

@@ -1,6 +1,7 @@
 #include "lowlap/matching/internal/repeats/repeated_pattern.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "lowlap/matching/internal/repeats/alike_places.h"
 #include "lowlap/matching/internal/repeats/copied_points.h"
@@ -72,6 +73,13 @@ bool RepeatedPattern::Covers(const Vec3& x, double scale_px) const {
                        return (place_px - member.place_px).squaredNorm() <
                               window_px * window_px;
                      });
+}
+
+bool RepeatedPattern::HasSegment(const NormalizedSegment& segment) const {
+  // Its ends have no window of their own.
+  constexpr double kScalePx = std::numeric_limits<double>::infinity();
+  return segment.IsValid() && Covers(segment.start, kScalePx) &&
+         Covers(segment.end, kScalePx);
 }
 
 bool RepeatedPattern::AreCopies(const Vec3& x, const Vec3& other,

@@ -6,6 +6,7 @@
 #include "lowlap/geometry/types.h"
 #include "lowlap/matching/internal/points/guided_point_matching.h"
 #include "lowlap/matching/internal/repeats/conjugate_translation.h"
+#include "lowlap/scene/features.h"
 
 namespace lowlap {
 
@@ -32,6 +33,8 @@ class RepeatedPattern {
   bool HasPoint(FeatureIndex point) const {
     return !IsEmpty() && has_point_[point];
   }
+  /// Whether the pattern covers both ends of a segment.
+  bool HasSegment(const NormalizedSegment& segment) const;
   /// Whether a point at `x` (z = 1) of the scale `scale_px` belongs to the
   /// pattern: a point of the pattern and it lie in each other's windows, so
   /// that both show much of the same.

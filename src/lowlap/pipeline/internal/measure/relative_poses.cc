@@ -54,6 +54,25 @@ Result<std::map<ViewId, ViewMeasurements>> MeasureViews(
   return measurements;
 }
 
+// Says in the scene what repeats, as far as the detectors told.
+void TakeRepeats(const std::map<ViewId, ViewMeasurements>& measurements,
+                 Scene* scene) {
+  for (const auto& [id, view] : measurements) {
+    if (view.detected == nullptr) continue;
+    ViewFeatures& features = scene->features.at(id);
+    features.repeated_points.clear();
+    features.repeated_segments.clear();
+    for (FeatureIndex n = 0; n < view.features.points.size(); ++n) {
+      if (view.repeats.HasPoint(n)) features.repeated_points.push_back(n);
+    }
+    for (FeatureIndex n = 0; n < view.features.segments.size(); ++n) {
+      if (view.repeats.HasSegment(view.features.segments[n])) {
+        features.repeated_segments.push_back(n);
+      }
+    }
+  }
+}
+
 PairReport Report(const ViewPair& views, const PairMatches& matches,
                   const PairEstimate& estimate) {
   PairReport report;
@@ -199,6 +218,7 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
   LOWLAP_ASSIGN_OR_RETURN(
       const auto measurements,
       MeasureViews(*scene, pairs, detected, options.vanishing, context));
+  TakeRepeats(measurements, scene);
 
   std::vector<PairEstimate> estimates(pairs.size());
   const Status done =

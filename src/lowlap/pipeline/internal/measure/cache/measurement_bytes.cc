@@ -86,7 +86,9 @@ void TransferKeypoints(Archive& archive, Keypoints& keypoints) {
 template <class Archive, class Features>
 void TransferFeatures(Archive& archive, Features& detected) {
   auto& [features, keypoints, point_descriptors, line_descriptors] = detected;
-  auto& [points_px, point_covariances, segments] = features;
+  // What repeats is told from these, and later.
+  auto& [points_px, point_covariances, segments, repeated_points,
+         repeated_segments] = features;
   TransferList(archive, points_px,
                [&](auto& point) { TransferVector(archive, point); });
   TransferList(archive, point_covariances,
