@@ -119,7 +119,21 @@ void BindViews(py::module_& module) {
       .def_property_readonly("segments_px", &SegmentsOf,
                              "(m, 4): x1, y1, x2, y2.")
       .def_property_readonly("segment_stddevs_px", &SegmentDeviationsOf,
-                             "(m,): of an end point across the segment.");
+                             "(m,): of an end point across the segment.")
+      .def_property_readonly(
+          "repeated_points",
+          [](const py::object& self) {
+            return IndexArray(self.cast<const ViewFeatures&>().repeated_points,
+                              self);
+          },
+          "Those of a pattern that repeats in the photograph, ascending.")
+      .def_property_readonly(
+          "repeated_segments",
+          [](const py::object& self) {
+            return IndexArray(
+                self.cast<const ViewFeatures&>().repeated_segments, self);
+          },
+          "The same of segments.");
 }
 
 }  // namespace

@@ -36,6 +36,7 @@ def main(schema_path, writer):
                             "line_tracks", "scale_ratios", "line_structure")
                for key in own(name)(scene)
                if key not in ("covariance", "point_covariances",
+                              "repeated_points", "repeated_segments",
                               "alternatives", "weakness",
                               "second_mode")]
     records += [(data("views", 0), key) for key in data("views", 0)(scene)]

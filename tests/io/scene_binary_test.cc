@@ -181,6 +181,20 @@ TEST(SceneBinary, WeaknessesAreKnownOnes) {
               IsError(ErrorCode::kParse, "section WEAK"));
 }
 
+// Of views 1, 4, 7, and 10: the numbers of points and of segments, and each.
+TEST(SceneBinary, RepeatedFeaturesAreThoseOfTheirViews) {
+  const std::string bytes = FullSceneBytes();
+  std::string payload = Payload(bytes, "REPT");
+  ASSERT_EQ(payload.size(), 8u * 8 + 4 * 4);
+  ASSERT_EQ(LittleEndian(payload, 16, 8), 3u);
+  payload[24 + 8] = 6;
+  EXPECT_THAT(ParseSceneBinary(WithPayload(bytes, "REPT", payload)),
+              IsError(ErrorCode::kInvalidScene, "repeated_points[2]"));
+  payload[16] = 100;
+  EXPECT_THAT(ParseSceneBinary(WithPayload(bytes, "REPT", payload)),
+              IsError(ErrorCode::kParse, "section REPT"));
+}
+
 TEST(SceneBinary, DamageIsLocated) {
   std::string bytes = FullSceneBytes();
   const std::size_t offset = SectionOffset(bytes, "FEAT");

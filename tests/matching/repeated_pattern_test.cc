@@ -48,6 +48,27 @@ TEST(RepeatedPattern, HoldsTheCopiesAndFewOfTheRest) {
   }
 }
 
+TEST(RepeatedPattern, HoldsSegmentsOfWhichItCoversBothEnds) {
+  const PatternView view = TiledView(60, 1);
+  const RepeatedPattern pattern = RepeatedPattern::Find(view.View());
+  const std::vector<Vec3>& points = view.features.points;
+  std::vector<FeatureIndex> members;
+  for (FeatureIndex n = 0; n < kInPattern && members.size() < 2; ++n) {
+    if (pattern.HasPoint(n)) members.push_back(n);
+  }
+  ASSERT_EQ(members.size(), 2u);
+  const auto segment = [](const Vec3& start, const Vec3& end) {
+    return NormalizedSegment{start, end, start.cross(end).normalized()};
+  };
+  const Vec3 &a = points[members[0]], &b = points[members[1]];
+  const Vec3 away(2, 2, 1);
+  EXPECT_TRUE(pattern.HasSegment(segment(a, b)));
+  EXPECT_FALSE(pattern.HasSegment(segment(a, away)));
+  EXPECT_FALSE(pattern.HasSegment(segment(away, b)));
+  EXPECT_FALSE(pattern.HasSegment({a, b, Vec3::Zero()}));
+  EXPECT_FALSE(RepeatedPattern().HasSegment(segment(a, b)));
+}
+
 // Only so many points are looked at for translations.
 TEST(RepeatedPattern, HoldsCopiesOfSmallThings) {
   PatternView view = EmptyView();

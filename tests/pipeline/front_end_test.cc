@@ -14,6 +14,10 @@ TEST(KeepMatchedFeatures, DropsUnusedFeaturesAndKeepsEveryReference) {
   Scene scene = Simulate(options)->scene;
   // The same scene with useless features in front of and behind the others.
   Scene padded = scene;
+  scene.features.at(2).repeated_points = {3, 5};
+  padded.features.at(2).repeated_points = {0, 4, 6};
+  scene.features.at(3).repeated_segments = {4};
+  padded.features.at(3).repeated_segments = {0, 5};
   for (auto& [view, features] : padded.features) {
     features.points_px.insert(features.points_px.begin(), Vec2(1, 1));
     features.points_px.push_back(Vec2(2, 2));

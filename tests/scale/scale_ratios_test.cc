@@ -58,6 +58,75 @@ TEST(EstimateScaleRatios, PlanePointsHaveNoSayWhereOthersDecide) {
   EXPECT_TRUE(*a == *b);
 }
 
+// Where `x2` of view 2 would be if the baseline of views 1 and 2 were
+// `factor` times as long: on the epipolar line of `x1`.
+Vec2 AlongEpipolarLine(const RowOfViews& row, const Vec2& x1_px,
+                       const Vec2& x2_px, double factor) {
+  const Intrinsic& intrinsic = row.scene.intrinsics.at(0);
+  const RelativePose& pose = row.scene.relative_poses.at({1, 2});
+  const Vec3 x1 = *intrinsic.Bearing(x1_px), x2 = *intrinsic.Bearing(x2_px);
+  const Vec3 ray = pose.rotation * x1;
+  const Vec3 step = row.baselines.at({1, 2}) * pose.direction;
+  const Vec3 across = x2.cross(ray);
+  const double depth = -x2.cross(step).dot(across) / across.squaredNorm();
+  return intrinsic.Project(depth * ray + factor * step);
+}
+
+// Three quarters of what is seen are matched to copies farther along.
+Scene WithCopies(const RowOfViews& row, double factor) {
+  Scene scene = row.scene;
+  const ViewFeatures& seen1 = row.scene.features.at(1);
+  ViewFeatures& seen2 = scene.features.at(2);
+  for (FeatureIndex n = 0; n < 45; ++n) {
+    seen2.points_px[n] =
+        AlongEpipolarLine(row, seen1.points_px[n], seen2.points_px[n], factor);
+  }
+  for (FeatureIndex n = 0; n < 30; ++n) {
+    const LineSegment& segment = seen1.segments[n];
+    LineSegment& copy = seen2.segments[n];
+    copy.start_px =
+        AlongEpipolarLine(row, segment.start_px, copy.start_px, factor);
+    copy.end_px = AlongEpipolarLine(row, segment.end_px, copy.end_px, factor);
+  }
+  return scene;
+}
+
+void SayWhatRepeats(Scene* scene) {
+  ViewFeatures& features = scene->features.at(1);
+  for (FeatureIndex n = 0; n < 45; ++n) features.repeated_points.push_back(n);
+  for (FeatureIndex n = 0; n < 30; ++n) features.repeated_segments.push_back(n);
+}
+
+TEST(EstimateScaleRatios, HearWhatDoesNotRepeat) {
+  const RowOfViews row;
+  const ViewTriplet views{0, 1, 2};
+  const double factor = 1.6;
+  Scene scene = WithCopies(row, factor);
+  const auto copies = EstimateScaleRatios(scene, {views}, {}, {});
+  ASSERT_TRUE(copies.has_value());
+  EXPECT_NEAR(copies->front().log_ratio,
+              row.TrueLogRatio(views) + std::log(factor), 0.02);
+
+  SayWhatRepeats(&scene);
+  const auto heard = EstimateScaleRatios(scene, {views}, {}, {});
+  ASSERT_TRUE(heard.has_value());
+  const ScaleRatio& ratio = heard->front();
+  EXPECT_EQ(ratio.verdict, RatioVerdict::kMeaningful);
+  EXPECT_NEAR(ratio.log_ratio, row.TrueLogRatio(views), 0.02);
+  ASSERT_TRUE(ratio.second_mode.has_value());
+  EXPECT_EQ(ratio.second_mode->log_ratio, copies->front().log_ratio);
+}
+
+TEST(EstimateScaleRatios, KeepWhatRepeatsWhereItAgrees) {
+  const RowOfViews row;
+  Scene scene = row.scene;
+  const auto before = EstimateScaleRatios(scene, {}, {});
+  SayWhatRepeats(&scene);
+  const auto after = EstimateScaleRatios(scene, {}, {});
+  ASSERT_TRUE(before.has_value() && after.has_value());
+  EXPECT_TRUE(*before == *after);
+}
+
 // Views 0, 1, 2 and two pairs, which match points of the middle view alone: the
 // first those left of 600 pixels, the second those right of `begin_px`.
 Scene TwoPairs(double begin_px) {

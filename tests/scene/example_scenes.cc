@@ -80,6 +80,8 @@ Scene FullScene() {
   for (int n = 0; n < 6; ++n) {
     scene.features[4].point_covariances.emplace_back(1.0 + n, -1.0 / 3, 1);
   }
+  scene.features[4].repeated_points = {0, 3, 5};
+  scene.features[4].repeated_segments = {2};
   scene.features[10];  // looked at, and nothing found
 
   RelativePose edge;

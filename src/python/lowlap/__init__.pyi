@@ -56,6 +56,8 @@ class ViewFeatures:
     points_px: Doubles
     segments_px: Doubles
     segment_stddevs_px: Doubles
+    repeated_points: Indices
+    repeated_segments: Indices
 
 class RelativePose:
     views: Pair
