@@ -148,8 +148,12 @@ class Warnings {
                               agreement_.placed.end(), view);
   }
 
-  // A direction, by the structure, and not by chance.
+  // A direction, by the structure, and not by chance. Copies of a pattern have
+  // a structure of their own.
   bool IsKnown(const ViewPair& views) const {
+    if (scene_.relative_poses.at(views).weakness == PoseWeakness::kRepeats) {
+      return false;
+    }
     const auto stddev = adjusted_.direction_stddevs_rad.find(views);
     if (stddev == adjusted_.direction_stddevs_rad.end() ||
         stddev->second > DiagnosisOptions().max_stddev) {
