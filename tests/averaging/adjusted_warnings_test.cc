@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <vector>
 
 #include "averaging/well_measured_scene.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
@@ -140,6 +141,33 @@ TEST(AdjustedWarnings, AnAdjustmentDeterminesWhatMatchesDoNotTell) {
   adjusted.direction_stddevs_rad = {{{6, 7}, 0.02}};
   EXPECT_THAT(FindReliabilityWarnings(scene, agreement, adjusted, &firm),
               IsEmpty());
+}
+
+// Windows one too far have a wall of their own, behind the house.
+TEST(AdjustedWarnings, TheStructureOfCopiesDeterminesNothing) {
+  SyntheticScene synthetic = WellMeasuredScene("window:2");
+  Scene& scene = synthetic.scene;
+  AdjustedEvidence adjusted;
+  const std::vector<ViewPair> of_copies = {{5, 7}, {6, 7}};
+  for (const ViewPair& views : of_copies) {
+    adjusted.evidence_of_pairs[views] = -40;
+    adjusted.direction_stddevs_rad[views] = 0.001;
+  }
+  const auto warnings_with = [&](PoseWeakness weakness) {
+    for (const ViewPair& views : of_copies) {
+      scene.relative_poses.at(views).weakness = weakness;
+    }
+    Scene solved = scene;
+    const auto summary = SolveScenePoses(&solved, PoseOptions(), RunContext());
+    EXPECT_TRUE(summary);
+    FirmEvidence firm;
+    return FindReliabilityWarnings(scene, *summary->agreement, adjusted, &firm);
+  };
+  EXPECT_THAT(warnings_with(PoseWeakness::kSurroundings), IsEmpty());
+  const auto warnings = warnings_with(PoseWeakness::kRepeats);
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].reason, WarningReason::kUntoldPoses);
+  EXPECT_THAT(warnings[0].views, ElementsAre(7));
 }
 
 }  // namespace

@@ -70,8 +70,8 @@ std::string Payload(const std::string& bytes, const std::string& tag) {
 TEST(SceneBinary, LayoutOfTheHeader) {
   const std::string bytes = FullSceneBytes();
   EXPECT_EQ(bytes.substr(0, 8), "\x89LOWLAP\n");
-  EXPECT_EQ(LittleEndian(bytes, 8, 4), 6u);
-  EXPECT_EQ(LittleEndian(bytes, 12, 4), 16u);
+  EXPECT_EQ(LittleEndian(bytes, 8, 4), 7u);
+  EXPECT_EQ(LittleEndian(bytes, 12, 4), 17u);
   EXPECT_EQ(bytes.substr(16, 4), "ROOT");
   const std::string root = Payload(bytes, "ROOT");
   EXPECT_EQ(LittleEndian(root, 0, 8), FullScene().root_path.size());
@@ -152,10 +152,10 @@ TEST(SceneBinary, ForeignAndNewerFiles) {
               IsError(ErrorCode::kParse, "not a .lowlap file"));
   EXPECT_THAT(ParseSceneBinary(bytes + "x"),
               IsError(ErrorCode::kParse, "follows the last section"));
-  bytes[8] = 7;
+  bytes[8] = 8;
   EXPECT_THAT(ParseSceneBinary(bytes, "new.lowlap"),
               IsError(ErrorCode::kUnsupported,
-                      "new.lowlap: byte 8: version 7 is not 2 to 6"));
+                      "new.lowlap: byte 8: version 8 is not 2 to 7"));
 }
 
 TEST(SceneBinary, CovariancesAreOfPoses) {

@@ -53,9 +53,11 @@ struct AdjustedEvidence {
 /// - Where an adjustment determines the direction between two views better than
 ///   a weak ratio is known, and chance does not explain (as in IsWeak) that its
 ///   structure predicts what they share, it does not matter what their relative
-///   pose tells. Nor, likewise, how little speaks for a ratio that the
-///   adjustment determines while most candidates do not contradict it; or that
-///   is not weak when it is measured again, and the same to a tenth.
+///   pose tells, unless that is nearly all of copies (PoseWeakness::kRepeats),
+///   whose structure agrees with itself. Nor, likewise, how little speaks for a
+///   ratio that the adjustment determines while most candidates do not
+///   contradict it; or that is not weak when it is measured again, and the same
+///   to a tenth.
 /// - Ratios across one camera are contradicted if those rejected there, between
 ///   the same parts, have more than half their evidence.
 std::vector<ReliabilityWarning> FindReliabilityWarnings(

@@ -33,10 +33,8 @@ std::vector<std::string_view> SectionsOf(std::uint32_t version) {
   if (version == 3) sections.emplace_back("RATD");
   if (version >= 4) sections.emplace_back("GIVN");
   if (version >= 5) sections.emplace_back("CCOV");
-  if (version >= 6) {
-    sections.emplace_back("WEAK");
-    sections.emplace_back("REPT");
-  }
+  if (version >= 6) sections.emplace_back("WEAK");
+  if (version >= 7) sections.emplace_back("REPT");
   return sections;
 }
 
