@@ -35,6 +35,9 @@ constexpr double kPlaneShare = 0.5;
 constexpr double kDecisiveScore = 23;
 /// In which matches of other copies are left out.
 constexpr int kMaxRounds = 3;
+/// Evidence by which what does not repeat corrects a motion on which it agrees
+/// for the most part: copies near the epipolar lines draw that aside.
+constexpr double kDecisiveLog10Nfa = 3;
 
 Status ValidateInput(const TwoViewInput& input) {
   if (input.features1 == nullptr || input.features2 == nullptr) {
@@ -267,11 +270,16 @@ void HearWhatDoesNotRepeat(const TwoViewInput& input,
   ShuffledMatches unrepeated = SomeOf(*matches, *others);
   auto other = EstimateFrom(input, unrepeated, options, random);
   if (!other) return;
-  const RelativePose& pose = other->pose;
-  if (2 * CountCommon(pose.point_inliers, result->pose.point_inliers) >=
-          pose.point_inliers.size() ||
-      pose.log10_nfa >=
-          EvidenceOfSome(input, *matches, *others, result->pose, options)) {
+  const RelativePose &pose = other->pose, &first = result->pose;
+  const bool explains_most =
+      2 * CountCommon(pose.point_inliers, first.point_inliers) >=
+      pose.point_inliers.size();
+  if (explains_most && SamePose(pose.Cam2FromCam1(), first.Cam2FromCam1())) {
+    return;
+  }
+  const double margin = explains_most ? kDecisiveLog10Nfa : 0;
+  if (pose.log10_nfa + margin >=
+      EvidenceOfSome(input, *matches, *others, first, options)) {
     return;
   }
   other->log10_nfa_with_repeats = result->log10_nfa_with_repeats;

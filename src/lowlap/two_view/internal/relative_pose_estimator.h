@@ -110,9 +110,10 @@ struct TwoViewResult {
 /// within its photograph (see FindEvidenceBeyondRepeats). Where that speaks
 /// more for another motion, of whose inliers the first explains less than half,
 /// it is the result: one window for the next of a facade agree on a motion,
-/// too, and may be more. Two different places that look alike without that
-/// still pass: what surrounds them (Log10ChanceOfSurroundings) and further
-/// views may tell.
+/// too, and may be more. So is one of which the first explains more, but which
+/// it misses by half a degree, and by a factor of 1000 in NFA. Two different
+/// places that look alike without that still pass: what surrounds them
+/// (Log10ChanceOfSurroundings) and further views may tell.
 ///
 /// `pose` carries rotation, direction, point inliers in the order of
 /// `point_matches`, log10_nfa, point_threshold_px and covariance; its line
