@@ -120,5 +120,28 @@ TEST(EstimateRelativePose, LeavesOutMatchesOfOtherCopies) {
   EXPECT_GT(num_shifted_inliers(input), shifted.size() * 9 / 10);
 }
 
+// The next column lies near the epipolar lines, and most of what does not
+// repeat near the wall: a motion that is off explains both.
+TEST(EstimateRelativePose, CorrectsAMotionThatCopiesDrawAside) {
+  for (const int num_rows : {4, 7}) {
+    const Mat3 rotation = SideStep().rotation;
+    const Vec3 step(-0.9, 0.05, 0);
+    TiledPair pair(
+        120, {rotation, rotation * testing::ObliqueCamera().rotation * step},
+        4);
+    ShiftUpperRows(num_rows, &pair);
+    const auto error_deg = [&](const TwoViewInput& input) {
+      const auto result = EstimateRelativePose(input, {}, 1);
+      EXPECT_THAT(result, IsOk());
+      return DegFromRad(
+          AngleBetween(result->pose.direction, pair.TruePose().direction));
+    };
+    TwoViewInput input = pair.Input();
+    EXPECT_LT(error_deg(input), 0.1) << num_rows;
+    input.repeats1 = input.repeats2 = nullptr;
+    EXPECT_GT(error_deg(input), 1) << num_rows;
+  }
+}
+
 }  // namespace
 }  // namespace lowlap
