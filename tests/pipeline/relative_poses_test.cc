@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <map>
+#include <vector>
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
@@ -203,6 +206,81 @@ TEST(WeakPose, IsThatOfAThingWithOtherSurroundings) {
   reports = EstimateRelativePoses(&scene, matches, &detected, {}, {});
   ASSERT_THAT(reports, IsOk());
   EXPECT_EQ(scene.relative_poses.count({0, 2}), 1u);
+}
+
+// A wall of seven times five equal tiles, and points before it.
+TEST(EstimateRelativePoses, SayWhatRepeats) {
+  constexpr int kColumns = 7, kRows = 5, kMotif = 3;
+  Random random(3);
+  std::vector<Vec3> points;
+  std::vector<PointDescriptor> descriptors;
+  std::vector<Vec3> motif;
+  std::vector<PointDescriptor> of_motif;
+  for (int m = 0; m < kMotif; ++m) {
+    motif.push_back(testing::UniformVec3(random, {0, 0, 0}, {0.4, 0.4, 0}));
+    of_motif.push_back(testing::RandomDescriptor(&random));
+  }
+  for (int cell = 0; cell < kColumns * kRows; ++cell) {
+    const Vec3 corner(0.5 * (cell % kColumns) - 1.6,
+                      0.5 * static_cast<int>(cell / kColumns) - 1.2, 5);
+    for (int m = 0; m < kMotif; ++m) {
+      points.push_back(corner + motif[m]);
+      descriptors.push_back(testing::Resembling(of_motif[m], &random));
+    }
+  }
+  for (int n = 0; n < 60; ++n) {
+    points.push_back(Anywhere(&random));
+    descriptors.push_back(testing::RandomDescriptor(&random));
+  }
+  Scene scene = SceneOf(
+      points, {Vec3(0, 0, 0), Vec3(0.5, 0.04, 0), Vec3(1, 0.16, 0)}, 0.2);
+  std::map<ViewId, DetectedFeatures> detected;
+  std::map<ViewPair, PairMatches> matches;
+  for (auto& [view, features] : scene.features) {
+    const std::vector<Vec2>& points_px = features.points_px;
+    for (std::size_t n = 0; n + kMotif < points.size(); ++n) {
+      features.segments.push_back({points_px[n], points_px[n + kMotif], 0.5});
+    }
+    DetectedFeatures& of_view = detected[view];
+    of_view.features = features;
+    of_view.point_descriptors = descriptors;
+    of_view.line_descriptors.resize(features.segments.size());
+    for (const Vec2& position_px : points_px) {
+      of_view.keypoints.push_back({position_px, 2});
+    }
+  }
+  for (FeatureIndex n = 0; n < points.size(); ++n) {
+    matches[{0, 1}].points.push_back({n, n});
+  }
+  ASSERT_THAT(EstimateRelativePoses(&scene, matches, &detected, {}, {}),
+              IsOk());
+  for (const ViewId view : {0u, 1u}) {
+    const ViewFeatures& features = scene.features.at(view);
+    const ViewMeasurements told =
+        MeasureView(features, scene.intrinsics.at(0), Vec2(1600, 1200),
+                    &detected.at(view), {});
+    std::vector<FeatureIndex> repeated_points, repeated_segments;
+    for (FeatureIndex n = 0; n < points.size(); ++n) {
+      if (told.repeats.HasPoint(n)) repeated_points.push_back(n);
+    }
+    for (FeatureIndex n = 0; n < features.segments.size(); ++n) {
+      if (told.repeats.HasSegment(told.features.segments[n])) {
+        repeated_segments.push_back(n);
+      }
+    }
+    EXPECT_GT(repeated_points.size(), 20u);
+    EXPECT_LT(repeated_points.size(), points.size());
+    EXPECT_GT(repeated_segments.size(), 5u);
+    EXPECT_LT(repeated_segments.size(), features.segments.size());
+    EXPECT_EQ(features.repeated_points, repeated_points);
+    EXPECT_EQ(features.repeated_segments, repeated_segments);
+  }
+  // Without what the detectors know, what is known stays.
+  Scene unknown = scene;
+  unknown.features[0].repeated_points = {7};
+  ASSERT_THAT(EstimateRelativePoses(&unknown, matches, nullptr, {}, {}),
+              IsOk());
+  EXPECT_THAT(unknown.features[0].repeated_points, ::testing::ElementsAre(7));
 }
 
 }  // namespace

@@ -107,6 +107,8 @@ class SceneTest(unittest.TestCase):
         segments = first.segments_px
         self.assertEqual(segments.shape, (len(first.segment_stddevs_px), 4))
         self.assertTrue((np.linalg.norm(segments[:, 2:] - segments[:, :2], axis=1) > 1).all())
+        for repeated in (first.repeated_points, first.repeated_segments):
+            self.assertEqual((repeated.shape, repeated.dtype), ((0,), np.uint32))
 
     def test_structure_projects_into_its_observations(self):
         errors = []
