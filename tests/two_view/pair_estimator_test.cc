@@ -119,22 +119,45 @@ TEST(EstimatePair, IsWeakWhereWhatSurroundsTheMatchesDoesNotMatch) {
   EXPECT_EQ(weakness(false), std::nullopt);
 }
 
+std::optional<PoseWeakness> WeaknessOfPose(
+    const testing::TiledPair& pair, const std::vector<FeatureMatch>& matches) {
+  ViewMeasurements first, second;
+  first.features = pair.view1.features;
+  first.repeats = pair.repeats1;
+  second.features = pair.view2.features;
+  second.repeats = pair.repeats2;
+  first.image_size_px = second.image_size_px = Vec2(1600, 1200);
+  const PairEstimate estimate =
+      EstimatePair({3, 8}, first, second, {matches, {}}, {}, 1);
+  EXPECT_TRUE(estimate.pose) << estimate.reason;
+  return estimate.pose->weakness;
+}
+
 TEST(EstimatePair, IsWeakWhereNearlyAllRepeats) {
-  const auto weakness = [](int num_others) {
-    const testing::TiledPair pair(num_others);
-    ViewMeasurements first, second;
-    first.features = pair.view1.features;
-    first.repeats = pair.repeats1;
-    second.features = pair.view2.features;
-    second.repeats = pair.repeats2;
-    first.image_size_px = second.image_size_px = Vec2(1600, 1200);
-    const PairEstimate estimate =
-        EstimatePair({3, 8}, first, second, {pair.matches, {}}, {}, 1);
-    EXPECT_TRUE(estimate.pose) << estimate.reason;
-    return estimate.pose->weakness;
-  };
-  EXPECT_EQ(weakness(30), PoseWeakness::kRepeats);
-  EXPECT_EQ(weakness(300), std::nullopt);
+  const testing::TiledPair few(30), many(300);
+  EXPECT_EQ(WeaknessOfPose(few, few.matches), PoseWeakness::kRepeats);
+  EXPECT_EQ(WeaknessOfPose(many, many.matches), std::nullopt);
+}
+
+// Each tile with its neighbour: their motion gives way to that of the others.
+TEST(EstimatePair, IsNotWeakWhereTheOthersAgreeOnAMotionOfTheirOwn) {
+  constexpr int kOthers = 50;
+  const testing::TiledPair pair(kOthers);
+  std::vector<FeatureMatch> matches;
+  for (FeatureIndex n = 0; n < testing::kInPattern + kOthers; ++n) {
+    const bool is_in_pattern = n < testing::kInPattern;
+    if (is_in_pattern && n % testing::kColumns + 1 == testing::kColumns) {
+      continue;
+    }
+    matches.push_back({n, is_in_pattern ? n + 1 : n});
+  }
+  EXPECT_EQ(WeaknessOfPose(pair, matches), std::nullopt);
+  // As many of them with another's match.
+  std::vector<FeatureMatch> half = matches;
+  for (std::size_t n = half.size() - kOthers; n + 1 < half.size(); n += 4) {
+    std::swap(half[n].second, half[n + 1].second);
+  }
+  EXPECT_EQ(WeaknessOfPose(pair, half), PoseWeakness::kRepeats);
 }
 
 TEST(EstimatePair, SaysWhyThereIsNoPose) {

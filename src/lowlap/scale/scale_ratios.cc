@@ -28,9 +28,6 @@ bool Disagree(const ScaleRatio& a, const ScaleRatio& b) {
          kDisagrees * std::hypot(a.log_ratio_stddev, b.log_ratio_stddev);
 }
 
-// Where copies of a pattern were taken for each other along the epipolar lines,
-// they agree on a ratio of their own, and may be more. Where what does not
-// repeat agrees on another one, that is the ratio.
 template <class Test>
 Status HearWhatDoesNotRepeat(const Scene& scene, const EvidenceKinds& kinds,
                              const RunContext& context, const Test& test,

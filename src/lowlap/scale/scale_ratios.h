@@ -18,6 +18,14 @@ namespace lowlap {
 /// have no candidates; nor have those at which the estimator fails, of which a
 /// warning tells. The same for any number of threads.
 ///
+/// Where copies of a pattern that repeats were taken for each other along the
+/// epipolar lines, as windows along a wall, the relative poses are right and
+/// what was matched so is at wrong depths: it agrees on a ratio of its own, and
+/// may be most of what was matched. So meaningful ratios of triplets in which
+/// something repeats (ViewFeatures::repeated_points) are tested a second time,
+/// without it. If that says another ratio, by more than six deviations, with
+/// log10 NFA < -3, that is the ratio, and the first its second mode.
+///
 /// Errors: those of MakeTripletView, kCancelled.
 Result<std::vector<ScaleRatio>> EstimateScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,

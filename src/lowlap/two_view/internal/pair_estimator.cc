@@ -7,6 +7,7 @@
 
 #include "lowlap/core/internal/format.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/robust/internal/log_combinatorics.h"
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/internal/pixel_unit.h"
 #include "lowlap/scene/validation.h"
@@ -122,7 +123,27 @@ void UseGuidedMatches(const ViewMeasurements& first,
                   &result->lone_matches);
 }
 
+// Whether most of the matches agree that do not repeat, beyond chance.
+bool MostOfTheRestAgrees(const std::vector<FeatureMatch>& matches,
+                         const std::vector<FeatureMatch>& inliers,
+                         const ViewMeasurements& first,
+                         const ViewMeasurements& second) {
+  constexpr double kMaxLog10Chance = -3;
+  const std::set<FeatureMatch> agreeing(inliers.begin(), inliers.end());
+  int num = 0, num_agreeing = 0;
+  for (const FeatureMatch& match : matches) {
+    if (first.repeats.HasPoint(match.first) ||
+        second.repeats.HasPoint(match.second)) {
+      continue;
+    }
+    ++num;
+    num_agreeing += agreeing.count(match) > 0 ? 1 : 0;
+  }
+  return Log10BinomialTail(num, num_agreeing, 0.5) < kMaxLog10Chance;
+}
+
 std::optional<PoseWeakness> WeaknessOf(const TwoViewResult& result,
+                                       const PairMatches& putative,
                                        const ViewMeasurements& first,
                                        const ViewMeasurements& second) {
   constexpr double kMaxLog10Chance = -3;
@@ -133,8 +154,12 @@ std::optional<PoseWeakness> WeaknessOf(const TwoViewResult& result,
   if (!(result.scattered_log10_nfa < 0)) {
     return PoseWeakness::kMatchesSideBySide;
   }
+  // They do not agree with a motion that theirs gave way to.
   if (result.pose.log10_nfa >
-      kMinShareOfEvidence * result.log10_nfa_with_repeats) {
+          kMinShareOfEvidence * result.log10_nfa_with_repeats &&
+      !(result.is_of_unrepeated &&
+        MostOfTheRestAgrees(putative.points, result.pose.point_inliers, first,
+                            second))) {
     return PoseWeakness::kRepeats;
   }
   // Without them, features may be those with matches only.
@@ -243,7 +268,7 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
     estimate.reason = "the estimate is not usable: " + valid.error().message;
     return estimate;
   }
-  pose.weakness = WeaknessOf(*result, first, second);
+  pose.weakness = WeaknessOf(*result, putative, first, second);
   estimate.pose = std::move(pose);
   estimate.lone_matches = std::move(result->lone_matches);
   return estimate;

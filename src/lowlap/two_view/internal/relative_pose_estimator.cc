@@ -286,6 +286,7 @@ void HearWhatDoesNotRepeat(const TwoViewInput& input,
     return;
   }
   other->log10_nfa_with_repeats = result->log10_nfa_with_repeats;
+  other->is_of_unrepeated = !explains_most;
   *result = *std::move(other);
   *matches = std::move(unrepeated);
 }

@@ -75,6 +75,8 @@ struct TwoViewResult {
   /// log10 NFA with what repeats of the motion that has most of it: `pose`, or
   /// one that gave way to it.
   double log10_nfa_with_repeats = 0;
+  /// `pose` is of what does not repeat, to which the copies' motion gave way.
+  bool is_of_unrepeated = false;
 
   // Diagnostics.
   int num_matches = 0;  // usable points and crossings

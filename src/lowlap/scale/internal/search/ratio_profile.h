@@ -45,7 +45,8 @@ Result<RatioProfile> ProfileRatio(const TripletView& triplet,
                                   const TripletEvidence& evidence);
 
 /// The profiles of many triplets, in their order. Every kind takes part exactly
-/// where EstimateScaleRatios asks it. Errors as there.
+/// where EstimateScaleRatios asks it; what repeats counts like the rest. Errors
+/// as there.
 Result<std::vector<RatioProfile>> ProfileScaleRatios(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
     const EvidenceKinds& kinds, const RunContext& context);
