@@ -154,7 +154,8 @@ std::optional<PoseWeakness> WeaknessOf(const TwoViewResult& result,
   if (!(result.scattered_log10_nfa < 0)) {
     return PoseWeakness::kMatchesSideBySide;
   }
-  // They do not agree with a motion that theirs gave way to.
+  // Missed copies agree with the motion of copies, not with one that this gave
+  // way to.
   if (result.pose.log10_nfa >
           kMinShareOfEvidence * result.log10_nfa_with_repeats &&
       !(result.is_of_unrepeated &&
