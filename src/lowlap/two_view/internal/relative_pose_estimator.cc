@@ -36,9 +36,7 @@ constexpr double kDecisiveScore = 23;
 /// In which matches of other copies are left out.
 constexpr int kMaxRounds = 3;
 /// What does not repeat corrects a motion that explains most of it, and that
-/// copies near the epipolar lines have drawn aside, by so many degrees and so
-/// much evidence.
-constexpr double kCorrectionDeg = 0.2;
+/// copies near the epipolar lines have drawn aside, by so much evidence.
 constexpr double kDecisiveLog10Nfa = 3;
 
 Status ValidateInput(const TwoViewInput& input) {
@@ -276,8 +274,8 @@ void HearWhatDoesNotRepeat(const TwoViewInput& input,
   const bool explains_most =
       2 * CountCommon(pose.point_inliers, first.point_inliers) >=
       pose.point_inliers.size();
-  if (explains_most &&
-      SamePose(pose.Cam2FromCam1(), first.Cam2FromCam1(), kCorrectionDeg)) {
+  if (explains_most && (other->geometry == TwoViewGeometry::kAmbiguousPlane ||
+                        SamePose(pose.Cam2FromCam1(), first.Cam2FromCam1()))) {
     return;
   }
   const double margin = explains_most ? kDecisiveLog10Nfa : 0;

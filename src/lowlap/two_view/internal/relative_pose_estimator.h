@@ -113,9 +113,10 @@ struct TwoViewResult {
 /// more for another motion, of whose inliers the first explains less than half,
 /// it is the result: one window for the next of a facade agree on a motion,
 /// too, and may be more. So is one of which the first explains more, but which
-/// it misses by a fifth of a degree, and by a factor of 1000 in NFA. Two
-/// different places that look alike without that still pass: what surrounds
-/// them (Log10ChanceOfSurroundings) and further views may tell.
+/// it misses by half a degree (SamePose), and by a factor of 1000 in NFA,
+/// unless that leaves two motions open. Two different places that look alike
+/// without that still pass: what surrounds them (Log10ChanceOfSurroundings) and
+/// further views may tell.
 ///
 /// `pose` carries rotation, direction, point inliers in the order of
 /// `point_matches`, log10_nfa, point_threshold_px and covariance; its line
