@@ -58,6 +58,10 @@ def main(schema_path, writer):
         damaged = copy.deepcopy(scene)
         get(damaged)["unknown"] = 1
         assert not validator.is_valid(damaged), "an unknown member is allowed"
+    for weakness in ("matches_side_by_side", "surroundings", "repeats"):
+        weak = copy.deepcopy(scene)
+        own("relative_poses")(weak)["weakness"] = weakness
+        validator.validate(weak)
     print(f"{len(records)} members checked")
 
 

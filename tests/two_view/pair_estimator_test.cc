@@ -143,16 +143,10 @@ TEST(EstimatePair, IsWeakWhereNearlyAllRepeats) {
 TEST(EstimatePair, IsNotWeakWhereTheOthersAgreeOnAMotionOfTheirOwn) {
   constexpr int kOthers = 50;
   const testing::TiledPair pair(kOthers);
-  std::vector<FeatureMatch> matches;
-  for (FeatureIndex n = 0; n < testing::kInPattern + kOthers; ++n) {
-    const bool is_in_pattern = n < testing::kInPattern;
-    if (is_in_pattern && n % testing::kColumns + 1 == testing::kColumns) {
-      continue;
-    }
-    matches.push_back({n, is_in_pattern ? n + 1 : n});
-  }
+  const std::vector<FeatureMatch> matches =
+      testing::MatchesOfNeighbours(kOthers);
   EXPECT_EQ(WeaknessOfPose(pair, matches), std::nullopt);
-  // As many of them with another's match.
+  // Half of the others with another's match.
   std::vector<FeatureMatch> half = matches;
   for (std::size_t n = half.size() - kOthers; n + 1 < half.size(); n += 4) {
     std::swap(half[n].second, half[n + 1].second);

@@ -76,14 +76,7 @@ TEST(EstimateRelativePose, HearsWhatDoesNotRepeat) {
   constexpr int kOthers = 100;
   const TiledPair pair(kOthers);
   TwoViewInput input = pair.Input();
-  input.point_matches.clear();
-  for (FeatureIndex n = 0; n < kInPattern + kOthers; ++n) {
-    const bool is_in_pattern = n < kInPattern;
-    if (is_in_pattern && n % testing::kColumns + 1 == testing::kColumns) {
-      continue;
-    }
-    input.point_matches.push_back({n, is_in_pattern ? n + 1 : n});
-  }
+  input.point_matches = testing::MatchesOfNeighbours(kOthers);
   const RigidTransform truth = pair.cam2_from_cam1;
   const auto heard = EstimateRelativePose(input, {}, 1);
   ASSERT_THAT(heard, IsOk());

@@ -72,4 +72,16 @@ struct TiledPair {
   }
 };
 
+/// Each tile of a TiledPair with its neighbour, and the others with themselves.
+inline std::vector<FeatureMatch> MatchesOfNeighbours(int num_others) {
+  std::vector<FeatureMatch> matches;
+  const auto num = static_cast<FeatureIndex>(kInPattern + num_others);
+  for (FeatureIndex n = 0; n < num; ++n) {
+    const bool is_in_pattern = n < kInPattern;
+    if (is_in_pattern && n % kColumns + 1 == kColumns) continue;
+    matches.push_back({n, is_in_pattern ? n + 1 : n});
+  }
+  return matches;
+}
+
 }  // namespace lowlap::testing

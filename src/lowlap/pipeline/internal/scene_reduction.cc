@@ -40,7 +40,9 @@ class Renumbering {
   void KeepKnown(std::vector<FeatureIndex>* indices) const {
     std::vector<FeatureIndex> kept;
     for (const FeatureIndex index : *indices) {
-      if (new_index_[index] != kInvalidId) kept.push_back(new_index_[index]);
+      if (index < new_index_.size() && new_index_[index] != kInvalidId) {
+        kept.push_back(new_index_[index]);
+      }
     }
     *indices = std::move(kept);
   }
