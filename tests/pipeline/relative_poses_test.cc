@@ -209,6 +209,77 @@ TEST(WeakPose, IsThatOfAThingWithOtherSurroundings) {
 }
 
 // A wall of seven times five equal tiles, and points before it.
+// Of two windows alike, side by side on a wall that one walks along, the one
+// lies on the epipolar lines of the other.
+class EqualWindowsTest : public ::testing::Test {
+ protected:
+  static constexpr FeatureIndex kCloud = 60, kWindow = 40;
+
+  EqualWindowsTest() {
+    Random random(5);
+    std::vector<Vec3> points;
+    for (FeatureIndex n = 0; n < kCloud; ++n) {
+      points.push_back(Anywhere(&random));
+    }
+    std::vector<Vec3> window;
+    for (FeatureIndex n = 0; n < kWindow; ++n) {
+      window.push_back(
+          testing::UniformVec3(random, {-1.2, -0.6, 6}, {-0.6, 0.6, 6}));
+    }
+    for (const double shift : {0.0, 1.4}) {
+      for (const Vec3& point : window) {
+        points.push_back(point + Vec3(shift, 0, 0));
+      }
+    }
+    scene_ =
+        SceneOf(points, {Vec3(0, 0, 0), Vec3(0.5, 0, 0), Vec3(1.1, 0, 0)}, 0.2);
+    for (FeatureIndex n = 0; n < points.size(); ++n) {
+      matches_[{0, 1}].points.push_back({n, n});
+      matches_[{1, 2}].points.push_back({n, n});
+      if (n < kCloud) matches_[{0, 2}].points.push_back({n, n});
+    }
+    for (FeatureIndex n = kCloud; n < kCloud + kWindow; ++n) {
+      copies_.push_back({n + kWindow, n});
+      matches_[{0, 2}].points.push_back(copies_.back());
+    }
+  }
+
+  // Of the pair 0-2.
+  std::size_t NumCopiesAmongInliers() {
+    EXPECT_THAT(EstimateRelativePoses(&scene_, matches_, nullptr, {}, {}),
+                IsOk());
+    const auto& inliers = scene_.relative_poses.at({0, 2}).point_inliers;
+    EXPECT_GT(inliers.size(), kCloud / 2);
+    return static_cast<std::size_t>(
+        std::count_if(copies_.begin(), copies_.end(), [&](const auto& match) {
+          return std::find(inliers.begin(), inliers.end(), match) !=
+                 inliers.end();
+        }));
+  }
+
+  Scene scene_;
+  std::map<ViewPair, PairMatches> matches_;
+  std::vector<FeatureMatch> copies_;
+};
+
+TEST_F(EqualWindowsTest, AreToldByAThirdViewAlone) {
+  EXPECT_EQ(NumCopiesAmongInliers(), 0u);
+  matches_.erase({0, 1});
+  EXPECT_GT(NumCopiesAmongInliers(), kWindow / 2);
+}
+
+// A pair whose pose is given is not looked at.
+TEST_F(EqualWindowsTest, StayInAPoseThatIsGiven) {
+  RigidTransform cam2_from_cam0;
+  cam2_from_cam0.rotation = RotationFromAngleAxis(Vec3(0.02, 0.1, -0.04));
+  cam2_from_cam0.translation = -(cam2_from_cam0.rotation * Vec3(1.1, 0, 0));
+  ASSERT_THAT(EstimateRelativePoses(&scene_, matches_, nullptr, {}, {},
+                                    {{{0, 2}, cam2_from_cam0}}),
+              IsOk());
+  EXPECT_EQ(scene_.relative_poses.at({0, 2}).point_inliers.size(),
+            kCloud + kWindow);
+}
+
 TEST(EstimateRelativePoses, SayWhatRepeats) {
   constexpr int kColumns = 7, kRows = 5, kMotif = 3;
   Random random(3);

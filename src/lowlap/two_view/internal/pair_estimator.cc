@@ -245,6 +245,9 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
   }
   estimate.geometry = result->geometry;
   estimate.log10_nfa = pose.log10_nfa;
+  estimate.log10_nfa_with_repeats = result->is_of_unrepeated
+                                        ? pose.log10_nfa
+                                        : result->log10_nfa_with_repeats;
   estimate.num_point_inliers = static_cast<int>(pose.point_inliers.size());
   if (!result->HasDirection()) {
     estimate.no_parallax = true;

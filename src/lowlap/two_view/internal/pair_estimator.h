@@ -51,6 +51,8 @@ struct PairEstimate {
   /// Of the pose of least NFA, if any was meaningful.
   std::optional<TwoViewGeometry> geometry;
   double log10_nfa = 0;
+  /// Of `pose`, with what repeats.
+  double log10_nfa_with_repeats = 0;
   int num_point_inliers = 0;
 };
 

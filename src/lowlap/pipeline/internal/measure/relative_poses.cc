@@ -9,6 +9,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/core/internal/union_find.h"
+#include "lowlap/pipeline/internal/measure/contradicted_matches.h"
 #include "lowlap/pipeline/internal/measure/pair_report.h"
 
 namespace lowlap {
@@ -168,6 +169,33 @@ void DropWeakPoses(std::vector<PairEstimate>* estimates) {
   }
 }
 
+// Pairs whose poses stand on matches that those of other pairs contradict.
+Status EstimateAgainWithoutCopies(
+    const Scene& scene, const std::vector<ViewPair>& pairs,
+    const std::map<ViewPair, PairMatches>& matches,
+    const std::map<ViewId, ViewMeasurements>& measurements,
+    const RelativePoseOptions& options, const RunContext& context,
+    std::vector<PairEstimate>* estimates) {
+  const auto allowed = MatchesThatLoopsAllow(scene, pairs, matches, *estimates);
+  std::vector<std::size_t> again;
+  for (const auto& entry : allowed) again.push_back(entry.first);
+  return ParallelFor(context, "relative poses without copies", again.size(),
+                     [&](std::size_t k) {
+                       const ViewPair& pair = pairs[again[k]];
+                       PairEstimate& estimate = (*estimates)[again[k]];
+                       estimate = EstimatePair(
+                           pair, measurements.at(pair.first),
+                           measurements.at(pair.second), allowed.at(again[k]),
+                           options.pair, PairSeed(context.seed, pair));
+                       if (!estimate.pose) {
+                         estimate.reason =
+                             "without matches that lead elsewhere than those "
+                             "of other pairs: " +
+                             estimate.reason;
+                       }
+                     });
+}
+
 using MatchesOfPairs = std::map<ViewPair, std::vector<FeatureMatch>>;
 
 // The tracks of the relative poses' inliers. Matches that hold a relative pose
@@ -235,6 +263,8 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
       });
   if (!done) return tl::unexpected<Error>(done.error());
 
+  LOWLAP_RETURN_IF_ERROR(EstimateAgainWithoutCopies(
+      *scene, pairs, matches, measurements, options, context, &estimates));
   DropWeakPoses(&estimates);
   scene->relative_poses.clear();
   std::vector<PairReport> reports;

@@ -1,0 +1,135 @@
+#include "lowlap/matching/internal/loops/match_loops.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace lowlap {
+namespace {
+
+// Of the longer side of a photograph. What lies between is told by neither:
+// matches nearby move a little otherwise where surfaces end, and steps of fine
+// patterns are small.
+constexpr double kSamePlace = 0.03;
+constexpr double kOtherPlace = 0.08;
+
+LoopVerdict VerdictOf(int closing, int elsewhere) {
+  if (closing == elsewhere) return LoopVerdict::kUntold;
+  return closing > elsewhere ? LoopVerdict::kCloses
+                             : LoopVerdict::kLeadsElsewhere;
+}
+
+// Of the end points of a segment from a line.
+struct LineDistances {
+  double least_px = 0;
+  double greatest_px = 0;
+};
+
+std::optional<LineDistances> DistancesFromLine(const Vec2& line_start_px,
+                                               const Vec2& line_end_px,
+                                               const Vec2& start_px,
+                                               const Vec2& end_px) {
+  const Vec2 along = line_end_px - line_start_px;
+  if (!(along.norm() > 0)) return std::nullopt;
+  const Vec2 normal = Vec2(-along.y(), along.x()).normalized();
+  const double a = normal.dot(start_px - line_start_px);
+  const double b = normal.dot(end_px - line_start_px);
+  const bool crosses = a * b <= 0;
+  return LineDistances{crosses ? 0 : std::min(std::abs(a), std::abs(b)),
+                       std::max(std::abs(a), std::abs(b))};
+}
+
+}  // namespace
+
+MatchLoops::MatchLoops(std::map<ViewId, View> views)
+    : views_(std::move(views)) {}
+
+void MatchLoops::Add(const ViewPair& pair,
+                     const std::vector<FeatureMatch>& points) {
+  const View &first = views_.at(pair.first), &second = views_.at(pair.second);
+  if (!(first.longer_side_px > 0 && second.longer_side_px > 0)) return;
+  std::vector<PlaceTransfer::Match> there, back;
+  for (const FeatureMatch& match : points) {
+    const Vec2& a = first.features->points_px[match.first];
+    const Vec2& b = second.features->points_px[match.second];
+    there.push_back({a, b});
+    back.push_back({b, a});
+  }
+  transfers_[pair.first].insert_or_assign(
+      pair.second,
+      PlaceTransfer(std::move(there), kSamePlace * first.longer_side_px));
+  transfers_[pair.second].insert_or_assign(
+      pair.first,
+      PlaceTransfer(std::move(back), kSamePlace * second.longer_side_px));
+}
+
+std::vector<MatchLoops::Detour> MatchLoops::DetoursOf(
+    const ViewPair& pair) const {
+  std::vector<Detour> detours;
+  const auto of_first = transfers_.find(pair.first);
+  const auto of_second = transfers_.find(pair.second);
+  if (of_first == transfers_.end() || of_second == transfers_.end()) {
+    return detours;
+  }
+  for (const auto& [third, transfer] : of_first->second) {
+    const auto other = of_second->second.find(third);
+    if (other == of_second->second.end()) continue;
+    detours.push_back(
+        {&transfer, &other->second, views_.at(third).longer_side_px});
+  }
+  return detours;
+}
+
+std::vector<LoopVerdict> MatchLoops::OfPoints(
+    const ViewPair& pair, const std::vector<FeatureMatch>& matches) const {
+  const std::vector<Detour> detours = DetoursOf(pair);
+  const auto& points1_px = views_.at(pair.first).features->points_px;
+  const auto& points2_px = views_.at(pair.second).features->points_px;
+  std::vector<LoopVerdict> verdicts;
+  verdicts.reserve(matches.size());
+  for (const FeatureMatch& match : matches) {
+    int closing = 0, elsewhere = 0;
+    for (const Detour& detour : detours) {
+      const auto a = detour.from_first->Apply(points1_px[match.first]);
+      if (!a) continue;
+      const auto b = detour.from_second->Apply(points2_px[match.second]);
+      if (!b) continue;
+      const double distance = (*a - *b).norm() / detour.longer_side_px;
+      closing += distance < kSamePlace ? 1 : 0;
+      elsewhere += distance > kOtherPlace ? 1 : 0;
+    }
+    verdicts.push_back(VerdictOf(closing, elsewhere));
+  }
+  return verdicts;
+}
+
+std::vector<LoopVerdict> MatchLoops::OfLines(
+    const ViewPair& pair, const std::vector<FeatureMatch>& matches) const {
+  const std::vector<Detour> detours = DetoursOf(pair);
+  const auto& segments1 = views_.at(pair.first).features->segments;
+  const auto& segments2 = views_.at(pair.second).features->segments;
+  std::vector<LoopVerdict> verdicts;
+  verdicts.reserve(matches.size());
+  for (const FeatureMatch& match : matches) {
+    const LineSegment& segment1 = segments1[match.first];
+    const LineSegment& segment2 = segments2[match.second];
+    int closing = 0, elsewhere = 0;
+    for (const Detour& detour : detours) {
+      const auto start1 = detour.from_first->Apply(segment1.start_px);
+      const auto end1 = detour.from_first->Apply(segment1.end_px);
+      if (!start1 || !end1) continue;
+      const auto start2 = detour.from_second->Apply(segment2.start_px);
+      const auto end2 = detour.from_second->Apply(segment2.end_px);
+      if (!start2 || !end2) continue;
+      const auto distances = DistancesFromLine(*start1, *end1, *start2, *end2);
+      if (!distances) continue;
+      closing += distances->greatest_px < kSamePlace * detour.longer_side_px;
+      elsewhere += distances->least_px > kOtherPlace * detour.longer_side_px;
+    }
+    verdicts.push_back(VerdictOf(closing, elsewhere));
+  }
+  return verdicts;
+}
+
+}  // namespace lowlap
