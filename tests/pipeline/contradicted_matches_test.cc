@@ -18,9 +18,9 @@ using ::testing::Key;
 constexpr FeatureIndex kInWindow = 30;
 
 // Three photographs of a wall with two windows alike, a little further each.
-class MatchesThatLoopsAllowTest : public ::testing::Test {
+class ExamineLoopsTest : public ::testing::Test {
  protected:
-  MatchesThatLoopsAllowTest() {
+  ExamineLoopsTest() {
     for (std::uint32_t v = 0; v < 3; ++v) {
       View& view = scene_.views[v];
       view.width_px = 1600;
@@ -73,7 +73,7 @@ class MatchesThatLoopsAllowTest : public ::testing::Test {
       pairs.push_back(pair);
       estimates.push_back(estimate);
     }
-    return MatchesThatLoopsAllow(scene_, pairs, matches_, estimates);
+    return ExamineLoops(scene_, pairs, matches_, estimates).allowed;
   }
 
   Scene scene_;
@@ -81,7 +81,7 @@ class MatchesThatLoopsAllowTest : public ::testing::Test {
   std::map<ViewPair, PairEstimate> estimates_;
 };
 
-TEST_F(MatchesThatLoopsAllowTest, LeavesOutWhatStrongerPairsContradict) {
+TEST_F(ExamineLoopsTest, LeavesOutWhatStrongerPairsContradict) {
   // Also of what is no inlier.
   matches_[{0, 2}].points.push_back({3, 3});
   matches_[{0, 2}].points.push_back({4, kInWindow + 4});
@@ -91,7 +91,7 @@ TEST_F(MatchesThatLoopsAllowTest, LeavesOutWhatStrongerPairsContradict) {
   EXPECT_THAT(allowed.at(1).lines, ElementsAre(FeatureMatch{0, 0}));
 }
 
-TEST_F(MatchesThatLoopsAllowTest, TheStrongerTellsOfTheWeaker) {
+TEST_F(ExamineLoopsTest, TheStrongerTellsOfTheWeaker) {
   estimates_[{0, 2}].log10_nfa_with_repeats = -150;
   const auto allowed = Allowed();
   ASSERT_THAT(allowed, ElementsAre(Key(2)));
@@ -99,19 +99,19 @@ TEST_F(MatchesThatLoopsAllowTest, TheStrongerTellsOfTheWeaker) {
   EXPECT_LT(allowed.at(2).points.size(), 2 * kInWindow);
 }
 
-TEST_F(MatchesThatLoopsAllowTest, AFewAreNoMatter) {
+TEST_F(ExamineLoopsTest, AFewAreNoMatter) {
   std::vector<FeatureMatch> matches = All();
   for (FeatureIndex n = 0; n < 6; ++n) matches[kInWindow + n].second = n;
   Set({0, 2}, -50, matches);
   EXPECT_THAT(Allowed(), IsEmpty());
 }
 
-TEST_F(MatchesThatLoopsAllowTest, WhatIsRightStays) {
+TEST_F(ExamineLoopsTest, WhatIsRightStays) {
   Set({0, 2}, -50, All());
   EXPECT_THAT(Allowed(), IsEmpty());
 }
 
-TEST_F(MatchesThatLoopsAllowTest, PosesWithoutEvidenceTakeNoPart) {
+TEST_F(ExamineLoopsTest, PosesWithoutEvidenceTakeNoPart) {
   estimates_[{0, 1}].log10_nfa_with_repeats = 0;
   EXPECT_THAT(Allowed(), IsEmpty());
   estimates_[{0, 1}].log10_nfa_with_repeats = -200;

@@ -119,6 +119,36 @@ TEST(EstimatePair, IsWeakWhereWhatSurroundsTheMatchesDoesNotMatch) {
   EXPECT_EQ(weakness(false), std::nullopt);
 }
 
+TEST(EstimatePair, UsesOfWhatItMatchesUnderThePoseWhatTheFiltersLeave) {
+  constexpr std::size_t kPutative = 80;
+  TwoViewSceneOptions options;
+  options.num_right = 400;
+  options.noise_px = 0.3;
+  TwoViewScene scene = MakeTwoViewScene(options, 5);
+  Random random(6);
+  const DetectedFeatures first = Detected(scene.features1, &random);
+  DetectedFeatures second = Detected(scene.features2, &random);
+  for (const FeatureMatch& match : scene.matches) {
+    second.point_descriptors[match.second] =
+        first.point_descriptors[match.first];
+  }
+  scene.matches.resize(kPutative);
+  const auto num_inliers = [&](const GuidedMatchFilters& filters) {
+    const PairEstimate estimate = EstimatePair(
+        {3, 8}, Measure(scene.features1, &first),
+        Measure(scene.features2, &second), {scene.matches, {}}, {}, 1, filters);
+    EXPECT_TRUE(estimate.pose) << estimate.reason;
+    return estimate.pose->point_inliers.size();
+  };
+  EXPECT_GT(num_inliers({}), 2 * kPutative);
+  GuidedMatchFilters none;
+  none.points = [](const std::vector<FeatureMatch>&) {
+    return std::vector<FeatureMatch>{};
+  };
+  EXPECT_LE(num_inliers(none), kPutative);
+  EXPECT_GT(num_inliers(none), kPutative / 2);
+}
+
 std::optional<PoseWeakness> WeaknessOfPose(
     const testing::TiledPair& pair, const std::vector<FeatureMatch>& matches) {
   ViewMeasurements first, second;

@@ -102,6 +102,7 @@ std::vector<FeatureMatch> GuidedLineMatches(
 void UseGuidedMatches(const ViewMeasurements& first,
                       const ViewMeasurements& second,
                       const PairOptions& options,
+                      const GuidedMatchFilters& filters,
                       std::vector<FeatureMatch>* line_matches,
                       TwoViewInput* input, TwoViewResult* result) {
   RelativePose* const pose = &result->pose;
@@ -114,10 +115,12 @@ void UseGuidedMatches(const ViewMeasurements& first,
                           {d2.keypoints, d2.point_descriptors, second.features},
                           pose->Cam2FromCam1(), 2 * pose->point_threshold_px,
                           options.guided_points);
-    AddMatches(guided, &input->point_matches);
+    AddMatches(filters.points ? filters.points(guided) : guided,
+               &input->point_matches);
   }
   *line_matches = GuidedLineMatches(first, second, pose->Cam2FromCam1(),
                                     *line_matches, options);
+  if (filters.lines) *line_matches = filters.lines(*line_matches);
   if (options.use_lines) input->line_matches = *line_matches;
   *pose = Improve(*input, *pose, result->is_of_one_plane, options.two_view,
                   &result->lone_matches);
@@ -229,7 +232,8 @@ TwoViewInput InputOf(const ViewPair& views, const ViewMeasurements& first,
 PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
                           const ViewMeasurements& second,
                           const PairMatches& putative,
-                          const PairOptions& options, std::uint64_t seed) {
+                          const PairOptions& options, std::uint64_t seed,
+                          const GuidedMatchFilters& filters) {
   PairEstimate estimate;
   TwoViewInput input = InputOf(views, first, second);
   if (options.use_points) input.point_matches = putative.points;
@@ -258,7 +262,8 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
   }
   std::vector<FeatureMatch> line_matches = putative.lines;
   if (first.detected != nullptr && second.detected != nullptr) {
-    UseGuidedMatches(first, second, options, &line_matches, &input, &*result);
+    UseGuidedMatches(first, second, options, filters, &line_matches, &input,
+                     &*result);
   }
   pose.line_inliers =
       FilterLineMatches(line_matches, *input.features1, *input.features2,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -56,6 +57,16 @@ struct PairEstimate {
   int num_point_inliers = 0;
 };
 
+/// Matches of a pair to those of them that may be used; empty: all.
+using MatchFilter =
+    std::function<std::vector<FeatureMatch>(const std::vector<FeatureMatch>&)>;
+
+/// Of what is matched under a pose.
+struct GuidedMatchFilters {
+  MatchFilter points;
+  MatchFilter lines;
+};
+
 /// The relative pose of a pair from its putative matches (MatchPair), in four
 /// steps: estimate (EstimateRelativePose); guide, that is, match lines and, for
 /// starved pairs, points again under this pose; improve the pose on all of
@@ -66,7 +77,8 @@ struct PairEstimate {
 PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
                           const ViewMeasurements& second,
                           const PairMatches& putative,
-                          const PairOptions& options, std::uint64_t seed);
+                          const PairOptions& options, std::uint64_t seed,
+                          const GuidedMatchFilters& filters = {});
 
 /// A relative pose (at any baseline) that is known already, taken as it is:
 /// with all point matches, and the line matches that are plausible under it.

@@ -14,10 +14,28 @@ namespace {
 constexpr double kSamePlace = 0.03;
 constexpr double kOtherPlace = 0.08;
 
-LoopVerdict VerdictOf(int closing, int elsewhere) {
-  if (closing == elsewhere) return LoopVerdict::kUntold;
-  return closing > elsewhere ? LoopVerdict::kCloses
-                             : LoopVerdict::kLeadsElsewhere;
+LoopVerdict VerdictOf(bool is_same, bool is_other) {
+  if (is_same) return LoopVerdict::kCloses;
+  return is_other ? LoopVerdict::kLeadsElsewhere : LoopVerdict::kUntold;
+}
+
+// `compare` gives the verdict of a match through one detour.
+template <class Detours, class Compare>
+std::vector<LoopVerdict> VerdictsOfMost(
+    const Detours& detours, const std::vector<FeatureMatch>& matches,
+    const Compare& compare) {
+  std::vector<LoopVerdict> verdicts;
+  verdicts.reserve(matches.size());
+  for (const FeatureMatch& match : matches) {
+    int balance = 0;
+    for (const auto& detour : detours) {
+      const LoopVerdict verdict = compare(match, detour);
+      balance += verdict == LoopVerdict::kCloses ? 1 : 0;
+      balance -= verdict == LoopVerdict::kLeadsElsewhere ? 1 : 0;
+    }
+    verdicts.push_back(VerdictOf(balance > 0, balance < 0));
+  }
+  return verdicts;
 }
 
 // Of the end points of a segment from a line.
@@ -83,53 +101,44 @@ std::vector<MatchLoops::Detour> MatchLoops::DetoursOf(
 
 std::vector<LoopVerdict> MatchLoops::OfPoints(
     const ViewPair& pair, const std::vector<FeatureMatch>& matches) const {
-  const std::vector<Detour> detours = DetoursOf(pair);
   const auto& points1_px = views_.at(pair.first).features->points_px;
   const auto& points2_px = views_.at(pair.second).features->points_px;
-  std::vector<LoopVerdict> verdicts;
-  verdicts.reserve(matches.size());
-  for (const FeatureMatch& match : matches) {
-    int closing = 0, elsewhere = 0;
-    for (const Detour& detour : detours) {
-      const auto a = detour.from_first->Apply(points1_px[match.first]);
-      if (!a) continue;
-      const auto b = detour.from_second->Apply(points2_px[match.second]);
-      if (!b) continue;
-      const double distance = (*a - *b).norm() / detour.longer_side_px;
-      closing += distance < kSamePlace ? 1 : 0;
-      elsewhere += distance > kOtherPlace ? 1 : 0;
-    }
-    verdicts.push_back(VerdictOf(closing, elsewhere));
-  }
-  return verdicts;
+  return VerdictsOfMost(
+      DetoursOf(pair), matches,
+      [&](const FeatureMatch& match, const Detour& detour) {
+        const auto a = detour.from_first->Apply(points1_px[match.first]);
+        if (!a) return LoopVerdict::kUntold;
+        const auto b = detour.from_second->Apply(points2_px[match.second]);
+        if (!b) return LoopVerdict::kUntold;
+        const double distance = (*a - *b).norm() / detour.longer_side_px;
+        return VerdictOf(distance<kSamePlace, distance> kOtherPlace);
+      });
 }
 
 std::vector<LoopVerdict> MatchLoops::OfLines(
     const ViewPair& pair, const std::vector<FeatureMatch>& matches) const {
-  const std::vector<Detour> detours = DetoursOf(pair);
   const auto& segments1 = views_.at(pair.first).features->segments;
   const auto& segments2 = views_.at(pair.second).features->segments;
-  std::vector<LoopVerdict> verdicts;
-  verdicts.reserve(matches.size());
-  for (const FeatureMatch& match : matches) {
-    const LineSegment& segment1 = segments1[match.first];
-    const LineSegment& segment2 = segments2[match.second];
-    int closing = 0, elsewhere = 0;
-    for (const Detour& detour : detours) {
-      const auto start1 = detour.from_first->Apply(segment1.start_px);
-      const auto end1 = detour.from_first->Apply(segment1.end_px);
-      if (!start1 || !end1) continue;
-      const auto start2 = detour.from_second->Apply(segment2.start_px);
-      const auto end2 = detour.from_second->Apply(segment2.end_px);
-      if (!start2 || !end2) continue;
-      const auto distances = DistancesFromLine(*start1, *end1, *start2, *end2);
-      if (!distances) continue;
-      closing += distances->greatest_px < kSamePlace * detour.longer_side_px;
-      elsewhere += distances->least_px > kOtherPlace * detour.longer_side_px;
-    }
-    verdicts.push_back(VerdictOf(closing, elsewhere));
-  }
-  return verdicts;
+  return VerdictsOfMost(
+      DetoursOf(pair), matches,
+      [&](const FeatureMatch& match, const Detour& detour) {
+        const LineSegment& segment1 = segments1[match.first];
+        const LineSegment& segment2 = segments2[match.second];
+        const auto start1 = detour.from_first->Apply(segment1.start_px);
+        const auto end1 = detour.from_first->Apply(segment1.end_px);
+        if (!start1 || !end1) return LoopVerdict::kUntold;
+        const auto start2 = detour.from_second->Apply(segment2.start_px);
+        const auto end2 = detour.from_second->Apply(segment2.end_px);
+        if (!start2 || !end2) return LoopVerdict::kUntold;
+        const auto distances =
+            DistancesFromLine(*start1, *end1, *start2, *end2);
+        if (!distances) return LoopVerdict::kUntold;
+        return VerdictOf(
+            distances->greatest_px<kSamePlace * detour.longer_side_px,
+                                   distances->least_px>
+                kOtherPlace *
+            detour.longer_side_px);
+      });
 }
 
 }  // namespace lowlap

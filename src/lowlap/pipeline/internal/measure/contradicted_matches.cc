@@ -1,8 +1,8 @@
 #include "lowlap/pipeline/internal/measure/contradicted_matches.h"
 
 #include <algorithm>
+#include <utility>
 
-#include "lowlap/matching/internal/loops/match_loops.h"
 #include "lowlap/robust/internal/log_combinatorics.h"
 
 namespace lowlap {
@@ -35,16 +35,6 @@ MatchLoops LoopsOf(const Scene& scene) {
   return MatchLoops(std::move(views));
 }
 
-std::vector<FeatureMatch> WithoutContradicted(
-    const std::vector<FeatureMatch>& matches,
-    const std::vector<LoopVerdict>& verdicts) {
-  std::vector<FeatureMatch> rest;
-  for (std::size_t n = 0; n < matches.size(); ++n) {
-    if (verdicts[n] != LoopVerdict::kLeadsElsewhere) rest.push_back(matches[n]);
-  }
-  return rest;
-}
-
 // More than surfaces that end explain.
 bool StandsOnCopies(const std::vector<LoopVerdict>& verdicts) {
   constexpr double kUsualShare = 0.1;
@@ -60,12 +50,22 @@ bool StandsOnCopies(const std::vector<LoopVerdict>& verdicts) {
 
 }  // namespace
 
-std::map<std::size_t, PairMatches> MatchesThatLoopsAllow(
-    const Scene& scene, const std::vector<ViewPair>& pairs,
-    const std::map<ViewPair, PairMatches>& matches,
-    const std::vector<PairEstimate>& estimates) {
-  std::map<std::size_t, PairMatches> allowed;
-  MatchLoops loops = LoopsOf(scene);
+std::vector<FeatureMatch> WithoutContradicted(
+    const std::vector<FeatureMatch>& matches,
+    const std::vector<LoopVerdict>& verdicts) {
+  std::vector<FeatureMatch> rest;
+  for (std::size_t n = 0; n < matches.size(); ++n) {
+    if (verdicts[n] != LoopVerdict::kLeadsElsewhere) rest.push_back(matches[n]);
+  }
+  return rest;
+}
+
+LoopFindings ExamineLoops(const Scene& scene,
+                          const std::vector<ViewPair>& pairs,
+                          const std::map<ViewPair, PairMatches>& matches,
+                          const std::vector<PairEstimate>& estimates) {
+  LoopFindings findings = {LoopsOf(scene), {}};
+  MatchLoops& loops = findings.loops;
   for (const std::size_t n : EvidenceFirst(estimates)) {
     const ViewPair& pair = pairs[n];
     const std::vector<FeatureMatch>& inliers = estimates[n].pose->point_inliers;
@@ -73,12 +73,13 @@ std::map<std::size_t, PairMatches> MatchesThatLoopsAllow(
     loops.Add(pair, WithoutContradicted(inliers, verdicts));
     if (!StandsOnCopies(verdicts)) continue;
     const PairMatches& putative = matches.at(pair);
-    allowed[n] = {WithoutContradicted(putative.points,
-                                      loops.OfPoints(pair, putative.points)),
-                  WithoutContradicted(putative.lines,
-                                      loops.OfLines(pair, putative.lines))};
+    findings.allowed[n] = {
+        WithoutContradicted(putative.points,
+                            loops.OfPoints(pair, putative.points)),
+        WithoutContradicted(putative.lines,
+                            loops.OfLines(pair, putative.lines))};
   }
-  return allowed;
+  return findings;
 }
 
 }  // namespace lowlap

@@ -176,24 +176,35 @@ Status EstimateAgainWithoutCopies(
     const std::map<ViewId, ViewMeasurements>& measurements,
     const RelativePoseOptions& options, const RunContext& context,
     std::vector<PairEstimate>* estimates) {
-  const auto allowed = MatchesThatLoopsAllow(scene, pairs, matches, *estimates);
+  const LoopFindings findings = ExamineLoops(scene, pairs, matches, *estimates);
   std::vector<std::size_t> again;
-  for (const auto& entry : allowed) again.push_back(entry.first);
-  return ParallelFor(context, "relative poses without copies", again.size(),
-                     [&](std::size_t k) {
-                       const ViewPair& pair = pairs[again[k]];
-                       PairEstimate& estimate = (*estimates)[again[k]];
-                       estimate = EstimatePair(
-                           pair, measurements.at(pair.first),
-                           measurements.at(pair.second), allowed.at(again[k]),
-                           options.pair, PairSeed(context.seed, pair));
-                       if (!estimate.pose) {
-                         estimate.reason =
-                             "without matches that lead elsewhere than those "
-                             "of other pairs: " +
-                             estimate.reason;
-                       }
-                     });
+  for (const auto& entry : findings.allowed) again.push_back(entry.first);
+  return ParallelFor(
+      context, "relative poses without copies", again.size(),
+      [&](std::size_t k) {
+        const ViewPair& pair = pairs[again[k]];
+        // Matching again under the pose finds the copies again.
+        GuidedMatchFilters filters;
+        filters.points = [&](const std::vector<FeatureMatch>& points) {
+          return WithoutContradicted(points,
+                                     findings.loops.OfPoints(pair, points));
+        };
+        filters.lines = [&](const std::vector<FeatureMatch>& lines) {
+          return WithoutContradicted(lines,
+                                     findings.loops.OfLines(pair, lines));
+        };
+        PairEstimate& estimate = (*estimates)[again[k]];
+        estimate = EstimatePair(pair, measurements.at(pair.first),
+                                measurements.at(pair.second),
+                                findings.allowed.at(again[k]), options.pair,
+                                PairSeed(context.seed, pair), filters);
+        if (!estimate.pose) {
+          estimate.reason =
+              "without matches that lead elsewhere than those of other "
+              "pairs: " +
+              estimate.reason;
+        }
+      });
 }
 
 using MatchesOfPairs = std::map<ViewPair, std::vector<FeatureMatch>>;

@@ -17,7 +17,7 @@ namespace lowlap {
 
 /// Fills scene->relative_poses, point_tracks and line_tracks from putative
 /// matches of the scene's features: EstimatePair for every pair, once more
-/// without matches that those of other pairs contradict (MatchesThatLoopsAllow)
+/// without matches that those of other pairs contradict (ExamineLoops)
 /// where a pose stands on such, then tracks.
 /// A match that holds a relative pose alone (TwoViewResult) is no inlier unless
 /// a third view sees it, too.
