@@ -163,9 +163,22 @@ std::optional<PoseWeakness> WeaknessOfPose(
   return estimate.pose->weakness;
 }
 
-TEST(EstimatePair, IsWeakWhereNearlyAllRepeats) {
-  const testing::TiledPair few(30), many(300);
-  EXPECT_EQ(WeaknessOfPose(few, few.matches), PoseWeakness::kRepeats);
+// The matches, `num_wrong` of the last `num_others` with another's partner.
+std::vector<FeatureMatch> WithWrong(std::vector<FeatureMatch> matches,
+                                    int num_others, int num_wrong) {
+  const std::size_t begin = matches.size() - num_others;
+  for (int n = 0; n + 1 < num_wrong; n += 2) {
+    std::swap(matches[begin + n].second, matches[begin + n + 1].second);
+  }
+  return matches;
+}
+
+TEST(EstimatePair, IsWeakWhereNearlyAllRepeatsUnlessMostOfTheRestAgrees) {
+  constexpr int kFew = 30;
+  const testing::TiledPair few(kFew), many(300);
+  EXPECT_EQ(WeaknessOfPose(few, WithWrong(few.matches, kFew, kFew)),
+            PoseWeakness::kRepeats);
+  EXPECT_EQ(WeaknessOfPose(few, few.matches), std::nullopt);
   EXPECT_EQ(WeaknessOfPose(many, many.matches), std::nullopt);
 }
 
@@ -176,12 +189,8 @@ TEST(EstimatePair, IsNotWeakWhereTheOthersAgreeOnAMotionOfTheirOwn) {
   const std::vector<FeatureMatch> matches =
       testing::MatchesOfNeighbours(kOthers);
   EXPECT_EQ(WeaknessOfPose(pair, matches), std::nullopt);
-  // Half of the others with another's match.
-  std::vector<FeatureMatch> half = matches;
-  for (std::size_t n = half.size() - kOthers; n + 1 < half.size(); n += 4) {
-    std::swap(half[n].second, half[n + 1].second);
-  }
-  EXPECT_EQ(WeaknessOfPose(pair, half), PoseWeakness::kRepeats);
+  EXPECT_EQ(WeaknessOfPose(pair, WithWrong(matches, kOthers, kOthers / 2)),
+            PoseWeakness::kRepeats);
 }
 
 TEST(EstimatePair, SaysWhyThereIsNoPose) {

@@ -157,13 +157,12 @@ std::optional<PoseWeakness> WeaknessOf(const TwoViewResult& result,
   if (!(result.scattered_log10_nfa < 0)) {
     return PoseWeakness::kMatchesSideBySide;
   }
-  // Missed copies agree with the motion of copies, not with one that this gave
-  // way to.
+  // Of what is left when all known copies are gone, about half agree with a
+  // motion of copies at most: those that were missed.
   if (result.pose.log10_nfa >
           kMinShareOfEvidence * result.log10_nfa_with_repeats &&
-      !(result.is_of_unrepeated &&
-        MostOfTheRestAgrees(putative.points, result.pose.point_inliers, first,
-                            second))) {
+      !MostOfTheRestAgrees(putative.points, result.pose.point_inliers, first,
+                           second)) {
     return PoseWeakness::kRepeats;
   }
   // Without them, features may be those with matches only.
