@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
@@ -59,6 +60,30 @@ TEST(PredictionEvidence, IsOfPointsAloneAndOfLinesAlone) {
       EXPECT_LT(entry.second, -10) << of_points;
     }
   }
+}
+
+// In one of the views suffices.
+TEST(PredictionEvidence, IsNoneOfWhatRepeats) {
+  Scene scene = MakeTestScene(Noisy()).scene;
+  test::BuildAndAdjust(&scene);
+  ViewFeatures& features = scene.features.at(7);
+  const auto set_share = [&](std::size_t share) {
+    features.repeated_points.resize(features.points_px.size() / share);
+    features.repeated_segments.resize(features.segments.size() / share);
+    for (auto* repeated :
+         {&features.repeated_points, &features.repeated_segments}) {
+      std::iota(repeated->begin(), repeated->end(), FeatureIndex{0});
+    }
+  };
+  set_share(3);
+  for (const auto& entry : AllEvidence(scene).triplets) {
+    EXPECT_LT(entry.second, -10);
+  }
+  set_share(1);
+  const PredictionEvidence evidence = AllEvidence(scene);
+  for (const auto& entry : evidence.triplets) EXPECT_EQ(entry.second, 0);
+  EXPECT_EQ(evidence.pairs.at({7, 9}), 0);
+  EXPECT_THAT(evidence.contradicted, IsEmpty());
 }
 
 // Its own features still have places with each of the others.

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "lowlap/core/internal/random.h"
@@ -115,6 +116,35 @@ TEST(EstimateScaleRatios, HearWhatDoesNotRepeat) {
   EXPECT_NEAR(ratio.log_ratio, row.TrueLogRatio(views), 0.02);
   ASSERT_TRUE(ratio.second_mode.has_value());
   EXPECT_EQ(ratio.second_mode->log_ratio, copies->front().log_ratio);
+}
+
+TEST(EstimateScaleRatios, OfCopiesAloneAreNotMeaningful) {
+  Scene scene = RowOfViews().scene;
+  const auto before = EstimateScaleRatios(scene, {}, {});
+  ViewFeatures& features = scene.features.at(1);
+  features.repeated_points.resize(features.points_px.size());
+  std::iota(features.repeated_points.begin(), features.repeated_points.end(),
+            FeatureIndex{0});
+  features.repeated_segments.resize(features.segments.size());
+  std::iota(features.repeated_segments.begin(),
+            features.repeated_segments.end(), FeatureIndex{0});
+  const auto after = EstimateScaleRatios(scene, {}, {});
+  ASSERT_TRUE(before.has_value() && after.has_value());
+  ASSERT_EQ(before->size(), after->size());
+  int num_of_copies = 0;
+  for (std::size_t n = 0; n < before->size(); ++n) {
+    const ScaleRatio &all = (*before)[n], &ratio = (*after)[n];
+    EXPECT_EQ(all.verdict, RatioVerdict::kMeaningful);
+    EXPECT_EQ(ratio.log_ratio, all.log_ratio);
+    const ViewTriplet& views = ratio.views;
+    if (views.first == 1u || views.middle == 1u || views.last == 1u) {
+      EXPECT_EQ(ratio.verdict, RatioVerdict::kNotMeaningful);
+      ++num_of_copies;
+    } else {
+      EXPECT_TRUE(ratio == all);
+    }
+  }
+  EXPECT_GE(num_of_copies, 1);
 }
 
 TEST(EstimateScaleRatios, KeepWhatRepeatsWhereItAgrees) {

@@ -54,8 +54,11 @@ Status HearWhatDoesNotRepeat(const Scene& scene, const EvidenceKinds& kinds,
                            TripletContent::kUnrepeated));
   for (std::size_t n = 0; n < asked.size(); ++n) {
     Result<ScaleRatio>& other = unrepeated[n];
-    if (!other || !(other->log10_nfa < kMaxLog10Nfa) ||
-        !Disagree(*other, *asked[n])) {
+    if (!other || other->verdict != RatioVerdict::kMeaningful) {
+      asked[n]->verdict = RatioVerdict::kNotMeaningful;
+      continue;
+    }
+    if (!(other->log10_nfa < kMaxLog10Nfa) || !Disagree(*other, *asked[n])) {
       continue;
     }
     other->second_mode = RatioMode{asked[n]->log_ratio, asked[n]->log10_nfa};

@@ -24,7 +24,8 @@ namespace lowlap {
 /// may be most of what was matched. So meaningful ratios of triplets in which
 /// something repeats (ViewFeatures::repeated_points) are tested a second time,
 /// without it. If that says another ratio, by more than six deviations, with
-/// log10 NFA < -3, that is the ratio, and the first its second mode.
+/// log10 NFA < -3, that is the ratio, and the first its second mode. If nothing
+/// meaningful is left, the ratio is not meaningful, whatever copies say for it.
 ///
 /// Errors: those of MakeTripletView, kCancelled.
 Result<std::vector<ScaleRatio>> EstimateScaleRatios(

@@ -102,6 +102,29 @@ class SharedTracks {
   std::vector<std::vector<std::size_t>> of_pose_;  // sorted
 };
 
+// Copies of a pattern have a structure of their own, which predicts them well.
+template <class Track>
+std::vector<Track> WithoutRepeats(
+    const Scene& scene, const CameraSet& cameras,
+    std::vector<FeatureIndex> ViewFeatures::*repeated,
+    std::vector<Track> tracks) {
+  const auto repeats = [&](const auto& candidate) {
+    const ViewId view = cameras.views[candidate.view].id;
+    const std::vector<FeatureIndex>& features =
+        scene.features.at(view).*repeated;
+    return std::binary_search(features.begin(), features.end(),
+                              candidate.feature);
+  };
+  tracks.erase(std::remove_if(tracks.begin(), tracks.end(),
+                              [&](const Track& track) {
+                                return std::any_of(track.candidates.begin(),
+                                                   track.candidates.end(),
+                                                   repeats);
+                              }),
+               tracks.end());
+  return tracks;
+}
+
 bool IsMajority(std::ptrdiff_t count, const std::vector<float>& all) {
   return 2 * static_cast<std::size_t>(count) > all.size();
 }
@@ -110,8 +133,12 @@ class Structure {
  public:
   explicit Structure(const Scene& scene)
       : cameras_(scene),
-        points_(cameras_, LoadPoints(scene, cameras_)),
-        lines_(cameras_, LoadLines(scene, cameras_, false)) {}
+        points_(cameras_,
+                WithoutRepeats(scene, cameras_, &ViewFeatures::repeated_points,
+                               LoadPoints(scene, cameras_))),
+        lines_(cameras_,
+               WithoutRepeats(scene, cameras_, &ViewFeatures::repeated_segments,
+                              LoadLines(scene, cameras_, false))) {}
 
   struct Evidence {
     double log10_nfa = 0;

@@ -22,10 +22,11 @@ struct PredictionEvidence {
 };
 
 /// Of a view v of a pair or triplet a datum is every track with candidates in
-/// all its views and in three poses. Its landmark is refined without v, and the
-/// error is that of v's worst candidate (px); infinite where there is no
-/// landmark, or where it does not rest on the other views, and two poses, then.
-/// With k of n errors at most e,
+/// all its views and in three poses, none of which repeats in its photograph
+/// (ViewFeatures::repeated_points): copies have a structure of their own. Its
+/// landmark is refined without v, and the error is that of v's worst candidate
+/// (px); infinite where there is no landmark, or where it does not rest on the
+/// other views, and two poses, then. With k of n errors at most e,
 ///   NFA = 2 T C(n, k) C(k, 6) (2 D e / A)^(k - 6),
 /// the less for the two ends of the pair or triplet, T the steps of
 /// AContrarioLadder: six tracks, of two measurements each beyond what a
