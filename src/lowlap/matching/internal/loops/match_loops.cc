@@ -14,9 +14,12 @@ namespace {
 constexpr double kSamePlace = 0.03;
 constexpr double kOtherPlace = 0.08;
 
-LoopVerdict VerdictOf(bool is_same, bool is_other) {
-  if (is_same) return LoopVerdict::kCloses;
-  return is_other ? LoopVerdict::kLeadsElsewhere : LoopVerdict::kUntold;
+// Of what lies between `least_px` and `greatest_px` off.
+LoopVerdict VerdictOf(double least_px, double greatest_px,
+                      double longer_side_px) {
+  if (greatest_px < kSamePlace * longer_side_px) return LoopVerdict::kCloses;
+  return least_px > kOtherPlace * longer_side_px ? LoopVerdict::kLeadsElsewhere
+                                                 : LoopVerdict::kUntold;
 }
 
 // `compare` gives the verdict of a match through one detour.
@@ -33,7 +36,9 @@ std::vector<LoopVerdict> VerdictsOfMost(
       balance += verdict == LoopVerdict::kCloses ? 1 : 0;
       balance -= verdict == LoopVerdict::kLeadsElsewhere ? 1 : 0;
     }
-    verdicts.push_back(VerdictOf(balance > 0, balance < 0));
+    verdicts.push_back(balance > 0   ? LoopVerdict::kCloses
+                       : balance < 0 ? LoopVerdict::kLeadsElsewhere
+                                     : LoopVerdict::kUntold);
   }
   return verdicts;
 }
@@ -110,8 +115,8 @@ std::vector<LoopVerdict> MatchLoops::OfPoints(
         if (!a) return LoopVerdict::kUntold;
         const auto b = detour.from_second->Apply(points2_px[match.second]);
         if (!b) return LoopVerdict::kUntold;
-        const double distance = (*a - *b).norm() / detour.longer_side_px;
-        return VerdictOf(distance<kSamePlace, distance> kOtherPlace);
+        const double distance_px = (*a - *b).norm();
+        return VerdictOf(distance_px, distance_px, detour.longer_side_px);
       });
 }
 
@@ -133,11 +138,8 @@ std::vector<LoopVerdict> MatchLoops::OfLines(
         const auto distances =
             DistancesFromLine(*start1, *end1, *start2, *end2);
         if (!distances) return LoopVerdict::kUntold;
-        return VerdictOf(
-            distances->greatest_px<kSamePlace * detour.longer_side_px,
-                                   distances->least_px>
-                kOtherPlace *
-            detour.longer_side_px);
+        return VerdictOf(distances->least_px, distances->greatest_px,
+                         detour.longer_side_px);
       });
 }
 

@@ -42,8 +42,8 @@ std::optional<Vec2> PlaceTransfer::Apply(const Vec2& place_px) const {
          entry != entries_.end() && entry->cell <= Cell{r, column + 1};
          ++entry) {
       const double distance_px = (entry->match.from_px - place_px).norm();
-      if (distance_px < radius_px_)
-        near.push_back({distance_px, &entry->match});
+      if (distance_px >= radius_px_) continue;
+      near.push_back({distance_px, &entry->match});
     }
   }
   if (near.empty()) return std::nullopt;
