@@ -80,11 +80,9 @@ void MatchLoops::Add(const ViewPair& pair,
     back.push_back({b, a});
   }
   transfers_[pair.first].insert_or_assign(
-      pair.second,
-      PlaceTransfer(std::move(there), kSamePlace * first.longer_side_px));
+      pair.second, PlaceTransfer(there, kSamePlace * first.longer_side_px));
   transfers_[pair.second].insert_or_assign(
-      pair.first,
-      PlaceTransfer(std::move(back), kSamePlace * second.longer_side_px));
+      pair.first, PlaceTransfer(back, kSamePlace * second.longer_side_px));
 }
 
 std::vector<MatchLoops::Detour> MatchLoops::DetoursOf(

@@ -13,7 +13,8 @@ constexpr std::size_t kMaxNeighbours = 3;
 
 }  // namespace
 
-PlaceTransfer::PlaceTransfer(std::vector<Match> matches, double radius_px)
+PlaceTransfer::PlaceTransfer(const std::vector<Match>& matches,
+                             double radius_px)
     : radius_px_(radius_px) {
   entries_.reserve(matches.size());
   for (const Match& match : matches) {
@@ -43,7 +44,7 @@ std::optional<Vec2> PlaceTransfer::Apply(const Vec2& place_px) const {
          ++entry) {
       const double distance_px = (entry->match.from_px - place_px).norm();
       if (distance_px >= radius_px_) continue;
-      near.push_back({distance_px, &entry->match});
+      near.emplace_back(distance_px, &entry->match);
     }
   }
   if (near.empty()) return std::nullopt;

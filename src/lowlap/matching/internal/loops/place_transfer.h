@@ -18,7 +18,7 @@ class PlaceTransfer {
   };
 
   /// `radius_px` > 0: how far off a match still tells something of a place.
-  PlaceTransfer(std::vector<Match> matches, double radius_px);
+  PlaceTransfer(const std::vector<Match>& matches, double radius_px);
 
   /// The place moved as the nearest matches within the radius move, at most
   /// three of them (the median of each coordinate); none if there is no match,
