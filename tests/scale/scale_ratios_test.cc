@@ -208,22 +208,48 @@ TEST(EstimateScaleRatios, PairsThatDoNotOverlapPayForNoSecondTest) {
   EXPECT_TRUE(*a == *b);
 }
 
+// No line, and no point in two pairs: nothing but places on planes is left.
+void KeepPlacesOnPlanes(Scene* scene) {
+  for (auto& [views, pose] : scene->relative_poses) {
+    pose.line_inliers.clear();
+    const FeatureIndex slot = (views.first.value() + views.second.value()) % 3;
+    auto& points = pose.point_inliers;
+    points.erase(std::remove_if(points.begin(), points.end(),
+                                [&](const FeatureMatch& match) {
+                                  return match.first % 3 != slot;
+                                }),
+                 points.end());
+  }
+}
+
+// What repeats is left out in all rounds, and the others hear it in all.
+TEST(EstimateScaleRatios, HearWhatDoesNotRepeatInAllRounds) {
+  Scene scene = RowOfViews().scene;
+  KeepPlacesOnPlanes(&scene);
+  const auto before = EstimateScaleRatios(scene, {}, {});
+  for (auto& entry : scene.features) entry.second.repeated_points = {0, 1, 2};
+  const auto after = EstimateScaleRatios(scene, {}, {});
+  for (auto& entry : scene.features) {
+    std::vector<FeatureIndex>& repeated = entry.second.repeated_points;
+    repeated.resize(entry.second.points_px.size());
+    std::iota(repeated.begin(), repeated.end(), FeatureIndex{0});
+  }
+  const auto of_copies = EstimateScaleRatios(scene, {}, {});
+  ASSERT_TRUE(before.has_value() && after.has_value() && of_copies.has_value());
+  int num_meaningful = 0;
+  for (std::size_t n = 0; n < before->size(); ++n) {
+    num_meaningful += (*before)[n].verdict == RatioVerdict::kMeaningful;
+    EXPECT_EQ((*after)[n].verdict, (*before)[n].verdict);
+    EXPECT_NE((*of_copies)[n].verdict, RatioVerdict::kMeaningful);
+  }
+  EXPECT_GT(num_meaningful, 0);
+}
+
 // With lines that decide, and with nothing but places on planes.
 TEST(ProfileScaleRatios, AreThoseOfTheEstimatedRatios) {
   for (const bool has_lines : {true, false}) {
     RowOfViews row;
-    for (auto& [views, pose] : row.scene.relative_poses) {
-      if (has_lines) continue;
-      pose.line_inliers.clear();
-      const FeatureIndex slot =
-          (views.first.value() + views.second.value()) % 3;
-      auto& points = pose.point_inliers;
-      points.erase(std::remove_if(points.begin(), points.end(),
-                                  [&](const FeatureMatch& match) {
-                                    return match.first % 3 != slot;
-                                  }),
-                   points.end());
-    }
+    if (!has_lines) KeepPlacesOnPlanes(&row.scene);
     const auto ratios = EstimateScaleRatios(row.scene, {}, {});
     const auto profiles =
         ProfileScaleRatios(row.scene, FindTriplets(ViewGraph(row.scene)),

@@ -54,27 +54,6 @@ TEST(MakeTripletView, PointsOfOnePlaceInAllViewsAreOne) {
             3u);
 }
 
-TEST(MakeTripletView, LeavesOutWhatRepeatsInAnyView) {
-  Scene scene = RowOfViews().scene;
-  scene.features.at(0).repeated_points = {3, 5};
-  scene.features.at(1).repeated_points = {5, 8};
-  scene.features.at(2).repeated_points = {59};
-  scene.features.at(0).repeated_segments = {1};
-  scene.features.at(1).repeated_segments = {20, 21};
-  scene.features.at(2).repeated_segments = {2};
-  const SceneFeatures features(scene);
-  const auto all = MakeTripletView(features, {0, 1, 2});
-  const auto unrepeated =
-      MakeTripletView(features, {0, 1, 2}, TripletContent::kUnrepeated);
-  ASSERT_TRUE(all.has_value() && unrepeated.has_value());
-  EXPECT_EQ(all->points.size(), 60u);
-  EXPECT_EQ(unrepeated->points.size(), 56u);
-  EXPECT_EQ(all->lines.size(), 40u);
-  EXPECT_EQ(unrepeated->lines.size(), 36u);
-  EXPECT_EQ(unrepeated->lines_ij.size(), 37u);
-  EXPECT_EQ(unrepeated->lines_jk.size(), 37u);
-}
-
 // A line that view 1 breaks into segments 6 and 7, each matched in one pair; 7
 // is the longer one. Line 8 is whole.
 Scene BrokenInTheMiddle() {

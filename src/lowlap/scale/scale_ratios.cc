@@ -1,26 +1,15 @@
 #include "lowlap/scale/scale_ratios.h"
 
-#include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <utility>
 
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/scale/internal/triplet_rounds.h"
+#include "lowlap/scale/internal/unrepeated_scene.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
 namespace {
-
-bool HasRepeats(const Scene& scene, const ViewTriplet& views) {
-  const ViewId all[] = {views.first, views.middle, views.last};
-  return std::any_of(std::begin(all), std::end(all), [&](ViewId view) {
-    const auto found = scene.features.find(view);
-    return found != scene.features.end() &&
-           !(found->second.repeated_points.empty() &&
-             found->second.repeated_segments.empty());
-  });
-}
 
 bool Disagree(const ScaleRatio& a, const ScaleRatio& b) {
   constexpr double kDisagrees = 6;
@@ -33,36 +22,31 @@ Status HearWhatDoesNotRepeat(const Scene& scene, const EvidenceKinds& kinds,
                              const RunContext& context, const Test& test,
                              std::vector<ScaleRatio>* ratios) {
   constexpr double kMaxLog10Nfa = -3;
+  const UnrepeatedScene unrepeated = WithoutRepeatedMatches(scene);
   std::vector<ScaleRatio*> asked;
   std::vector<ViewTriplet> triplets;
   for (ScaleRatio& ratio : *ratios) {
+    const auto& [first, middle, last] = ratio.views;
     if (ratio.verdict == RatioVerdict::kMeaningful &&
-        HasRepeats(scene, ratio.views)) {
+        (unrepeated.changed.count(OrderedPair(first, middle)) > 0 ||
+         unrepeated.changed.count(OrderedPair(middle, last)) > 0)) {
       asked.push_back(&ratio);
       triplets.push_back(ratio.views);
     }
   }
   if (asked.empty()) return {};
-  const SceneFeatures features(scene);
-  LOWLAP_ASSIGN_OR_RETURN(
-      const EvidenceKinds prepared,
-      PrepareRound(kinds, EvidenceRound::kFirst, features, triplets, context));
-  LOWLAP_ASSIGN_OR_RETURN(
-      auto unrepeated,
-      TestOnce<ScaleRatio>(features, triplets, prepared, 2, context,
-                           "scale ratios of what does not repeat", test,
-                           TripletContent::kUnrepeated));
+  LOWLAP_ASSIGN_OR_RETURN(std::vector<ScaleRatio> others,
+                          TestTriplets<ScaleRatio>(
+                              unrepeated.scene, triplets, kinds, context,
+                              "scale ratios of what does not repeat", test, 1));
   for (std::size_t n = 0; n < asked.size(); ++n) {
-    Result<ScaleRatio>& other = unrepeated[n];
-    if (!other || other->verdict != RatioVerdict::kMeaningful) {
-      asked[n]->verdict = RatioVerdict::kNotMeaningful;
-      continue;
+    ScaleRatio &ratio = *asked[n], &other = others[n];
+    if (other.verdict != RatioVerdict::kMeaningful) {
+      ratio.verdict = RatioVerdict::kNotMeaningful;
+    } else if (other.log10_nfa < kMaxLog10Nfa && Disagree(other, ratio)) {
+      other.second_mode = RatioMode{ratio.log_ratio, ratio.log10_nfa};
+      ratio = std::move(other);
     }
-    if (!(other->log10_nfa < kMaxLog10Nfa) || !Disagree(*other, *asked[n])) {
-      continue;
-    }
-    other->second_mode = RatioMode{asked[n]->log_ratio, asked[n]->log10_nfa};
-    *asked[n] = *std::move(other);
   }
   return {};
 }

@@ -43,14 +43,6 @@ struct SeenView {
   ObservedSegment Observe(FeatureIndex segment) const {
     return {features->segments[segment], raw->segments[segment].stddev_px};
   }
-  bool RepeatsPoint(FeatureIndex point) const {
-    return std::binary_search(raw->repeated_points.begin(),
-                              raw->repeated_points.end(), point);
-  }
-  bool RepeatsSegment(FeatureIndex segment) const {
-    return std::binary_search(raw->repeated_segments.begin(),
-                              raw->repeated_segments.end(), segment);
-  }
   double SquaredLength(FeatureIndex segment) const {
     const NormalizedSegment& seen = features->segments[segment];
     return (seen.end - seen.start).squaredNorm();
@@ -152,8 +144,7 @@ bool SceneFeatures::HasAll(const ViewTriplet& views) const {
 }
 
 Result<TripletView> MakeTripletView(const SceneFeatures& features,
-                                    const ViewTriplet& views,
-                                    TripletContent content) {
+                                    const ViewTriplet& views) {
   const Scene& scene = features.scene;
   const std::string name = "triplet (" + std::to_string(views.first.value()) +
                            ", " + std::to_string(views.middle.value()) + ", " +
@@ -204,7 +195,6 @@ Result<TripletView> MakeTripletView(const SceneFeatures& features,
   triplet.image_area_px2 = intrinsic->ImageArea();
   triplet.image_diagonal_px = intrinsic->ImageDiagonal();
 
-  const bool unrepeated = content == TripletContent::kUnrepeated;
   triplet.points.reserve(
       std::min(edges[0]->point_inliers.size(), edges[1]->point_inliers.size()));
   const auto is_valid = [](const Vec3& point) { return point.z() > 0; };
@@ -212,11 +202,6 @@ Result<TripletView> MakeTripletView(const SceneFeatures& features,
   Chain(from_middle(0, &RelativePose::point_inliers),
         from_middle(1, &RelativePose::point_inliers), j.features->points.size(),
         [&](const MiddleMatch& ij, const MiddleMatch& jk) {
-          if (unrepeated &&
-              (i.RepeatsPoint(ij.neighbor) || j.RepeatsPoint(ij.middle) ||
-               k.RepeatsPoint(jk.neighbor))) {
-            return;
-          }
           const TripletPoint point{ij.middle, i.features->points[ij.neighbor],
                                    j.features->points[ij.middle],
                                    k.features->points[jk.neighbor]};
@@ -234,10 +219,6 @@ Result<TripletView> MakeTripletView(const SceneFeatures& features,
          from_middle(n, &RelativePose::line_inliers)) {
       const LineTrackId track = (*j.line_tracks)[match.middle];
       if ((*neighbor.line_tracks)[match.neighbor] != track) continue;
-      if (unrepeated && (j.RepeatsSegment(match.middle) ||
-                         neighbor.RepeatsSegment(match.neighbor))) {
-        continue;
-      }
       LinePieces& pieces =
           lines[{track, track == kInvalidId ? match.middle : 0}];
       KeepLonger(j, match.middle, &pieces.in_middle);

@@ -112,13 +112,6 @@ struct TripletView {
   std::vector<MatchedLine> lines_jk;
 };
 
-/// Which matches a triplet is made of.
-enum class TripletContent {
-  kAll,
-  /// Those of which no side repeats (ViewFeatures::repeated_points).
-  kUnrepeated,
-};
-
 /// Reads a triplet out of the scene: the inlier matches of its two relative
 /// poses, chained through the middle view. Points: through the feature index,
 /// every combination where one is matched more than once; of points at the same
@@ -133,8 +126,7 @@ enum class TripletContent {
 /// Errors: kInvalidArgument if one of the two relative poses, or the middle
 /// view's intrinsic, is missing; kInvalidScene if a match refers to a feature
 /// that does not exist.
-Result<TripletView> MakeTripletView(
-    const SceneFeatures& features, const ViewTriplet& views,
-    TripletContent content = TripletContent::kAll);
+Result<TripletView> MakeTripletView(const SceneFeatures& features,
+                                    const ViewTriplet& views);
 
 }  // namespace lowlap

@@ -51,8 +51,7 @@ template <class Outcome, class Test>
 Result<std::vector<Result<Outcome>>> TestOnce(
     const SceneFeatures& features, const std::vector<ViewTriplet>& triplets,
     const EvidenceKinds& kinds, int num_tests, const RunContext& context,
-    const char* stage, const Test& test,
-    TripletContent content = TripletContent::kAll) {
+    const char* stage, const Test& test) {
   const std::vector<std::size_t> order = LargestFirst(features.scene, triplets);
   std::vector<Status> made(triplets.size());
   std::vector<Result<Outcome>> results(triplets.size());
@@ -62,8 +61,7 @@ Result<std::vector<Result<Outcome>>> TestOnce(
         Result<Outcome>& result = results[order[n]];
         RatioOf(*result).views = views;
         if (!features.HasAll(views)) return;
-        const Result<TripletView> triplet =
-            MakeTripletView(features, views, content);
+        const Result<TripletView> triplet = MakeTripletView(features, views);
         if (!triplet) {
           made[order[n]] = tl::unexpected<Error>(triplet.error());
           return;
@@ -89,18 +87,19 @@ Result<std::vector<Result<Outcome>>> TestOnce(
 /// first round are tested a second time, with those of kUndecided as well, if
 /// one of these may speak. Outcomes are those of the last test that did not
 /// fail, in the order of the triplets, without candidates if all did; a warning
-/// tells of last tests that failed.
+/// tells of last tests that failed. `num_before`: tests that the triplets had
+/// already.
 template <class Outcome, class Test>
 Result<std::vector<Outcome>> TestTriplets(
     const Scene& scene, const std::vector<ViewTriplet>& triplets,
     const EvidenceKinds& kinds, const RunContext& context, const char* stage,
-    const Test& test) {
+    const Test& test, int num_before = 0) {
   const SceneFeatures features(scene);
   auto asked =
       PrepareRound(kinds, EvidenceRound::kFirst, features, triplets, context);
   if (!asked) return tl::unexpected<Error>(asked.error());
-  auto tested =
-      TestOnce<Outcome>(features, triplets, *asked, 1, context, stage, test);
+  auto tested = TestOnce<Outcome>(features, triplets, *asked, num_before + 1,
+                                  context, stage, test);
   if (!tested) return tl::unexpected<Error>(tested.error());
   std::vector<const Error*> failures(triplets.size(), nullptr);
   std::vector<std::size_t> undecided;
@@ -121,8 +120,8 @@ Result<std::vector<Outcome>> TestTriplets(
                                    undecided_triplets, context);
     if (!more) return tl::unexpected<Error>(more.error());
     asked->insert(asked->end(), more->begin(), more->end());
-    again = TestOnce<Outcome>(features, undecided_triplets, *asked, 2, context,
-                              stage, test);
+    again = TestOnce<Outcome>(features, undecided_triplets, *asked,
+                              num_before + 2, context, stage, test);
     if (!again) return tl::unexpected<Error>(again.error());
   }
   for (std::size_t n = 0; n < undecided.size(); ++n) {
