@@ -139,6 +139,7 @@ TEST(EstimateScaleRatios, OfCopiesAloneAreNotMeaningful) {
     const ViewTriplet& views = ratio.views;
     if (views.first == 1u || views.middle == 1u || views.last == 1u) {
       EXPECT_EQ(ratio.verdict, RatioVerdict::kNotMeaningful);
+      EXPECT_GE(ratio.log10_nfa, 0);
       ++num_of_copies;
     } else {
       EXPECT_TRUE(ratio == all);

@@ -1,5 +1,6 @@
 #include "lowlap/scale/scale_ratios.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -43,6 +44,7 @@ Status HearWhatDoesNotRepeat(const Scene& scene, const EvidenceKinds& kinds,
     ScaleRatio &ratio = *asked[n], &other = others[n];
     if (other.verdict != RatioVerdict::kMeaningful) {
       ratio.verdict = RatioVerdict::kNotMeaningful;
+      ratio.log10_nfa = std::max(0.0, other.log10_nfa);
     } else if (other.log10_nfa < kMaxLog10Nfa && Disagree(other, ratio)) {
       other.second_mode = RatioMode{ratio.log_ratio, ratio.log10_nfa};
       ratio = std::move(other);

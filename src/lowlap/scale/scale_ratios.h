@@ -22,11 +22,11 @@ namespace lowlap {
 /// epipolar lines, as windows along a wall, the relative poses are right and
 /// what was matched so is at wrong depths: it agrees on a ratio of its own, and
 /// may be most of what was matched. So meaningful ratios of triplets in which
-/// something of that kind was matched (ViewFeatures::repeated_points) are tested
-/// again, in the same rounds, without it. If that says another ratio, by more
-/// than six deviations, with log10 NFA < -3, that is the ratio, and the first
-/// its second mode. If nothing meaningful is left, the ratio is not meaningful,
-/// whatever copies say for it.
+/// something of that kind was matched (ViewFeatures::repeated_points) are
+/// tested again, in the same rounds, without it. If that says another ratio, by
+/// more than six deviations, with log10 NFA < -3, that is the ratio, and the
+/// first its second mode. If nothing meaningful is left, the ratio is not
+/// meaningful whatever copies say for it, and its log10 NFA is what is left.
 ///
 /// Errors: those of MakeTripletView, kCancelled.
 Result<std::vector<ScaleRatio>> EstimateScaleRatios(
