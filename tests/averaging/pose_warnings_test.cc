@@ -133,6 +133,7 @@ TEST(PoseWarnings, ListWhatWasLeftOutByReason) {
                            {{0, 2}, OutlierReason::kRotation, 8},
                            {{1, 2}, OutlierReason::kDirection, 7},
                            {{1, 4}, OutlierReason::kContradicted, 6},
+                           {{3, 4}, OutlierReason::kOutweighed, 0},
                            // Its loop says so already.
                            {{2, 3}, OutlierReason::kOpenLoop, 5}};
   EXPECT_THAT(
@@ -141,7 +142,8 @@ TEST(PoseWarnings, ListWhatWasLeftOutByReason) {
           AllOf(HasSubstr("rotations contradict"), HasSubstr("(1): a.jpg - c")),
           AllOf(HasSubstr("directions contradict"),
                 HasSubstr("(2): a.jpg - b.jpg, b.jpg - c.jpg.")),
-          AllOf(HasSubstr("no cycle confirms"), HasSubstr("(1): b.jpg - e"))));
+          AllOf(HasSubstr("no cycle confirms"), HasSubstr("(1): b.jpg - e")),
+          AllOf(HasSubstr("third views"), HasSubstr("(1): d.jpg - e"))));
 }
 
 TEST(PoseWarnings, InShortThereIsOneForEveryCause) {

@@ -78,8 +78,8 @@ Composed Compose(Scene scene, const SolveOptions& options = PointsAlone()) {
 
 Status Decide(Composed* composed, const RunContext& context = {},
               const SolveOptions& options = PointsAlone()) {
-  return DecideHypothesesByStructure(composed->rotations.matches, options,
-                                     context, nullptr, &composed->scene,
+  return DecideHypothesesByStructure(composed->rotations, options, context,
+                                     nullptr, &composed->scene,
                                      &composed->result);
 }
 

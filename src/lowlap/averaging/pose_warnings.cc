@@ -191,6 +191,8 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
            "no cycle confirms them and what contradicts them has more "
            "evidence");
   left_out(OutlierReason::kMatches, "their own matches contradict them");
+  left_out(OutlierReason::kOutweighed,
+           "third views bear out what contradicts them, and hardly them");
   return warnings;
 }
 

@@ -101,12 +101,14 @@ Status PoseOptions::Validate() const {
 
 Result<SceneRotations> AverageSceneRotations(const Scene& scene,
                                              const PoseOptions& options,
-                                             const RunContext& context) {
+                                             const RunContext& context,
+                                             ThirdViewVerdicts third_views) {
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   RotationAveragingOptions rotation = options.rotation;
   rotation.seed = context.seed;
   return AverageSceneRotations(scene, rotation, options.outlier_reach,
-                               RadFromDeg(options.least_false_deg), context);
+                               RadFromDeg(options.least_false_deg), context,
+                               std::move(third_views));
 }
 
 Result<PoseSummary> SolveScenePoses(Scene* scene, const PoseOptions& options,

@@ -78,6 +78,13 @@ struct Contest {
   std::vector<ViewPair> links;
   std::vector<ViewPair> contradictions;
   std::vector<ViewId> views;
+  /// Where the contradictions contradict several cuts, as those of a chain, the
+  /// links of the one of least evidence.
+  std::vector<ViewPair> weakest_links = {};
+  /// The least evidence that is contradicted, and that of each contradiction as
+  /// it counts (EvidenceOfNfa).
+  double evidence = 0;
+  std::vector<double> evidence_against = {};
 };
 
 /// The relative poses and ratios in use that agree with the solution and can be
@@ -164,8 +171,8 @@ Result<PoseSummary> SolveScenePoses(Scene* scene, const PoseOptions& options,
 
 /// AverageSceneRotations as these options ask for it; the random starts are
 /// those of context.seed.
-Result<SceneRotations> AverageSceneRotations(const Scene& scene,
-                                             const PoseOptions& options,
-                                             const RunContext& context);
+Result<SceneRotations> AverageSceneRotations(
+    const Scene& scene, const PoseOptions& options, const RunContext& context,
+    ThirdViewVerdicts third_views = {});
 
 }  // namespace lowlap

@@ -17,6 +17,7 @@
 #include "lowlap/pipeline/internal/decide_hypotheses.h"
 #include "lowlap/pipeline/internal/judge_views.h"
 #include "lowlap/pipeline/internal/reconsider_poses.h"
+#include "lowlap/pipeline/internal/settle_contests.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -200,7 +201,8 @@ Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
   if (!all || options.least_false_deg == 0) return all;
   PoseOptions strict = options;
   strict.least_false_deg = 0;
-  auto fewer = AverageSceneRotations(*scene, strict, context);
+  auto fewer =
+      AverageSceneRotations(*scene, strict, context, rotations.third_views);
   if (!fewer) {
     if (fewer.error().code == ErrorCode::kCancelled) {
       return tl::unexpected<Error>(fewer.error());
@@ -276,13 +278,15 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
   LOWLAP_ASSIGN_OR_RETURN(
       result.ratios,
       EstimateBelievedRatios(scene, start, options, context, stages));
-  result.motions = std::move(start.motions);
-  result.reconsidered = std::move(start.reconsidered);
   LOWLAP_ASSIGN_OR_RETURN(
       result.poses,
       ComposePoses(scene, start.rotations, options.poses, context, stages));
+  LOWLAP_RETURN_IF_ERROR(SettleContests(options, context, stages, scene, &start,
+                                        &result.ratios, &result.poses));
+  result.motions = std::move(start.motions);
+  result.reconsidered = std::move(start.reconsidered);
   LOWLAP_RETURN_IF_ERROR(DecideHypothesesByStructure(
-      start.rotations.matches, options, context, stages, scene, &result));
+      start.rotations, options, context, stages, scene, &result));
   LOWLAP_RETURN_IF_ERROR(
       FinishSolution(scene, options, context, stages, &result));
   return result;

@@ -134,11 +134,12 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
 
 /// From measurements to a calibrated scene: choice between alternative motions
 /// (DecideHypotheses), rotations and the choice of relative poses, ratios of
-/// the triplets of those believed, absolute poses, the motions that only the
-/// whole scene tells apart (DecideHypothesesByStructure), structure, bundle
-/// adjustment (FinishSolution). Reads intrinsics, features, relative poses and
-/// tracks; settles alternatives and replaces scale ratios, poses and structure.
-/// Errors leave the scene in an intermediate state: keep a copy if you need it.
+/// the triplets of those believed, absolute poses, what third views say of
+/// contests about these (SettleContests), the motions that only the whole scene
+/// tells apart (DecideHypothesesByStructure), structure, bundle adjustment
+/// (FinishSolution). Reads intrinsics, features, relative poses and tracks;
+/// settles alternatives and replaces scale ratios, poses and structure. Errors
+/// leave the scene in an intermediate state: keep a copy if you need it.
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
                                const RunContext& context, StageLog* stages);
 

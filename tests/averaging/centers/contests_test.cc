@@ -159,6 +159,17 @@ TEST(ScaleContests, NoneWithoutAJoint) {
               IsEmpty());
 }
 
+TEST(Contests, TellTheLeastEvidenceAndWhatIsAgainstIt) {
+  const auto contests = FindContests({{{0, 1}, 30}, {{1, 2}, 20}, {{2, 3}, 25}},
+                                     {}, {{{0, 3}, {18}}, {{0, 2}, {7}}});
+  ASSERT_EQ(contests.size(), 1u);
+  EXPECT_THAT(contests[0].weakest_links, ElementsAre(ViewPair{1, 2}));
+  EXPECT_EQ(contests[0].evidence, 20);
+  EXPECT_THAT(contests[0].contradictions,
+              ElementsAre(ViewPair{0, 2}, ViewPair{0, 3}));
+  EXPECT_THAT(contests[0].evidence_against, ElementsAre(7, 18));
+}
+
 // Many ways of little evidence lead to the one link of much.
 TEST(Contests, ALinkThatManyWaysLeadTo) {
   EvidenceOfPairs in_use;

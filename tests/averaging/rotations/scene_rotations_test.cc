@@ -141,6 +141,40 @@ TEST(AverageSceneRotations, WeakContradictionsLeaveALinkInPlaceButContested) {
   EXPECT_EQ(rotations.unchecked, (std::vector<ViewPair>{{0, 6}}));
 }
 
+// Three false links of one mind win against two, unless third views tell.
+TEST(AverageSceneRotations, WhatThirdViewsOutweighHasNoPart) {
+  RotationGraph graph = Views(10, 5);
+  for (const std::size_t begin : {0u, 5u}) {
+    for (std::size_t n = 0; n < 5; ++n) {
+      graph.Add(begin + n, begin + (n + 1) % 5, Vec3::Zero(), false);
+      graph.Add(begin + n, begin + (n + 2) % 5, Vec3::Zero(), false);
+    }
+  }
+  graph.Add(3, 5, Vec3::Zero(), false);
+  graph.Add(4, 6, Vec3::Zero(), false);
+  ThirdViewVerdicts verdicts;
+  for (std::size_t n = 0; n < 3; ++n) {
+    const Mat3 turn = RotationFromAngleAxis(kPi * Vec3::UnitY());
+    graph.Add(n, n + 7, Vec3::Zero(), true);
+    graph.measurements.back().second_from_first =
+        graph.truth[n + 7] * turn * graph.truth[n].transpose();
+    verdicts.outweighed.insert(
+        {static_cast<ViewId>(n), static_cast<ViewId>(n + 7)});
+  }
+  EXPECT_GT(WorstErrorRad(graph, Average(graph)), 1);
+
+  const auto told =
+      AverageSceneRotations(ToScene(graph), RotationAveragingOptions(), kReach,
+                            0, RunContext(), verdicts);
+  ASSERT_TRUE(told);
+  EXPECT_LT(WorstErrorRad(graph, *told), 1e-6);
+  EXPECT_EQ(Outliers(*told), verdicts.outweighed);
+  for (const OutlierEdge& outlier : told->outliers) {
+    EXPECT_EQ(outlier.reason, OutlierReason::kOutweighed);
+  }
+  EXPECT_TRUE(told->contested.empty());
+}
+
 TEST(AverageSceneRotations, AChainIsKeptAndListedAsUnchecked) {
   RotationGraph graph = Views(5, 3);
   for (std::size_t n = 0; n + 1 < 5; ++n) {
@@ -211,6 +245,7 @@ TEST(OutlierEdge, IsFalseByMoreThanADegreeOrThree) {
   EXPECT_TRUE(is_false(OutlierReason::kContradicted, 0));
   EXPECT_TRUE(is_false(OutlierReason::kOpenLoop, 0));
   EXPECT_FALSE(is_false(OutlierReason::kMatches, 0));
+  EXPECT_TRUE(is_false(OutlierReason::kOutweighed, 0));
 }
 
 }  // namespace

@@ -191,9 +191,9 @@ void AddPoseContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
     // Many pairs have the same cut.
     if (side.empty() || !is_new) continue;
     Contest contest;
-    const double for_it = Across(in_use, side, &contest.links);
+    contest.evidence = Across(in_use, side, &contest.links);
     const double against = MostAcross(rejected, side, &contest.contradictions);
-    if (2 * against <= for_it) continue;
+    if (2 * against <= contest.evidence) continue;
     contest.views = SmallerSide(graph, side);
     contests->push_back(std::move(contest));
   }
@@ -227,17 +227,16 @@ void AddScaleContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
     if (past_joint.empty()) continue;
     for (std::vector<ViewId>& part : PartsAt(graph, joint)) {
       const std::set<ViewId> side(part.begin(), part.end());
-      double for_it = 0;
+      Contest contest;
       for (const auto& [views, evidence] : ratios) {
         if (views.middle == joint &&
             side.count(views.first) != side.count(views.last)) {
-          for_it = std::max(for_it, evidence);
+          contest.evidence = std::max(contest.evidence, evidence);
         }
       }
-      Contest contest;
       const double against =
           MostAcross(past_joint, side, &contest.contradictions);
-      if (for_it == 0 || 2 * against <= for_it) continue;
+      if (contest.evidence == 0 || 2 * against <= contest.evidence) continue;
       Across(in_use, side, &contest.links);
       contest.views = std::move(part);
       contests->push_back(std::move(contest));
@@ -264,12 +263,22 @@ std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
   std::vector<Contest> cuts;
   AddPoseContests(graph, in_use, rejected, &cuts);
   AddScaleContests(graph, in_use, ratios, rejected, &cuts);
+  std::stable_sort(cuts.begin(), cuts.end(), [](const auto& a, const auto& b) {
+    return a.evidence < b.evidence;
+  });
   std::map<std::vector<ViewPair>, Contest> by_cause;
   for (const Contest& cut : cuts) {
-    Contest& contest = by_cause[cut.contradictions];
-    contest.contradictions = cut.contradictions;
-    Unite(cut.links, &contest.links);
-    Unite(cut.views, &contest.views);
+    const auto [entry, is_new] = by_cause.emplace(cut.contradictions, cut);
+    Contest& contest = entry->second;
+    if (!is_new) {
+      Unite(cut.links, &contest.links);
+      Unite(cut.views, &contest.views);
+      continue;
+    }
+    contest.weakest_links = cut.links;
+    for (const ViewPair& pair : cut.contradictions) {
+      contest.evidence_against.push_back(rejected.at(pair).evidence);
+    }
   }
   std::vector<Contest> contests;
   contests.reserve(by_cause.size());

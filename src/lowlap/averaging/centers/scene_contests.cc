@@ -5,6 +5,7 @@
 
 #include "lowlap/averaging/centers/internal/contests.h"
 #include "lowlap/averaging/internal/problem_errors.h"
+#include "lowlap/geometry/internal/rotation.h"
 
 namespace lowlap {
 namespace {
@@ -15,6 +16,19 @@ bool IsContested(const std::vector<ContestedLink>& contested,
                      [&](const ContestedLink& link) {
                        return contest.links == std::vector<ViewPair>{link.edge};
                      });
+}
+
+bool IsMet(const Scene& scene, const ViewPair& views) {
+  const Pose* const first = scene.FindPose(views.first);
+  const Pose* const second = scene.FindPose(views.second);
+  if (first == nullptr || second == nullptr) return false;
+  const RelativePose& pose = scene.relative_poses.at(views);
+  const RigidTransform cam2_from_cam1 =
+      second->CamFromWorld() * first->CamFromWorld().Inverse();
+  return RotationAngleBetween(pose.rotation, cam2_from_cam1.rotation) <=
+             RadFromDeg(kLittleDeg) &&
+         AngleBetween(pose.direction, cam2_from_cam1.translation) <=
+             RadFromDeg(kLittleOfDirectionsDeg);
 }
 
 }  // namespace
@@ -47,8 +61,11 @@ std::vector<Contest> FindSceneContests(const Scene& scene,
       const Mat3 turn =
           rotations.cam_from_world.at(edge.views.second).transpose() *
           pose.rotation * rotations.cam_from_world.at(edge.views.first);
-      rejected[edge.views] = {EvidenceOfNfa(pose.log10_nfa), turn,
-                              RotationStddev(pose)};
+      const auto counting = rotations.third_views.evidence.find(edge.views);
+      rejected[edge.views] = {counting != rotations.third_views.evidence.end()
+                                  ? counting->second
+                                  : EvidenceOfNfa(pose.log10_nfa),
+                              turn, RotationStddev(pose)};
     }
   }
   EvidenceOfRatios ratios;
@@ -65,6 +82,21 @@ std::vector<Contest> FindSceneContests(const Scene& scene,
                                 }),
                  contests.end());
   return contests;
+}
+
+std::vector<Contest> ContestsThatStay(const Scene& scene,
+                                      const std::vector<Contest>& contests) {
+  std::vector<Contest> staying;
+  for (const Contest& contest : contests) {
+    double against = 0;
+    for (std::size_t n = 0; n < contest.contradictions.size(); ++n) {
+      if (!IsMet(scene, contest.contradictions[n])) {
+        against += contest.evidence_against[n];
+      }
+    }
+    if (2 * against > contest.evidence) staying.push_back(contest);
+  }
+  return staying;
 }
 
 }  // namespace lowlap

@@ -27,9 +27,17 @@ class SceneRotationSolver {
  public:
   SceneRotationSolver(const Scene& scene,
                       const RotationAveragingOptions& options,
-                      const ErrorLimits& limits, const RunContext& context)
+                      const ErrorLimits& limits, const RunContext& context,
+                      ThirdViewVerdicts third_views)
       : scene_(scene), options_(options), context_(context), limits_(limits) {
-    for (const auto& entry : scene.relative_poses) kept_.insert(entry.first);
+    result_.third_views = std::move(third_views);
+    for (const auto& [views, pose] : scene.relative_poses) {
+      if (IsOutweighed(views)) {
+        outliers_[views] = {views, OutlierReason::kOutweighed, 0};
+      } else {
+        kept_.insert(views);
+      }
+    }
   }
 
   Result<SceneRotations> Solve() {
@@ -42,6 +50,10 @@ class SceneRotationSolver {
   }
 
  private:
+  bool IsOutweighed(const ViewPair& views) const {
+    return result_.third_views.outweighed.count(views) > 0;
+  }
+
   const RelativePose& PoseOf(const ViewPair& views) const {
     return scene_.relative_poses.at(views);
   }
@@ -64,7 +76,7 @@ class SceneRotationSolver {
       const auto second = index.find(views.second);
       if (first == index.end() || second == index.end()) continue;
       if (kept_.count(views) == 0) {
-        rejected_.push_back(views);
+        if (!IsOutweighed(views)) rejected_.push_back(views);
         continue;
       }
       kept.push_back(views);
@@ -252,6 +264,8 @@ const char* OutlierReasonName(OutlierReason reason) {
       return "open_loop";
     case OutlierReason::kMatches:
       return "matches";
+    case OutlierReason::kOutweighed:
+      return "outweighed";
   }
   return "";
 }
@@ -264,6 +278,7 @@ bool OutlierEdge::IsFalse() const {
       return error_deg > kLittleOfDirectionsDeg;
     case OutlierReason::kContradicted:
     case OutlierReason::kOpenLoop:
+    case OutlierReason::kOutweighed:
       return true;
     case OutlierReason::kMatches:
       break;
@@ -288,13 +303,14 @@ std::vector<ViewPair> PairsOf(const std::vector<OutlierEdge>& outliers) {
 
 Result<SceneRotations> AverageSceneRotations(
     const Scene& scene, const RotationAveragingOptions& options,
-    double outlier_reach, double least_false_rad, const RunContext& context) {
+    double outlier_reach, double least_false_rad, const RunContext& context,
+    ThirdViewVerdicts third_views) {
   if (scene.relative_poses.empty()) {
     return MakeError(ErrorCode::kInsufficientData,
                      "the scene has no relative pose to build on");
   }
   return SceneRotationSolver(scene, options, {outlier_reach, least_false_rad},
-                             context)
+                             context, std::move(third_views))
       .Solve();
 }
 

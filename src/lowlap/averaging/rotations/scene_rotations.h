@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "lowlap/core/ids.h"
@@ -29,9 +30,11 @@ enum class OutlierReason {
   kContradicted,  // on no cycle, and what contradicts it has more evidence
   kOpenLoop,      // the least evidence in a loop that does not close at all
   kMatches,       // its own matches contradict its direction
+  kOutweighed,    // third views bear out what contradicts it, and hardly it
 };
 
-/// "rotation", "direction", "contradicted", "open_loop", "matches".
+/// "rotation", "direction", "contradicted", "open_loop", "matches",
+/// "outweighed".
 const char* OutlierReasonName(OutlierReason reason);
 
 /// What a rotation and a direction may be off without being called false.
@@ -42,8 +45,8 @@ inline constexpr double kLittleOfDirectionsDeg = 3 * kLittleDeg;
 struct OutlierEdge {
   ViewPair views;
   OutlierReason reason = OutlierReason::kRotation;
-  /// Its distance from the solution when it was left out; 0 for kContradicted,
-  /// kOpenLoop and kMatches.
+  /// Its distance from the solution when it was left out; 0 for reasons other
+  /// than kRotation and kDirection.
   double error_deg = 0;
 
   /// The others say that it is wrong: not if it is off by a little only, nor if
@@ -115,6 +118,16 @@ struct MatchVerdicts {
   std::vector<ViewPair> untold;   // too few matches to say
 };
 
+/// What third views say of relative poses whose rotations contradict one
+/// another, by views.
+struct ThirdViewVerdicts {
+  /// To be left out: others that contradict them are borne out better.
+  std::set<ViewPair> outweighed;
+  /// What of their evidence (EvidenceOfNfa) counts, where they contradict the
+  /// solution; all, unless listed.
+  std::map<ViewPair, double> evidence;
+};
+
 struct SceneRotations {
   /// The largest component of what is kept.
   std::map<ViewId, Mat3> cam_from_world;
@@ -125,6 +138,8 @@ struct SceneRotations {
   std::vector<ViewPair> unchecked;
   /// Of all relative poses, if they were asked; see AddMatchVerdicts.
   MatchVerdicts matches;
+  /// As given.
+  ThirdViewVerdicts third_views;
   double median_residual_rad = 0;
 };
 
@@ -147,12 +162,13 @@ double RotationStddev(const RelativePose& pose);
 ///   to `outlier_reach` times the expected closing error all are kept, and
 ///   share it with full weights; beyond, the one of least evidence is left out.
 ///   Both are listed in `loops`.
+/// - What third views found outweighed has no part in any of this.
 ///
 /// Errors: those of AverageRotations; kInsufficientData if nothing remains.
 Result<SceneRotations> AverageSceneRotations(
     const Scene& scene, const RotationAveragingOptions& options,
     double outlier_reach, double least_false_rad = 0,
-    const RunContext& context = {});
+    const RunContext& context = {}, ThirdViewVerdicts third_views = {});
 
 /// Takes the verdicts over. Relative poses that are refuted become outliers:
 /// their rotations may be right, and have had their part in the average.

@@ -121,9 +121,9 @@ class Decider {
   std::map<ViewPair, HypothesisDecision*> decisions_;
 };
 
-Status ChooseMotions(const MatchVerdicts& matches, const SolveOptions& options,
-                     const RunContext& context, StageLog* stages, Scene* scene,
-                     SolveResult* result) {
+Status ChooseMotions(const SceneRotations& rotations,
+                     const SolveOptions& options, const RunContext& context,
+                     StageLog* stages, Scene* scene, SolveResult* result) {
   Decider decider(scene, result);
   std::set<ViewPair> changed;
   std::optional<StageLog::Scope> scope;
@@ -132,7 +132,8 @@ Status ChooseMotions(const MatchVerdicts& matches, const SolveOptions& options,
     if (pairs.empty()) return {};
     if (!scope) scope.emplace(stages, "ambiguous planes");
     std::vector<MotionTrial> trials = TrialsOf(pairs, *scene, result->poses);
-    LOWLAP_RETURN_IF_ERROR(RunMotionTrials(matches, options, context, &trials));
+    LOWLAP_RETURN_IF_ERROR(
+        RunMotionTrials(rotations, options, context, &trials));
     const auto best = std::min_element(
         trials.begin(), trials.end(),
         [](const auto& a, const auto& b) { return a.cost < b.cost; });
@@ -150,13 +151,13 @@ Status ChooseMotions(const MatchVerdicts& matches, const SolveOptions& options,
 
 }  // namespace
 
-Status DecideHypothesesByStructure(const MatchVerdicts& matches,
+Status DecideHypothesesByStructure(const SceneRotations& rotations,
                                    const SolveOptions& options,
                                    const RunContext& context, StageLog* stages,
                                    Scene* scene, SolveResult* result) {
   if (options.adjust) {
     LOWLAP_RETURN_IF_ERROR(
-        ChooseMotions(matches, options, context, stages, scene, result));
+        ChooseMotions(rotations, options, context, stages, scene, result));
   }
   LogDecisions(result->motions, *scene, context);
   return {};

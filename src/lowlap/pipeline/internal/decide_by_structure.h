@@ -26,7 +26,7 @@ namespace lowlap {
 /// ratios and the decisions so far; all follow, and the log says what became of
 /// every decision. The result does not depend on the number of threads.
 /// Error: kCancelled.
-Status DecideHypothesesByStructure(const MatchVerdicts& matches,
+Status DecideHypothesesByStructure(const SceneRotations& rotations,
                                    const SolveOptions& options,
                                    const RunContext& context, StageLog* stages,
                                    Scene* scene, SolveResult* result);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "lowlap/adjustment/internal/structure/prediction_evidence.h"
+#include "lowlap/averaging/centers/internal/scene_contests.h"
 #include "lowlap/averaging/internal/hanging_views.h"
 #include "lowlap/averaging/internal/lost_features.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
@@ -123,6 +124,7 @@ Status JudgeViews(Scene* scene,
     poses->reliability_warnings = FindReliabilityWarnings(
         *scene, *poses->agreement, evidence, &poses->firm_evidence);
     DropNeedless(poses);
+    poses->contests = ContestsThatStay(*scene, poses->contests);
   }
   for (ReliabilityWarning& doubt : FindLostFeatures(*scene)) {
     poses->reliability_warnings.push_back(std::move(doubt));

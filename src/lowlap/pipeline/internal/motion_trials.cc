@@ -38,9 +38,9 @@ std::vector<ViewPair> FalseInAll(const std::vector<MotionTrial>& trials) {
 
 class Runner {
  public:
-  Runner(const MatchVerdicts& matches, const SolveOptions& options,
+  Runner(const SceneRotations& rotations, const SolveOptions& options,
          const RunContext& context, std::vector<MotionTrial>* trials)
-      : matches_(matches),
+      : rotations_(rotations),
         options_(options),
         context_(context),
         trials_(*trials),
@@ -81,9 +81,9 @@ class Runner {
     SolveStart start;
     start.motions.push_back({trial->views, HypothesisGrounds::kNone, true});
     LOWLAP_ASSIGN_OR_RETURN(
-        start.rotations,
-        AverageSceneRotations(scene, options_.poses, of_trial_));
-    AddMatchVerdicts(matches_, &start.rotations);
+        start.rotations, AverageSceneRotations(scene, options_.poses, of_trial_,
+                                               rotations_.third_views));
+    AddMatchVerdicts(rotations_.matches, &start.rotations);
     LOWLAP_ASSIGN_OR_RETURN(
         trial->ratios,
         EstimateBelievedRatios(&scene, start, options_, of_trial_, nullptr));
@@ -117,7 +117,7 @@ class Runner {
     return {};
   }
 
-  const MatchVerdicts& matches_;
+  const SceneRotations& rotations_;
   SolveOptions options_;
   const RunContext& context_;
   std::vector<MotionTrial>& trials_;
@@ -128,10 +128,10 @@ class Runner {
 
 }  // namespace
 
-Status RunMotionTrials(const MatchVerdicts& matches,
+Status RunMotionTrials(const SceneRotations& rotations,
                        const SolveOptions& options, const RunContext& context,
                        std::vector<MotionTrial>* trials) {
-  return Runner(matches, options, context, trials).Run();
+  return Runner(rotations, options, context, trials).Run();
 }
 
 }  // namespace lowlap

@@ -36,9 +36,9 @@ struct MotionTrial {
 /// contradict may be what tells. A trial that fails, or that places other views
 /// than the first, has an error and no cost.
 ///
-/// `matches` as in SceneRotations. The result does not depend on the number of
-/// threads. Error: kCancelled.
-Status RunMotionTrials(const MatchVerdicts& matches,
+/// `rotations`: those of the first trial, whose verdicts hold in all. The
+/// result does not depend on the number of threads. Error: kCancelled.
+Status RunMotionTrials(const SceneRotations& rotations,
                        const SolveOptions& options, const RunContext& context,
                        std::vector<MotionTrial>* trials);
 

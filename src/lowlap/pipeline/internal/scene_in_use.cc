@@ -7,6 +7,7 @@
 #include "lowlap/averaging/internal/solution_agreement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/settle_contests.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -16,14 +17,17 @@ Result<Scene> SceneInUse(Scene scene, SolveOptions options,
   if (scene.relative_poses.empty()) return scene;
   options.reuse_ratios = !scene.scale_ratios.empty();
   Scene solved = scene;
-  LOWLAP_ASSIGN_OR_RETURN(const auto start,
+  LOWLAP_ASSIGN_OR_RETURN(auto start,
                           StartSolution(&solved, options, context, nullptr));
   LogDecisions(start.motions, solved, context);
-  LOWLAP_RETURN_IF_ERROR(
+  LOWLAP_ASSIGN_OR_RETURN(
+      auto ratios,
       EstimateBelievedRatios(&solved, start, options, context, nullptr));
   LOWLAP_ASSIGN_OR_RETURN(
-      const auto summary,
+      auto summary,
       ComposePoses(&solved, start.rotations, options.poses, context, nullptr));
+  LOWLAP_RETURN_IF_ERROR(SettleContests(options, context, nullptr, &solved,
+                                        &start, &ratios, &summary));
   scene.relative_poses = std::move(solved.relative_poses);
   scene.scale_ratios = std::move(solved.scale_ratios);
   for (const auto* edges : {&summary.outlier_edges, &summary.kept_outliers}) {

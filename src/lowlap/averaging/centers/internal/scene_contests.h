@@ -13,4 +13,12 @@ std::vector<Contest> FindSceneContests(const Scene& scene,
                                        const SceneRotations& rotations,
                                        const SceneCenters& centers);
 
+/// Those that stay in the light of poses that were adjusted since. What a
+/// contradiction says may be what the adjustment found: those that the poses of
+/// the scene meet, to within what a little is (kLittleDeg), contradict nothing
+/// any more, and the others contest as before, if they have more than half the
+/// evidence.
+std::vector<Contest> ContestsThatStay(const Scene& scene,
+                                      const std::vector<Contest>& contests);
+
 }  // namespace lowlap

@@ -64,6 +64,8 @@ std::string OutlierNote(OutlierReason reason) {
       return "least evidence in a loop that does not close";
     case OutlierReason::kMatches:
       return "its own matches contradict it";
+    case OutlierReason::kOutweighed:
+      return "third views bear out what contradicts it, and hardly it";
   }
   return "";
 }

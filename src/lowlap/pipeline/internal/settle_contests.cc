@@ -1,0 +1,253 @@
+#include "lowlap/pipeline/internal/settle_contests.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "lowlap/averaging/centers/internal/contests.h"
+#include "lowlap/averaging/rigidity/internal/diagnosis.h"
+#include "lowlap/core/internal/propagate.h"
+#include "lowlap/scale/scale_ratios.h"
+#include "lowlap/scene/view_graph.h"
+
+namespace lowlap {
+namespace {
+
+ViewTriplet TripletOf(const ViewPair& a, const ViewPair& b) {
+  const ViewId middle =
+      a.first == b.first || a.first == b.second ? a.first : a.second;
+  const auto other = [&](const ViewPair& pair) {
+    return pair.first == middle ? pair.second : pair.first;
+  };
+  const std::pair<ViewId, ViewId> ends = std::minmax(other(a), other(b));
+  return {ends.first, middle, ends.second};
+}
+
+bool Share(const ViewPair& a, const ViewPair& b) {
+  return a != b && (a.first == b.first || a.first == b.second ||
+                    a.second == b.first || a.second == b.second);
+}
+
+// What third views say of one solution's relative poses.
+class ThirdViews {
+ public:
+  ThirdViews(const Scene& scene, const PoseSummary& poses) : scene_(scene) {
+    for (const ScaleRatio& ratio : scene.scale_ratios) {
+      known_.emplace(ratio.views, &ratio);
+    }
+    std::vector<ViewPair> out = PairsOf(poses.outlier_edges);
+    const std::vector<ViewPair> kept = PairsOf(poses.kept_outliers);
+    out.insert(out.end(), kept.begin(), kept.end());
+    in_use_ = ViewGraph(scene).WithoutPairs(out).WithoutViews(poses.unplaced);
+  }
+
+  // Those whose ratio bears the pair out if it is meaningful: with a relative
+  // pose in use of one side of the contested cut.
+  std::vector<ViewTriplet> Witnesses(const ViewPair& pair,
+                                     const Contest& contest) const {
+    std::vector<ViewTriplet> witnesses;
+    for (const ViewPair& partner : in_use_.pairs()) {
+      if (Share(pair, partner) && !Contains(contest.links, partner)) {
+        witnesses.push_back(TripletOf(pair, partner));
+      }
+    }
+    return witnesses;
+  }
+
+  // The links of a cut, and which of the others join the same two sides.
+  std::vector<ViewPair> Across(std::vector<ViewPair> links,
+                               const std::set<ViewPair>& others) const {
+    std::map<ViewId, std::size_t> side;
+    std::size_t index = 0;
+    for (const std::vector<ViewId>& views :
+         ConnectedComponents(in_use_.WithoutPairs(links))) {
+      for (const ViewId view : views) side[view] = index;
+      ++index;
+    }
+    for (const ViewPair& pair : others) {
+      const auto first = side.find(pair.first);
+      const auto second = side.find(pair.second);
+      if (first != side.end() && second != side.end() &&
+          first->second != second->second) {
+        links.push_back(pair);
+      }
+    }
+    return links;
+  }
+
+  Status Estimate(const std::set<ViewTriplet>& triplets,
+                  const ScaleEstimator& estimator, const RunContext& context) {
+    std::vector<ViewTriplet> missing;
+    for (const ViewTriplet& views : triplets) {
+      if (known_.count(views) == 0) missing.push_back(views);
+    }
+    LOWLAP_ASSIGN_OR_RETURN(
+        estimated_, EstimateScaleRatios(scene_, missing, estimator, context));
+    for (const ScaleRatio& ratio : estimated_) {
+      known_.emplace(ratio.views, &ratio);
+    }
+    return {};
+  }
+
+  // The evidence of the pair, as far as the best witness bears it out.
+  double EvidenceOf(const ViewPair& pair,
+                    const std::vector<ViewTriplet>& witnesses) const {
+    double best = EvidenceOfNfa(0);
+    for (const ViewTriplet& views : witnesses) {
+      const auto ratio = known_.find(views);
+      if (ratio == known_.end() ||
+          ratio->second->verdict != RatioVerdict::kMeaningful ||
+          IsWeak(*ratio->second, {})) {
+        continue;
+      }
+      best = std::max(best, EvidenceOfNfa(ratio->second->log10_nfa));
+    }
+    return std::min(best,
+                    EvidenceOfNfa(scene_.relative_poses.at(pair).log10_nfa));
+  }
+
+ private:
+  static bool Contains(const std::vector<ViewPair>& pairs,
+                       const ViewPair& pair) {
+    return std::find(pairs.begin(), pairs.end(), pair) != pairs.end();
+  }
+
+  const Scene& scene_;
+  ViewGraph in_use_;
+  std::vector<ScaleRatio> estimated_;
+  std::map<ViewTriplet, const ScaleRatio*> known_;
+};
+
+// The contests about which third views were not asked.
+std::vector<Contest> NewContests(const PoseSummary& poses,
+                                 const ThirdViewVerdicts& verdicts) {
+  std::vector<Contest> contests;
+  for (const Contest& contest : poses.contests) {
+    if (std::any_of(contest.contradictions.begin(),
+                    contest.contradictions.end(), [&](const ViewPair& pair) {
+                      return verdicts.evidence.count(pair) == 0;
+                    })) {
+      contests.push_back(contest);
+    }
+  }
+  return contests;
+}
+
+std::set<ViewPair> OutByDirection(const PoseSummary& poses) {
+  std::set<ViewPair> pairs;
+  for (const auto* edges : {&poses.outlier_edges, &poses.kept_outliers}) {
+    for (const OutlierEdge& edge : *edges) {
+      if (edge.reason == OutlierReason::kDirection) pairs.insert(edge.views);
+    }
+  }
+  return pairs;
+}
+
+// The verdicts with those about the contests.
+Result<ThirdViewVerdicts> Ask(const Scene& scene, const PoseSummary& poses,
+                              const std::vector<Contest>& contests,
+                              ThirdViewVerdicts verdicts,
+                              const ScaleEstimator& estimator,
+                              const RunContext& context) {
+  ThirdViews third_views(scene, poses);
+  std::set<ViewTriplet> triplets;
+  for (const Contest& contest : contests) {
+    for (const auto* pairs : {&contest.contradictions, &contest.links}) {
+      for (const ViewPair& pair : *pairs) {
+        for (const ViewTriplet& views : third_views.Witnesses(pair, contest)) {
+          triplets.insert(views);
+        }
+      }
+    }
+  }
+  LOWLAP_RETURN_IF_ERROR(third_views.Estimate(triplets, estimator, context));
+  const std::set<ViewPair> by_direction = OutByDirection(poses);
+  for (const Contest& contest : contests) {
+    const auto evidence_of = [&](const ViewPair& pair) {
+      return third_views.EvidenceOf(pair, third_views.Witnesses(pair, contest));
+    };
+    const auto is_weak = [&](const ViewPair& pair) {
+      return scene.relative_poses.at(pair).weakness.has_value();
+    };
+    double against = 0, for_it = 0;
+    bool turn = true;
+    for (const ViewPair& pair : contest.contradictions) {
+      const double evidence = evidence_of(pair);
+      double& counting = verdicts.evidence[pair];
+      counting = std::max(counting, evidence);
+      if (!is_weak(pair)) against += evidence;
+      turn = turn && by_direction.count(pair) == 0;
+    }
+    const std::vector<ViewPair> links =
+        third_views.Across(contest.weakest_links, by_direction);
+    for (const ViewPair& pair : links) {
+      for_it += is_weak(pair) ? EvidenceOfNfa(0) : evidence_of(pair);
+    }
+    if (!turn || against <= 2 * for_it) continue;
+    for (const ViewPair& pair : links) {
+      verdicts.outweighed.insert(pair);
+      verdicts.evidence[pair] = EvidenceOfNfa(0);
+    }
+  }
+  return verdicts;
+}
+
+struct Composed {
+  SceneRotations rotations;
+  RatioSummary ratios;
+  PoseSummary poses;
+};
+
+Result<Composed> Compose(const SolveOptions& options, const RunContext& context,
+                         StageLog* stages, ThirdViewVerdicts verdicts,
+                         Scene* scene, SolveStart* start) {
+  Composed result;
+  LOWLAP_ASSIGN_OR_RETURN(result.rotations,
+                          AverageSceneRotations(*scene, options.poses, context,
+                                                std::move(verdicts)));
+  AddMatchVerdicts(start->rotations.matches, &result.rotations);
+  std::swap(start->rotations, result.rotations);
+  auto ratios = EstimateBelievedRatios(scene, *start, options, context, stages);
+  std::swap(start->rotations, result.rotations);
+  if (!ratios) return tl::unexpected<Error>(ratios.error());
+  result.ratios = *ratios;
+  LOWLAP_ASSIGN_OR_RETURN(
+      result.poses,
+      ComposePoses(scene, result.rotations, options.poses, context, stages));
+  return result;
+}
+
+}  // namespace
+
+Status SettleContests(const SolveOptions& options, const RunContext& context,
+                      StageLog* stages, Scene* scene, SolveStart* start,
+                      RatioSummary* ratios, PoseSummary* poses) {
+  SolveOptions again = options;
+  again.reuse_ratios = true;
+  for (;;) {
+    const ThirdViewVerdicts& before = start->rotations.third_views;
+    const std::vector<Contest> contests = NewContests(*poses, before);
+    if (contests.empty()) return {};
+    LOWLAP_ASSIGN_OR_RETURN(ThirdViewVerdicts verdicts,
+                            Ask(*scene, *poses, contests, before,
+                                *options.scale_estimator, context));
+    const std::vector<ScaleRatio> old_ratios = scene->scale_ratios;
+    auto composed = Compose(again, context, stages, verdicts, scene, start);
+    if (!composed && composed.error().code == ErrorCode::kCancelled) {
+      return tl::unexpected<Error>(composed.error());
+    }
+    if (!composed || composed->poses.num_placed < poses->num_placed) {
+      verdicts.outweighed = before.outweighed;
+      scene->scale_ratios = old_ratios;
+      LOWLAP_ASSIGN_OR_RETURN(
+          composed, Compose(again, context, stages, verdicts, scene, start));
+    }
+    start->rotations = std::move(composed->rotations);
+    *ratios = composed->ratios;
+    *poses = std::move(composed->poses);
+  }
+}
+
+}  // namespace lowlap

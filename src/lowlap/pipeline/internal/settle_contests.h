@@ -1,0 +1,31 @@
+#pragma once
+
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
+#include "lowlap/pipeline/solve_scene.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// Asks third views about relative poses whose rotations contradict the
+/// solution and contest a part of it (PoseSummary::contests), and composes the
+/// poses again with what they say.
+///
+/// A relative pose that joins two places that look alike explains the matches
+/// of its two views as well as a right one does. But a right one sees what its
+/// neighbours see: with a relative pose of one side of the contested cut it
+/// shares points, lines or planes that agree on a scale ratio. So what counts
+/// of its evidence is at most that of the best such ratio, if that is not weak
+/// (IsWeak). The contest is found again, or not, with what is left
+/// (ThirdViewVerdicts::evidence). If that is more than twice what third views
+/// leave of the links that it contradicts, these are left out instead
+/// (ThirdViewVerdicts::outweighed), unless it loses a view.
+///
+/// `start`, scene->scale_ratios and scene->poses become those of the new
+/// solution; `ratios` and `poses` are its summaries. Without a contest nothing
+/// is done. Errors: those of EstimateBelievedRatios and ComposePoses.
+Status SettleContests(const SolveOptions& options, const RunContext& context,
+                      StageLog* stages, Scene* scene, SolveStart* start,
+                      RatioSummary* ratios, PoseSummary* poses);
+
+}  // namespace lowlap
