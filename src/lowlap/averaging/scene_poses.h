@@ -78,8 +78,8 @@ struct Contest {
   std::vector<ViewPair> links;
   std::vector<ViewPair> contradictions;
   std::vector<ViewId> views;
-  /// Where the contradictions contradict several cuts, as those of a chain, the
-  /// links of the one of least evidence.
+  /// Where the contradictions contradict several cuts, the links of the one of
+  /// least evidence; none if only the scale is contested.
   std::vector<ViewPair> weakest_links = {};
   /// The least evidence that is contradicted, and that of each contradiction as
   /// it counts (EvidenceOfNfa).

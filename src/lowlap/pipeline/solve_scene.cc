@@ -281,8 +281,9 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
   LOWLAP_ASSIGN_OR_RETURN(
       result.poses,
       ComposePoses(scene, start.rotations, options.poses, context, stages));
-  LOWLAP_RETURN_IF_ERROR(SettleContests(options, context, stages, scene, &start,
-                                        &result.ratios, &result.poses));
+  LOWLAP_RETURN_IF_ERROR(SettleContests(options, context, stages, scene,
+                                        &start.rotations, &result.ratios,
+                                        &result.poses));
   result.motions = std::move(start.motions);
   result.reconsidered = std::move(start.reconsidered);
   LOWLAP_RETURN_IF_ERROR(DecideHypothesesByStructure(

@@ -143,6 +143,8 @@ TEST(ScaleContests, TheBestRatioAcrossAJointAgainstWhatPassesItBy) {
   ASSERT_EQ(contests.size(), 1u);
   EXPECT_THAT(contests[0].views, ElementsAre(0, 1));
   EXPECT_THAT(contests[0].links, ElementsAre(ViewPair{0, 2}, ViewPair{1, 2}));
+  EXPECT_THAT(contests[0].weakest_links, IsEmpty());
+  EXPECT_EQ(contests[0].evidence, 9);
   EXPECT_THAT(contests[0].contradictions, ElementsAre(ViewPair{1, 4}));
 }
 

@@ -194,6 +194,7 @@ void AddPoseContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
     contest.evidence = Across(in_use, side, &contest.links);
     const double against = MostAcross(rejected, side, &contest.contradictions);
     if (2 * against <= contest.evidence) continue;
+    contest.weakest_links = contest.links;
     contest.views = SmallerSide(graph, side);
     contests->push_back(std::move(contest));
   }
@@ -273,9 +274,11 @@ std::vector<Contest> FindContests(const EvidenceOfPairs& in_use,
     if (!is_new) {
       Unite(cut.links, &contest.links);
       Unite(cut.views, &contest.views);
+      if (contest.weakest_links.empty()) {
+        contest.weakest_links = cut.weakest_links;
+      }
       continue;
     }
-    contest.weakest_links = cut.links;
     for (const ViewPair& pair : cut.contradictions) {
       contest.evidence_against.push_back(rejected.at(pair).evidence);
     }

@@ -27,7 +27,7 @@ Result<Scene> SceneInUse(Scene scene, SolveOptions options,
       auto summary,
       ComposePoses(&solved, start.rotations, options.poses, context, nullptr));
   LOWLAP_RETURN_IF_ERROR(SettleContests(options, context, nullptr, &solved,
-                                        &start, &ratios, &summary));
+                                        &start.rotations, &ratios, &summary));
   scene.relative_poses = std::move(solved.relative_poses);
   scene.scale_ratios = std::move(solved.scale_ratios);
   for (const auto* edges : {&summary.outlier_edges, &summary.kept_outliers}) {

@@ -15,21 +15,6 @@
 namespace lowlap {
 namespace {
 
-ViewTriplet TripletOf(const ViewPair& a, const ViewPair& b) {
-  const ViewId middle =
-      a.first == b.first || a.first == b.second ? a.first : a.second;
-  const auto other = [&](const ViewPair& pair) {
-    return pair.first == middle ? pair.second : pair.first;
-  };
-  const std::pair<ViewId, ViewId> ends = std::minmax(other(a), other(b));
-  return {ends.first, middle, ends.second};
-}
-
-bool Share(const ViewPair& a, const ViewPair& b) {
-  return a != b && (a.first == b.first || a.first == b.second ||
-                    a.second == b.first || a.second == b.second);
-}
-
 // What third views say of one solution's relative poses.
 class ThirdViews {
  public:
@@ -48,33 +33,45 @@ class ThirdViews {
   std::vector<ViewTriplet> Witnesses(const ViewPair& pair,
                                      const Contest& contest) const {
     std::vector<ViewTriplet> witnesses;
-    for (const ViewPair& partner : in_use_.pairs()) {
-      if (Share(pair, partner) && !Contains(contest.links, partner)) {
-        witnesses.push_back(TripletOf(pair, partner));
+    for (const auto& [middle, other] : {std::pair(pair.first, pair.second),
+                                        std::pair(pair.second, pair.first)}) {
+      for (const ViewId third : in_use_.NeighborsOf(middle)) {
+        const ViewPair partner = OrderedPair(middle, third);
+        if (third == other ||
+            std::find(contest.links.begin(), contest.links.end(), partner) !=
+                contest.links.end()) {
+          continue;
+        }
+        witnesses.push_back(
+            {std::min(other, third), middle, std::max(other, third)});
       }
     }
     return witnesses;
   }
 
   // The links of a cut, and which of the others join the same two sides.
-  std::vector<ViewPair> Across(std::vector<ViewPair> links,
+  std::vector<ViewPair> Across(const std::vector<ViewPair>& links,
                                const std::set<ViewPair>& others) const {
-    std::map<ViewId, std::size_t> side;
-    std::size_t index = 0;
+    std::map<ViewId, std::size_t> part_of;
+    std::size_t num_parts = 0;
     for (const std::vector<ViewId>& views :
          ConnectedComponents(in_use_.WithoutPairs(links))) {
-      for (const ViewId view : views) side[view] = index;
-      ++index;
+      for (const ViewId view : views) part_of[view] = num_parts;
+      ++num_parts;
     }
+    const auto parts_of = [&](const ViewPair& pair) {
+      return std::minmax({part_of.at(pair.first), part_of.at(pair.second)});
+    };
+    std::set<std::pair<std::size_t, std::size_t>> joined;
+    for (const ViewPair& link : links) joined.insert(parts_of(link));
+    std::vector<ViewPair> across = links;
     for (const ViewPair& pair : others) {
-      const auto first = side.find(pair.first);
-      const auto second = side.find(pair.second);
-      if (first != side.end() && second != side.end() &&
-          first->second != second->second) {
-        links.push_back(pair);
+      if (part_of.count(pair.first) > 0 && part_of.count(pair.second) > 0 &&
+          joined.count(parts_of(pair)) > 0) {
+        across.push_back(pair);
       }
     }
-    return links;
+    return across;
   }
 
   Status Estimate(const std::set<ViewTriplet>& triplets,
@@ -109,11 +106,6 @@ class ThirdViews {
   }
 
  private:
-  static bool Contains(const std::vector<ViewPair>& pairs,
-                       const ViewPair& pair) {
-    return std::find(pairs.begin(), pairs.end(), pair) != pairs.end();
-  }
-
   const Scene& scene_;
   ViewGraph in_use_;
   std::vector<ScaleRatio> estimated_;
@@ -185,7 +177,7 @@ Result<ThirdViewVerdicts> Ask(const Scene& scene, const PoseSummary& poses,
     for (const ViewPair& pair : links) {
       for_it += is_weak(pair) ? EvidenceOfNfa(0) : evidence_of(pair);
     }
-    if (!turn || against <= 2 * for_it) continue;
+    if (!turn || links.empty() || against <= 2 * for_it) continue;
     for (const ViewPair& pair : links) {
       verdicts.outweighed.insert(pair);
       verdicts.evidence[pair] = EvidenceOfNfa(0);
@@ -200,51 +192,55 @@ struct Composed {
   PoseSummary poses;
 };
 
-Result<Composed> Compose(const SolveOptions& options, const RunContext& context,
-                         StageLog* stages, ThirdViewVerdicts verdicts,
-                         Scene* scene, SolveStart* start) {
-  Composed result;
-  LOWLAP_ASSIGN_OR_RETURN(result.rotations,
+// Ratios that the scene has are those of its relative poses.
+Result<Composed> Compose(const MatchVerdicts& matches,
+                         ThirdViewVerdicts verdicts,
+                         const SolveOptions& options, const RunContext& context,
+                         StageLog* stages, Scene* scene) {
+  SolveStart start;
+  LOWLAP_ASSIGN_OR_RETURN(start.rotations,
                           AverageSceneRotations(*scene, options.poses, context,
                                                 std::move(verdicts)));
-  AddMatchVerdicts(start->rotations.matches, &result.rotations);
-  std::swap(start->rotations, result.rotations);
-  auto ratios = EstimateBelievedRatios(scene, *start, options, context, stages);
-  std::swap(start->rotations, result.rotations);
-  if (!ratios) return tl::unexpected<Error>(ratios.error());
-  result.ratios = *ratios;
+  AddMatchVerdicts(matches, &start.rotations);
+  Composed result;
+  LOWLAP_ASSIGN_OR_RETURN(
+      result.ratios,
+      EstimateBelievedRatios(scene, start, options, context, stages));
   LOWLAP_ASSIGN_OR_RETURN(
       result.poses,
-      ComposePoses(scene, result.rotations, options.poses, context, stages));
+      ComposePoses(scene, start.rotations, options.poses, context, stages));
+  result.rotations = std::move(start.rotations);
   return result;
 }
 
 }  // namespace
 
 Status SettleContests(const SolveOptions& options, const RunContext& context,
-                      StageLog* stages, Scene* scene, SolveStart* start,
+                      StageLog* stages, Scene* scene, SceneRotations* rotations,
                       RatioSummary* ratios, PoseSummary* poses) {
-  SolveOptions again = options;
-  again.reuse_ratios = true;
+  SolveOptions with_known = options;
+  with_known.reuse_ratios = true;
   for (;;) {
-    const ThirdViewVerdicts& before = start->rotations.third_views;
+    const ThirdViewVerdicts& before = rotations->third_views;
     const std::vector<Contest> contests = NewContests(*poses, before);
     if (contests.empty()) return {};
     LOWLAP_ASSIGN_OR_RETURN(ThirdViewVerdicts verdicts,
                             Ask(*scene, *poses, contests, before,
                                 *options.scale_estimator, context));
-    const std::vector<ScaleRatio> old_ratios = scene->scale_ratios;
-    auto composed = Compose(again, context, stages, verdicts, scene, start);
+    const std::vector<ScaleRatio> known = scene->scale_ratios;
+    auto composed = Compose(rotations->matches, verdicts, with_known, context,
+                            stages, scene);
     if (!composed && composed.error().code == ErrorCode::kCancelled) {
       return tl::unexpected<Error>(composed.error());
     }
     if (!composed || composed->poses.num_placed < poses->num_placed) {
       verdicts.outweighed = before.outweighed;
-      scene->scale_ratios = old_ratios;
+      scene->scale_ratios = known;
       LOWLAP_ASSIGN_OR_RETURN(
-          composed, Compose(again, context, stages, verdicts, scene, start));
+          composed, Compose(rotations->matches, verdicts, with_known, context,
+                            stages, scene));
     }
-    start->rotations = std::move(composed->rotations);
+    *rotations = std::move(composed->rotations);
     *ratios = composed->ratios;
     *poses = std::move(composed->poses);
   }

@@ -19,13 +19,16 @@ namespace lowlap {
 /// (IsWeak). The contest is found again, or not, with what is left
 /// (ThirdViewVerdicts::evidence). If that is more than twice what third views
 /// leave of the links that it contradicts, these are left out instead
-/// (ThirdViewVerdicts::outweighed), unless it loses a view.
+/// (ThirdViewVerdicts::outweighed), unless that loses a view. Weak relative
+/// poses (RelativePose::weakness) count nothing there, and directions alone, of
+/// which copies along a wall make third views agree on wrong ones, turn
+/// nothing.
 ///
-/// `start`, scene->scale_ratios and scene->poses become those of the new
+/// `rotations`, scene->scale_ratios and scene->poses become those of the new
 /// solution; `ratios` and `poses` are its summaries. Without a contest nothing
 /// is done. Errors: those of EstimateBelievedRatios and ComposePoses.
 Status SettleContests(const SolveOptions& options, const RunContext& context,
-                      StageLog* stages, Scene* scene, SolveStart* start,
+                      StageLog* stages, Scene* scene, SceneRotations* rotations,
                       RatioSummary* ratios, PoseSummary* poses);
 
 }  // namespace lowlap
