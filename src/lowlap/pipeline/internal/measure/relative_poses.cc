@@ -8,9 +8,9 @@
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
-#include "lowlap/core/internal/union_find.h"
 #include "lowlap/pipeline/internal/measure/contradicted_matches.h"
 #include "lowlap/pipeline/internal/measure/pair_report.h"
+#include "lowlap/pipeline/internal/measure/weak_poses.h"
 
 namespace lowlap {
 namespace {
@@ -114,59 +114,6 @@ void LogPairsWithoutParallax(const Scene& scene,
                   " left out, since views that differ by a rotation only show "
                   "no direction: " +
                   names + (count > kMaxNamed ? ", ..." : ""));
-}
-
-std::string Explanation(PoseWeakness weakness) {
-  switch (weakness) {
-    case PoseWeakness::kMatchesSideBySide:
-      return "only matches side by side agree with a motion, which things that "
-             "look alike do, too";
-    case PoseWeakness::kSurroundings:
-      return "what surrounds the matches does not match, as it is where things "
-             "look alike";
-    case PoseWeakness::kRepeats:
-      return "nearly all that agrees with a motion repeats within the "
-             "photographs, and would agree elsewhere, too";
-  }
-  return "";
-}
-
-// Weak poses count where nothing else joins their views with as much evidence:
-// those within one component of the other poses whose NFA is no greater are
-// dropped.
-void DropWeakPoses(std::vector<PairEstimate>* estimates) {
-  const auto evidence_first = [](const PairEstimate* a, const PairEstimate* b) {
-    return a->pose->log10_nfa < b->pose->log10_nfa;
-  };
-  std::vector<PairEstimate*> weak, others;
-  std::map<ViewId, std::size_t> index_of_view;
-  for (PairEstimate& estimate : *estimates) {
-    if (!estimate.pose) continue;
-    (estimate.pose->weakness ? weak : others).push_back(&estimate);
-    for (const ViewId view :
-         {estimate.pose->views.first, estimate.pose->views.second}) {
-      index_of_view.emplace(view, index_of_view.size());
-    }
-  }
-  std::stable_sort(weak.begin(), weak.end(), evidence_first);
-  std::stable_sort(others.begin(), others.end(), evidence_first);
-  UnionFind joined(index_of_view.size());
-  auto next = others.begin();
-  for (PairEstimate* estimate : weak) {
-    while (next != others.end() && !evidence_first(estimate, *next)) {
-      const ViewPair& views = (*next++)->pose->views;
-      joined.Union(index_of_view.at(views.first),
-                   index_of_view.at(views.second));
-    }
-    const ViewPair& views = estimate->pose->views;
-    if (joined.Find(index_of_view.at(views.first)) !=
-        joined.Find(index_of_view.at(views.second))) {
-      continue;
-    }
-    estimate->reason = Explanation(*estimate->pose->weakness) +
-                       "; other relative poses join the views";
-    estimate->pose.reset();
-  }
 }
 
 // Pairs whose poses stand on matches that those of other pairs contradict.
