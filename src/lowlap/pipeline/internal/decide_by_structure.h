@@ -22,10 +22,10 @@ namespace lowlap {
 /// Of pairs that are in use, and at most eight: those whose motions differ
 /// most. Nothing is asked where `options` do not adjust.
 ///
-/// `scene` holds the poses of ComposePoses, and `result` its summary, the
-/// ratios and the decisions so far; all follow, and the log says what became of
-/// every decision. The result does not depend on the number of threads.
-/// Error: kCancelled.
+/// `scene` holds the poses of ComposePoses from `rotations`, whose verdicts
+/// hold in the trials, and `result` its summary, the ratios and the decisions
+/// so far; all follow, and the log says what became of every decision. The
+/// result does not depend on the number of threads. Error: kCancelled.
 Status DecideHypothesesByStructure(const SceneRotations& rotations,
                                    const SolveOptions& options,
                                    const RunContext& context, StageLog* stages,
