@@ -7,7 +7,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/merge/internal/ties.h"
 #include "lowlap/merge/internal/trusted_pieces.h"
-#include "lowlap/pipeline/internal/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/decisions/decide_hypotheses.h"
 
 namespace lowlap {
 namespace {

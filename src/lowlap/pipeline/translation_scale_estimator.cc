@@ -6,7 +6,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/matching/internal/tracks.h"
-#include "lowlap/pipeline/internal/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/decisions/decide_hypotheses.h"
 #include "lowlap/pipeline/internal/given_rotations.h"
 #include "lowlap/scene/validation.h"
 

@@ -7,7 +7,7 @@
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/averaging/scene_poses.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/internal/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/decisions/decide_hypotheses.h"
 #include "lowlap/study/internal/consistency.h"
 
 namespace lowlap {

@@ -6,8 +6,8 @@
 
 #include "lowlap/averaging/internal/solution_agreement.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/internal/decide_hypotheses.h"
-#include "lowlap/pipeline/internal/settle_contests.h"
+#include "lowlap/pipeline/internal/decisions/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/decisions/settle_contests.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {

@@ -10,7 +10,7 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/requirement.h"
 #include "lowlap/evaluation/internal/relative_errors.h"
-#include "lowlap/pipeline/internal/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/decisions/decide_hypotheses.h"
 #include "lowlap/report/internal/table_text.h"
 #include "lowlap/scale/evidence/evidence_registry.h"
 

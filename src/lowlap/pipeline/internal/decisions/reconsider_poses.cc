@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/reconsider_poses.h"
+#include "lowlap/pipeline/internal/decisions/reconsider_poses.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -12,8 +12,8 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/geometry/internal/rotation.h"
+#include "lowlap/pipeline/internal/decisions/rotation_paths.h"
 #include "lowlap/pipeline/internal/pair_inputs.h"
-#include "lowlap/pipeline/internal/rotation_paths.h"
 #include "lowlap/scene/view_graph.h"
 #include "lowlap/two_view/internal/informed_pose.h"
 

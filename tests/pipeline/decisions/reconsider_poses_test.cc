@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/reconsider_poses.h"
+#include "lowlap/pipeline/internal/decisions/reconsider_poses.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/decide_by_structure.h"
+#include "lowlap/pipeline/internal/decisions/decide_by_structure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 
 #include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
 #include "lowlap/core/internal/propagate.h"
-#include "lowlap/pipeline/internal/decide_hypotheses.h"
-#include "lowlap/pipeline/internal/motion_trials.h"
+#include "lowlap/pipeline/internal/decisions/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/decisions/motion_trials.h"
 
 namespace lowlap {
 namespace {

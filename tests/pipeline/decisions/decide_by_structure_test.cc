@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/decide_by_structure.h"
+#include "lowlap/pipeline/internal/decisions/decide_by_structure.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/check_directions.h"
+#include "lowlap/pipeline/internal/decisions/check_directions.h"
 
 #include <algorithm>
 #include <utility>

@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/decisions/decide_hypotheses.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/settle_contests.h"
+#include "lowlap/pipeline/internal/decisions/settle_contests.h"
 
 #include <algorithm>
 #include <map>

@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/motion_trials.h"
+#include "lowlap/pipeline/internal/decisions/motion_trials.h"
 
 #include <algorithm>
 #include <iterator>

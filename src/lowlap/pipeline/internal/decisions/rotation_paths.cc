@@ -1,4 +1,4 @@
-#include "lowlap/pipeline/internal/rotation_paths.h"
+#include "lowlap/pipeline/internal/decisions/rotation_paths.h"
 
 #include <algorithm>
 #include <cmath>
