@@ -152,6 +152,7 @@ Result<std::vector<HypothesisDecision>> DecideHypotheses(
     }
   }
   std::vector<HypothesisDecision> result;
+  result.reserve(decisions.size());
   for (const auto& entry : decisions) result.push_back(entry.second);
   return result;
 }
