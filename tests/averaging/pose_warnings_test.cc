@@ -104,7 +104,11 @@ TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
   lost.reason = WarningReason::kLostFeatures;
   lost.views = {4};
   lost.share = 0.29;
-  summary.reliability_warnings = {contradicted, weak, ratios, lost};
+  ReliabilityWarning imprecise;
+  imprecise.reason = WarningReason::kImprecise;
+  imprecise.views = {2};
+  imprecise.share = 0.08;
+  summary.reliability_warnings = {contradicted, weak, ratios, lost, imprecise};
   EXPECT_THAT(
       Warnings(summary),
       ElementsAre(
@@ -116,7 +120,9 @@ TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
                 HasSubstr("rejected were: a.jpg, b.jpg, c.jpg.")),
           // No less than it is, as cutting 28.999... off would say.
           AllOf(HasSubstr("Doubtful: e.jpg: most of what"),
-                HasSubstr(": 29 % fits."))));
+                HasSubstr(": 29 % fits.")),
+          AllOf(HasSubstr("Doubtful: c.jpg: by their deviations"),
+                HasSubstr(": up to 8 % of the scene's size."))));
 }
 
 TEST(PoseWarnings, CountWhatNothingChecks) {

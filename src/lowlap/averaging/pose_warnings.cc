@@ -59,6 +59,9 @@ class Writer {
         return "";
       case WarningReason::kLostFeatures:
         return ": " + Format("%.0f", 100 * doubt.share) + " % fits";
+      case WarningReason::kImprecise:
+        return ": up to " + Format("%.0f", 100 * doubt.share) +
+               " % of the scene's size";
     }
     return "";
   }
@@ -87,6 +90,9 @@ std::string CauseOf(WarningReason reason) {
       return "they hang on views that are doubtful";
     case WarningReason::kLostFeatures:
       return "most of what was matched in them does not fit their places";
+    case WarningReason::kImprecise:
+      return "by their deviations they may be off by more than is promised of "
+             "firm ones";
   }
   return "";
 }

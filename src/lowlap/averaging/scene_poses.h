@@ -49,10 +49,13 @@ enum class WarningReason {
   kDoubtfulNeighbors,
   /// Most of what was matched in a view does not fit its pose.
   kLostFeatures,
+  /// By their stated deviations, the views may be further off than is promised
+  /// of firm ones.
+  kImprecise,
 };
 
 /// "contradicted_poses", "weak_scale", "contradicted_ratios", "untold_poses",
-/// "unheld", "doubtful_neighbors", "lost_features".
+/// "unheld", "doubtful_neighbors", "lost_features", "imprecise".
 const char* WarningReasonName(WarningReason reason);
 
 /// Placed views whose place is doubtful, and why.
@@ -66,7 +69,8 @@ struct ReliabilityWarning {
   std::vector<ViewPair> untold;
   /// kWeakScale: the ratios in use. kContradictedRatios: those rejected.
   std::vector<ViewTriplet> ratios;
-  /// kLostFeatures: the share of the features that fit.
+  /// kLostFeatures: the share of the features that fit. kImprecise: how far the
+  /// 95 % region of the centre reaches, in shares of the scene's size.
   double share = 0;
 };
 

@@ -16,6 +16,10 @@ enum class ViewGrade {
   kFirm,
 };
 
+/// What the grade kFirm promises: a camera that is no further off than this
+/// share of the scene's size.
+inline constexpr double kFirmReach = 0.05;
+
 /// "unplaced", "doubtful", "firm".
 const char* ViewGradeName(ViewGrade grade);
 

@@ -10,6 +10,7 @@
 #include "lowlap/adjustment/internal/structure/prediction_evidence.h"
 #include "lowlap/averaging/centers/internal/scene_contests.h"
 #include "lowlap/averaging/internal/hanging_views.h"
+#include "lowlap/averaging/internal/imprecise_views.h"
 #include "lowlap/averaging/internal/lost_features.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/internal/solution_agreement.h"
@@ -130,6 +131,10 @@ Status JudgeViews(Scene* scene,
     poses->reliability_warnings.push_back(std::move(doubt));
   }
   WarnOfHangingViews(poses);
+  // Last: what hangs on a view that is known to a little less states so itself.
+  for (ReliabilityWarning& doubt : FindImpreciseViews(*scene, *poses)) {
+    poses->reliability_warnings.push_back(std::move(doubt));
+  }
   return {};
 }
 

@@ -166,6 +166,9 @@ void AddDoubts(const PoseSummary& summary, Json* poses) {
     if (doubt.reason == WarningReason::kLostFeatures) {
       entry["fitting_share"] = doubt.share;
     }
+    if (doubt.reason == WarningReason::kImprecise) {
+      entry["reach_share"] = doubt.share;
+    }
     if (!doubt.against.empty()) entry["contradicted_by"] = doubt.against;
     if (!doubt.untold.empty()) entry["untold"] = doubt.untold;
     if (!doubt.ratios.empty()) entry["ratios"] = doubt.ratios;

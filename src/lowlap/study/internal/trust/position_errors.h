@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/scene/scene.h"
 
@@ -10,7 +11,7 @@ namespace lowlap {
 /// A camera that is further off than this share of the scene's size is wrong.
 inline constexpr double kWrongCamera = 0.2;
 /// One that is no further off than this is good.
-inline constexpr double kGoodCamera = 0.05;
+inline constexpr double kGoodCamera = kFirmReach;
 
 /// Where solved cameras are, in shares of the size of the truth.
 struct PositionErrors {
