@@ -45,7 +45,7 @@ TEST(ImpreciseViews, AreThoseWhoseRegionReachesATwentiethOfTheScene) {
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].reason, WarningReason::kImprecise);
   EXPECT_THAT(warnings[0].views, ElementsAre(3));
-  EXPECT_NEAR(warnings[0].share, 2 * 0.178 * 2.7955 / 10, 1e-12);
+  EXPECT_NEAR(warnings[0].share, 2 * 0.178 / 10, 1e-12);
   solved = FiveInALine(0.18);
   EXPECT_EQ(FindImpreciseViews(solved.scene, solved.summary).size(), 5u);
 }

@@ -107,7 +107,7 @@ TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
   ReliabilityWarning imprecise;
   imprecise.reason = WarningReason::kImprecise;
   imprecise.views = {2};
-  imprecise.share = 0.08;
+  imprecise.share = 0.042;
   summary.reliability_warnings = {contradicted, weak, ratios, lost, imprecise};
   EXPECT_THAT(
       Warnings(summary),
@@ -122,7 +122,8 @@ TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
           AllOf(HasSubstr("Doubtful: e.jpg: most of what"),
                 HasSubstr(": 29 % fits.")),
           AllOf(HasSubstr("Doubtful: c.jpg: by their deviations"),
-                HasSubstr(": up to 8 % of the scene's size."))));
+                HasSubstr(
+                    ": a standard deviation of 4.2 % of the scene's size."))));
 }
 
 TEST(PoseWarnings, CountWhatNothingChecks) {

@@ -1,6 +1,10 @@
+#include "lowlap/pipeline/internal/judge_views.h"
+
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
@@ -10,6 +14,8 @@
 
 namespace lowlap {
 namespace {
+
+using ::testing::ElementsAre;
 
 // Of hardly any points: relative poses are off by degrees, and state nothing
 // that chance would not. But lines are seen in several views.
@@ -78,6 +84,29 @@ TEST(JudgeViews, LeavesTheMeasurementsAsTheyAre) {
     EXPECT_EQ(pose.rotation, before.rotation);
     EXPECT_EQ(pose.point_inliers, before.point_inliers);
   }
+}
+
+// Of a room that is firm, one camera is known to a tenth of the room only.
+TEST(JudgeViews, WhatIsKnownTooLittleIsDoubtful) {
+  SyntheticOptions room_options;
+  room_options.num_views = 8;
+  room_options.pairs = "window:3";
+  SyntheticScene room = *Simulate(room_options);
+  const SolveOptions options;
+  StageLog stages;
+  auto result = SolveScene(&room.scene, options, RunContext(), &stages);
+  ASSERT_TRUE(result) << result.error().ToString();
+  ASSERT_EQ(CountFirm(result->poses), 8);
+  const double size = (room.scene.FindPose(ViewId(0))->center -
+                       room.scene.FindPose(ViewId(4))->center)
+                          .norm();
+  room.scene.poses.at(room.scene.views.at(3).pose_id).center_covariance =
+      Mat3::Identity() * (size / 10) * (size / 10);
+  ASSERT_TRUE(JudgeViews(&room.scene, std::nullopt, *options.scale_estimator,
+                         RunContext(), &result->poses));
+  EXPECT_EQ(CountFirm(result->poses), 7);
+  EXPECT_THAT(GradeViews(result->poses).at(3).reasons,
+              ElementsAre("imprecise"));
 }
 
 }  // namespace

@@ -1,17 +1,24 @@
 #include "lowlap/averaging/internal/imprecise_views.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/robust/internal/chi_square.h"
 #include "lowlap/scene/internal/center_stddev.h"
 
 namespace lowlap {
 namespace {
 
-// The square root of x with P(chi^2_3 > x) = 0.05.
-const double kDeviationsOfRegion = 2.7955;
+constexpr int kDimension = 3;
+const double kLogChance = std::log(0.05);
+
+bool MayBeOffByMore(double stddev, double bound) {
+  const double deviations = bound / stddev;
+  return LogChiSquareTail(deviations * deviations, kDimension) > kLogChance;
+}
 
 }  // namespace
 
@@ -32,13 +39,11 @@ std::vector<ReliabilityWarning> FindImpreciseViews(const Scene& scene,
   std::vector<ReliabilityWarning> warnings;
   for (const auto& [view, pose] : firm) {
     const std::optional<double> stddev = CenterStddev(*pose);
-    if (!stddev) continue;
-    const double reach = *stddev * kDeviationsOfRegion;
-    if (reach <= kFirmReach * size) continue;
+    if (!stddev || !MayBeOffByMore(*stddev, kFirmReach * size)) continue;
     ReliabilityWarning warning;
     warning.reason = WarningReason::kImprecise;
     warning.views = {view};
-    warning.share = reach / size;
+    warning.share = *stddev / size;
     warnings.push_back(std::move(warning));
   }
   return warnings;

@@ -60,8 +60,8 @@ class Writer {
       case WarningReason::kLostFeatures:
         return ": " + Format("%.0f", 100 * doubt.share) + " % fits";
       case WarningReason::kImprecise:
-        return ": up to " + Format("%.0f", 100 * doubt.share) +
-               " % of the scene's size";
+        return ": a standard deviation of " +
+               Format("%.1f", 100 * doubt.share) + " % of the scene's size";
     }
     return "";
   }

@@ -69,8 +69,8 @@ struct ReliabilityWarning {
   std::vector<ViewPair> untold;
   /// kWeakScale: the ratios in use. kContradictedRatios: those rejected.
   std::vector<ViewTriplet> ratios;
-  /// kLostFeatures: the share of the features that fit. kImprecise: how far the
-  /// 95 % region of the centre reaches, in shares of the scene's size.
+  /// kLostFeatures: the share of the features that fit. kImprecise: the
+  /// standard deviation of the centre, in shares of the scene's size.
   double share = 0;
 };
 

@@ -8,9 +8,9 @@
 namespace lowlap {
 
 /// WarningReason::kImprecise: placed views that no other warning names, whose
-/// centre may be further off than kFirmReach of the scene's size: along the
-/// axis in which it is known least, its 95 % region reaches
-///   r = CenterStddev * sqrt(x),  P(chi^2_3 > x) = 0.05.
+/// centre may be further off than kFirmReach of the scene's size: its 95 %
+/// region reaches further along the axis in which it is known least,
+///   P(chi^2_3 > (kFirmReach size / CenterStddev)^2) > 0.05.
 /// The size is the greatest distance of two such views; what is doubted for
 /// another reason may be anywhere. Views without a covariance have no entry,
 /// nor has a scene of fewer than three such views, in which the size is chosen.

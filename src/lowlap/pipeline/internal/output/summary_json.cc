@@ -167,7 +167,7 @@ void AddDoubts(const PoseSummary& summary, Json* poses) {
       entry["fitting_share"] = doubt.share;
     }
     if (doubt.reason == WarningReason::kImprecise) {
-      entry["reach_share"] = doubt.share;
+      entry["stddev_share"] = doubt.share;
     }
     if (!doubt.against.empty()) entry["contradicted_by"] = doubt.against;
     if (!doubt.untold.empty()) entry["untold"] = doubt.untold;
