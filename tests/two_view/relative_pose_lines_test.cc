@@ -16,6 +16,7 @@ using testing::IsOk;
 using testing::LineScene;
 using testing::LineSceneOptions;
 using testing::MakeLineScene;
+using testing::MakeSegment;
 using testing::MakeTwoViewScene;
 using testing::RotationErrorDeg;
 using testing::TwoViewScene;
@@ -106,6 +107,51 @@ TEST(RelativePoseFromLines, LinesSharpenTheRotationOfFewNoisyPoints) {
   }
   EXPECT_LT(with_lines, 0.6 * points_only);
   EXPECT_LT(with_lines, 0.1);
+}
+
+// Many points of one plane, which fit one of its two motions better by how
+// their errors fell, and parallel lines on it.
+TEST(RelativePoseFromLines, OneDirectionOrdersTheMotionsOfAPlane) {
+  TwoViewSceneOptions options;
+  options.planar = true;
+  options.num_right = 1000;
+  options.noise_px = 0.4;
+  options.cam2_from_cam1 = {RotationFromAngleAxis(Vec3(0.1, -0.1, 0)),
+                            Vec3(0, 0.3, -1).normalized()};
+  constexpr FeatureIndex kLines = 12;
+  int num_first_without = 0;
+  for (int seed = 28; seed < 36; ++seed) {
+    LineScene scene;
+    scene.views = MakeTwoViewScene(options, seed);
+    scene.cam2_from_cam1 = options.cam2_from_cam1;
+    Random random(seed);
+    const auto image = [&](const Vec3& p) -> Vec3 {
+      const Vec2 noise = testing::GaussianVec2(random, 1) / testing::kFocalPx;
+      return p / p.z() + Vec3(noise.x(), noise.y(), 0);
+    };
+    const Vec3 along = testing::kPlaneNormal.cross(Vec3(1, 0, 0)).normalized();
+    for (FeatureIndex n = 0; n < kLines; ++n) {
+      const Vec3 ray = testing::RandomImagePoint(random);
+      const Vec3 a = ray / testing::kPlaneNormal.dot(ray), b = a + along;
+      const Vec3 start1 = image(a), end1 = image(b);
+      const Vec3 start2 = image(scene.cam2_from_cam1 * a);
+      const Vec3 end2 = image(scene.cam2_from_cam1 * b);
+      scene.views.features1.segments.push_back(MakeSegment(start1, end1));
+      scene.views.features2.segments.push_back(MakeSegment(start2, end2));
+      scene.line_matches.push_back({n, n});
+    }
+    const auto is_right = [&](const Result<TwoViewResult>& result) {
+      return result && RotationErrorDeg(result->pose.rotation,
+                                        scene.cam2_from_cam1.rotation) < 3;
+    };
+    const WithDirections lines(scene);
+    const auto result = EstimateRelativePose(lines.input, {}, seed);
+    ASSERT_THAT(result, IsOk());
+    EXPECT_TRUE(is_right(result)) << seed;
+    num_first_without +=
+        is_right(EstimateRelativePose(scene.views.Input(), {}, seed));
+  }
+  EXPECT_LT(num_first_without, 8);
 }
 
 // Lines of two directions matched crosswise, as those of shelves or tiles may

@@ -16,6 +16,7 @@
 #include "lowlap/two_view/internal/evidence/repeat_evidence.h"
 #include "lowlap/two_view/internal/evidence/translation_evidence.h"
 #include "lowlap/two_view/internal/other_copies.h"
+#include "lowlap/two_view/internal/planes/motion_lead.h"
 #include "lowlap/two_view/internal/planes/parallax_evidence.h"
 #include "lowlap/two_view/internal/planes/planar_motion.h"
 #include "lowlap/two_view/internal/search/pose_from_search.h"
@@ -30,9 +31,6 @@ namespace {
 /// A plane that holds this share of the inliers may be all that speaks for the
 /// motion, and is worth a second one.
 constexpr double kPlaneShare = 0.5;
-/// Two motions are told apart by an advantage worth ten points that fit one
-/// perfectly and the other not at all, 10 log(10): noise alone reaches half.
-constexpr double kDecisiveScore = 23;
 /// In which matches of other copies are left out.
 constexpr int kMaxRounds = 3;
 /// What does not repeat corrects a motion that explains most of it, and that
@@ -204,23 +202,25 @@ Result<TwoViewResult> EstimateFrom(const TwoViewInput& input,
   std::optional<PoseCandidate> other;
   if (plane) other = PlanarAlternative(search, pairs, *best, *plane);
   if (other) {
-    // Wider than the loss: what noise alone makes of it must stay small.
-    const double scale_px = 0.5 * best->support.threshold;
-    const double advantage =
-        search.CoreScore(best->pose, scale_px) -
-        search.CoreScore(other->pose, scale_px) +
-        std::log(10.0) * (other->direction_penalty - best->direction_penalty);
     // Few matches may leave the other motion none in front of the cameras.
-    const bool meaningful = other->IsMeaningful();
-    if (meaningful && advantage < 0) {
-      std::swap(*best, *other);
-      plane = DominantPlaneOf(*best, pairs, random);
+    std::optional<ScenePlane> plane_of_other;
+    if (other->IsMeaningful()) {
+      plane_of_other = DominantPlaneOf(*other, pairs, random);
+    }
+    bool is_decided = true;
+    if (plane_of_other) {
+      const MotionLead lead =
+          CompareMotions(search, pairs, *best, *plane, *other, *plane_of_other);
+      is_decided = lead.IsDecisive();
+      if (lead.IsBehind()) {
+        std::swap(*best, *other);
+        std::swap(*plane, *plane_of_other);
+      }
     }
     // Where both are one motion, the better optimum of it is kept.
     if (!SamePose(best->pose, other->pose)) {
-      result.geometry = meaningful && std::abs(advantage) < kDecisiveScore
-                            ? TwoViewGeometry::kAmbiguousPlane
-                            : TwoViewGeometry::kPlanar;
+      result.geometry = is_decided ? TwoViewGeometry::kPlanar
+                                   : TwoViewGeometry::kAmbiguousPlane;
     }
   }
   if (plane) {

@@ -38,10 +38,10 @@ struct TwoViewInput {
 /// What kind of scene the matches show.
 enum class TwoViewGeometry {
   kGeneral,
-  /// Most inliers lie on one plane, which two motions explain; the points off
-  /// the plane, or visibility, decided for `pose`.
+  /// Most inliers lie on one plane, which two motions explain; what lies off
+  /// the plane, visibility, or directions decided for `pose` (MotionLead).
   kPlanar,
-  /// The same, but both motions fit equally well: `pose` is one of them,
+  /// The same, but nothing decides: `pose` is the likelier one of them,
   /// `alternatives` holds the other.
   kAmbiguousPlane,
   /// Rotation without translation that the noise would let us see: the

@@ -22,23 +22,33 @@ double Log10Tail(double n, double share, double p) {
 
 }  // namespace
 
+std::vector<DisplacedMatch> DisplacedMatches(
+    const RigidTransform& cam2_from_cam1, const ScenePlane& plane,
+    const PointPairs& pairs, double threshold_px) {
+  const TransferResidual residual(cam2_from_cam1, plane.normal, pairs);
+  std::vector<DisplacedMatch> displaced;
+  for (int i = 0; i < pairs.size(); ++i) {
+    const std::optional<Vec2> m = residual(i);
+    if (!m || !(m->norm() > 2 * threshold_px)) continue;
+    displaced.push_back({i, m->norm()});
+  }
+  return displaced;
+}
+
 double ParallaxEvidence(const RigidTransform& cam2_from_cam1,
                         const ScenePlane& plane, const PointPairs& pairs,
                         double threshold_px) {
-  const TransferResidual displacement(cam2_from_cam1, plane.normal, pairs);
   const SampsonResidual across(cam2_from_cam1, pairs);
-  int num_off = 0;
+  const std::vector<DisplacedMatch> displaced =
+      DisplacedMatches(cam2_from_cam1, plane, pairs, threshold_px);
   int num_along = 0;
   double expected = 0;
-  for (int i = 0; i < pairs.size(); ++i) {
-    const std::optional<Vec2> m = displacement(i);
-    if (!m || !(m->norm() > 2 * threshold_px)) continue;
-    ++num_off;
-    expected += 2 / kPi * std::asin(threshold_px / m->norm());
-    if (std::abs(across(i)) <= threshold_px) ++num_along;
+  for (const DisplacedMatch& match : displaced) {
+    expected += 2 / kPi * std::asin(threshold_px / match.displacement_px);
+    if (std::abs(across(match.pair)) <= threshold_px) ++num_along;
   }
   if (num_along <= 2) return 0;
-  const double n = num_off;
+  const auto n = static_cast<double>(displaced.size());
   return std::log10(n * (n - 1) / 2) +
          Log10Tail(n - 2, (num_along - 2) / (n - 2), expected / n);
 }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "lowlap/core/internal/median.h"
@@ -209,21 +211,22 @@ void PoseSearch::TieToPlane(const ScenePlane& plane,
 }
 
 double PoseSearch::ScoreOf(const RigidTransform& cam2_from_cam1) const {
-  return CoreScore(cam2_from_cam1, core_scale_px_) / std::log(10.0) -
+  const std::vector<double> scores = CoreScores(cam2_from_cam1, core_scale_px_);
+  return std::accumulate(scores.begin(), scores.end(), 0.0) / std::log(10.0) -
          DirectionPenalty(directions_, cam2_from_cam1.rotation);
 }
 
-double PoseSearch::CoreScore(const RigidTransform& cam2_from_cam1,
-                             double scale_px) const {
+std::vector<double> PoseSearch::CoreScores(const RigidTransform& cam2_from_cam1,
+                                           double scale_px) const {
   const PointPairs& pairs = kernel_.pairs();
   const SampsonResidual residual(cam2_from_cam1, pairs);
-  double score = 0;
+  std::vector<double> scores(static_cast<std::size_t>(pairs.size()));
   for (const int i :
        kernel_.VisibleWithinThreshold(cam2_from_cam1, 3 * scale_px)) {
     const double ratio = residual(i) / scale_px;
-    score += std::log(10 / (1 + std::min(ratio * ratio, 9.0)));
+    scores[i] = std::log(10 / (1 + std::min(ratio * ratio, 9.0)));
   }
-  return score;
+  return scores;
 }
 
 }  // namespace lowlap

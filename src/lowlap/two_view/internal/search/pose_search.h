@@ -77,10 +77,11 @@ class PoseSearch {
   /// the other one.
   void TieToPlane(const ScenePlane& plane, PoseCandidate* candidate) const;
 
-  /// Truncated Cauchy score of the visible matches,
-  ///   sum log(1 + 9) - log(1 + min(r^2 / s^2, 9)),
-  /// to compare motions at one scale s.
-  double CoreScore(const RigidTransform& cam2_from_cam1, double scale_px) const;
+  /// Truncated Cauchy scores of the matches,
+  ///   log(1 + 9) - log(1 + min(r^2 / s^2, 9)),
+  /// 0 of those that are not visible, to compare motions at one scale s.
+  std::vector<double> CoreScores(const RigidTransform& cam2_from_cam1,
+                                 double scale_px) const;
 
   /// The loss of the final refinement.
   PoseRefinementOptions RefinementOptions(const PoseCandidate& candidate) const;

@@ -7,7 +7,7 @@
 namespace lowlap {
 namespace {
 
-// A quarter of what tells the two motions of a plane apart (kDecisiveScore, ten
+// A quarter of what tells the two motions of a plane apart (MotionLead, ten
 // digits), of which noise alone reaches half at most.
 constexpr double kScoreNoiseDigits = 2.5;
 
