@@ -117,6 +117,19 @@ TEST(DirectionCheck, TheCovarianceOfAWrongDirectionIsNotThatOfTheRightOne) {
   }
 }
 
+TEST(DirectionCheck, AnotherDirectionOfWeakMatchesIsAsWeak) {
+  const TwoViewScene scene = MakeTwoViewScene(Points(30), 5);
+  RelativePose pose;
+  pose.views = {3, 8};
+  pose.rotation = scene.cam2_from_cam1.rotation;
+  pose.direction = -scene.cam2_from_cam1.translation;
+  pose.point_inliers = scene.matches;
+  pose.weakness = PoseWeakness::kSurroundings;
+  const DirectionCheck check = CheckDirection(scene.Input(), pose, kSameRad, 5);
+  ASSERT_EQ(check.verdict, DirectionVerdict::kReplaced);
+  EXPECT_EQ(check.replacement->weakness, PoseWeakness::kSurroundings);
+}
+
 TEST(DirectionCheck, TellsTheSignByWhatIsInFrontOfTheCameras) {
   const TwoViewScene scene = MakeTwoViewScene(Points(30), 1);
   EXPECT_EQ(Check(scene, -scene.cam2_from_cam1.translation).verdict,

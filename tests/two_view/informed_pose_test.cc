@@ -76,6 +76,17 @@ TEST(InformPose, ThePriorDecidesBetweenTheMotionsOfAPlane) {
 }
 
 // What the plane leaves open the covariance no longer does: the prior is in it.
+TEST(InformPose, AnotherMotionOfWeakMatchesIsAsWeak) {
+  PlaneUnderItsTwin twin(0);
+  twin.pose.weakness = PoseWeakness::kRepeats;
+  const RotationPrior prior{twin.scene.cam2_from_cam1.rotation,
+                            RadFromDeg(0.7)};
+  const InformedPose informed =
+      InformPose(twin.scene.Input(), twin.pose, prior, 0);
+  ASSERT_GT(informed.gained_digits, 1);
+  EXPECT_EQ(informed.pose.weakness, PoseWeakness::kRepeats);
+}
+
 TEST(InformPose, TheCovarianceHoldsThePrior) {
   double before = 0;
   for (const double stddev_deg : {0.02, 0.2, 2.0}) {

@@ -66,9 +66,9 @@ InformedPose InformPose(const TwoViewInput& input, const RelativePose& pose,
   result.gained_digits = best.score - before;
   result.prior_digits = PriorPenalty(prior, pose.rotation) -
                         PriorPenalty(prior, best.pose.rotation);
-  const double log10_nfa = pose.log10_nfa;
   result.pose = PoseFromSearch(input, matches, search, best, nullptr);
-  result.pose.log10_nfa = log10_nfa;
+  result.pose.log10_nfa = pose.log10_nfa;
+  result.pose.weakness = pose.weakness;
   result.pose.line_inliers = pose.line_inliers;
   return result;
 }

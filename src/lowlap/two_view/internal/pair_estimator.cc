@@ -319,7 +319,6 @@ RelativePose RefinePair(const RelativePose& pose, const ViewMeasurements& first,
   if (options.use_lines) input.line_matches = pose.line_inliers;
   RelativePose refined =
       Improve(input, pose, std::nullopt, options.two_view, lone_matches);
-  refined.weakness = pose.weakness;
   refined.line_inliers =
       FilterLineMatches(pose.line_inliers, first.features, second.features,
                         refined.Cam2FromCam1(), options.line_filter);

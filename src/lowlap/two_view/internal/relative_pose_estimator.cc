@@ -371,6 +371,7 @@ RelativePose ImproveRelativePose(const TwoViewInput& input,
   RelativePose improved =
       PoseFromSearch(input, matches, search, candidate, lone_matches);
   improved.log10_nfa = pose.log10_nfa;
+  improved.weakness = pose.weakness;
   return improved;
 }
 

@@ -132,8 +132,8 @@ Result<TwoViewResult> EstimateRelativePose(const TwoViewInput& input,
                                            std::uint64_t seed);
 
 /// The pose refined on matches that were found with its help: threshold,
-/// inliers and covariance are those of the new matches, the evidence
-/// (log10_nfa) stays that of the first ones, which knew nothing of the pose.
+/// inliers and covariance are those of the new matches, evidence and weakness
+/// stay those of the first ones, which knew nothing of the pose.
 /// Where too few of them fit the pose to refine it, it comes back as it was.
 /// `input` is valid; its line matches count with their crossings and
 /// directions. `is_of_one_plane` and, if not null, `lone_matches` are as in
