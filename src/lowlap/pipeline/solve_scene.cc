@@ -97,6 +97,20 @@ std::set<ViewPair> ReplacedPoses(const SolveStart& start) {
   return replaced;
 }
 
+// Those that nothing decided, and that are no longer open.
+void RemoveReconsidered(const std::vector<ReconsideredPose>& reconsidered,
+                        std::vector<HypothesisDecision>* motions) {
+  std::set<ViewPair> settled;
+  for (const ReconsideredPose& pose : reconsidered) settled.insert(pose.views);
+  motions->erase(std::remove_if(motions->begin(), motions->end(),
+                                [&](const HypothesisDecision& motion) {
+                                  return motion.grounds ==
+                                             HypothesisGrounds::kNone &&
+                                         settled.count(motion.views) > 0;
+                                }),
+                 motions->end());
+}
+
 // The ratios of the triplets, in their order; those in `known` are not
 // estimated again, unless one of their relative poses is among the replaced.
 Result<std::vector<ScaleRatio>> CompleteRatios(
@@ -166,10 +180,12 @@ Result<SolveStart> StartSolution(Scene* scene, const SolveOptions& options,
   if (options.reconsider_poses) {
     LOWLAP_ASSIGN_OR_RETURN(start.reconsidered,
                             ReconsiderPoses(scene, options.poses, context));
+    RemoveReconsidered(start.reconsidered, &start.motions);
   }
   LOWLAP_ASSIGN_OR_RETURN(
       start.rotations, AverageSceneRotations(*scene, options.poses, context));
   AddMatchVerdicts(std::move(matches), &start.rotations);
+  start.replaced = ReplacedPoses(start);
   return start;
 }
 
@@ -184,8 +200,8 @@ Result<RatioSummary> EstimateBelievedRatios(Scene* scene,
   LOWLAP_ASSIGN_OR_RETURN(
       scene->scale_ratios,
       CompleteRatios(*scene, BelievedTriplets(*scene, start.rotations),
-                     std::move(known), ReplacedPoses(start),
-                     *options.scale_estimator, context));
+                     std::move(known), start.replaced, *options.scale_estimator,
+                     context));
   return SummarizeRatios(scene->scale_ratios);
 }
 
@@ -222,6 +238,25 @@ Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
   }
   scene->poses = poses;
   return all;
+}
+
+Result<ComposedSolution> ComposeSolution(Scene* scene,
+                                         const SolveOptions& options,
+                                         const RunContext& context,
+                                         StageLog* stages) {
+  ComposedSolution composed;
+  LOWLAP_ASSIGN_OR_RETURN(composed.start,
+                          StartSolution(scene, options, context, stages));
+  const SceneRotations& rotations = composed.start.rotations;
+  LOWLAP_ASSIGN_OR_RETURN(
+      composed.ratios,
+      EstimateBelievedRatios(scene, composed.start, options, context, stages));
+  LOWLAP_ASSIGN_OR_RETURN(
+      composed.poses,
+      ComposePoses(scene, rotations, options.poses, context, stages));
+  LOWLAP_RETURN_IF_ERROR(
+      SettleContests(options, context, stages, scene, &composed));
+  return composed;
 }
 
 Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
@@ -272,22 +307,15 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
                                const RunContext& context, StageLog* stages) {
   LOWLAP_RETURN_IF_ERROR(options.Validate());
+  LOWLAP_ASSIGN_OR_RETURN(auto composed,
+                          ComposeSolution(scene, options, context, stages));
   SolveResult result;
-  LOWLAP_ASSIGN_OR_RETURN(auto start,
-                          StartSolution(scene, options, context, stages));
-  LOWLAP_ASSIGN_OR_RETURN(
-      result.ratios,
-      EstimateBelievedRatios(scene, start, options, context, stages));
-  LOWLAP_ASSIGN_OR_RETURN(
-      result.poses,
-      ComposePoses(scene, start.rotations, options.poses, context, stages));
-  LOWLAP_RETURN_IF_ERROR(SettleContests(options, context, stages, scene,
-                                        &start.rotations, &result.ratios,
-                                        &result.poses));
-  result.motions = std::move(start.motions);
-  result.reconsidered = std::move(start.reconsidered);
+  result.motions = std::move(composed.start.motions);
+  result.reconsidered = std::move(composed.start.reconsidered);
+  result.ratios = composed.ratios;
+  result.poses = std::move(composed.poses);
   LOWLAP_RETURN_IF_ERROR(DecideHypothesesByStructure(
-      start.rotations, options, context, stages, scene, &result));
+      composed.start.rotations, options, context, stages, scene, &result));
   LOWLAP_RETURN_IF_ERROR(
       FinishSolution(scene, options, context, stages, &result));
   return result;

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <vector>
 
 #include "lowlap/adjustment/bundle_adjuster.h"
@@ -65,7 +66,8 @@ struct ReconsideredPose {
 };
 
 struct SolveResult {
-  /// One for every relative pose that came with alternatives, by views.
+  /// One for every relative pose that came with alternatives, by views; what
+  /// nothing decided before it was reconsidered is only there.
   std::vector<HypothesisDecision> motions;
   std::vector<ReconsideredPose> reconsidered;  // by views
   RatioSummary ratios;
@@ -84,6 +86,8 @@ struct SolveStart {
   std::vector<HypothesisDecision> motions;
   std::vector<ReconsideredPose> reconsidered;
   SceneRotations rotations;
+  /// Relative poses that are no longer those whose ratios the scene may hold.
+  std::set<ViewPair> replaced;
 };
 
 /// The first stage of SolveScene: holds the relative poses against their
@@ -110,6 +114,19 @@ Result<PoseSummary> ComposePoses(Scene* scene, const SceneRotations& rotations,
                                  const PoseOptions& options,
                                  const RunContext& context, StageLog* stages);
 
+struct ComposedSolution {
+  SolveStart start;
+  RatioSummary ratios;
+  PoseSummary poses;
+};
+
+/// These three, and what third views say of contests about the relative poses
+/// in use (SettleContests).
+Result<ComposedSolution> ComposeSolution(Scene* scene,
+                                         const SolveOptions& options,
+                                         const RunContext& context,
+                                         StageLog* stages);
+
 struct Refinement {
   StructureSummary structure;
   std::optional<AdjustmentSummary> adjustment;
@@ -132,14 +149,13 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
                       const RunContext& context, StageLog* stages,
                       SolveResult* result);
 
-/// From measurements to a calibrated scene: choice between alternative motions
-/// (DecideHypotheses), rotations and the choice of relative poses, ratios of
-/// the triplets of those believed, absolute poses, what third views say of
-/// contests about these (SettleContests), the motions that only the whole scene
-/// tells apart (DecideHypothesesByStructure), structure, bundle adjustment
-/// (FinishSolution). Reads intrinsics, features, relative poses and tracks;
-/// settles alternatives and replaces scale ratios, poses and structure. Errors
-/// leave the scene in an intermediate state: keep a copy if you need it.
+/// From measurements to a calibrated scene: choice between alternative motions,
+/// rotations and the choice of relative poses, ratios of the triplets of those
+/// believed, absolute poses (ComposeSolution), the motions that only the whole
+/// scene tells apart (DecideHypothesesByStructure), structure, bundle
+/// adjustment (FinishSolution). Reads intrinsics, features, relative poses and
+/// tracks; settles alternatives and replaces scale ratios, poses and structure.
+/// Errors leave the scene in an intermediate state: keep a copy if you need it.
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
                                const RunContext& context, StageLog* stages);
 

@@ -133,13 +133,10 @@ Result<TranslationEstimate> TranslationScaleEstimator::Estimate(
   scene.line_tracks = BuildLineTracks(scene, LineTrackOptions());
   Result<PoseSummary> summary;
   if (cam_from_world_.empty()) {
-    LOWLAP_ASSIGN_OR_RETURN(const auto start,
-                            StartSolution(&scene, options_, context, nullptr));
-    LogDecisions(start.motions, scene, context);
-    LOWLAP_RETURN_IF_ERROR(
-        EstimateBelievedRatios(&scene, start, options_, context, nullptr));
-    summary =
-        ComposePoses(&scene, start.rotations, options_.poses, context, nullptr);
+    LOWLAP_ASSIGN_OR_RETURN(
+        auto composed, ComposeSolution(&scene, options_, context, nullptr));
+    LogDecisions(composed.start.motions, scene, context);
+    summary = std::move(composed.poses);
   } else {
     summary = SolveGivenRotations(cam_from_world_, options_, context, nullptr,
                                   &scene);

@@ -82,6 +82,22 @@ TEST(ReconsiderPoses, TheLoopAndFewMatchesCorrectAPose) {
   EXPECT_EQ(again.relative_poses, scene.relative_poses);
 }
 
+TEST(StartSolution, AReconsideredPoseIsNoLongerOpen) {
+  Scene scene = Simulate(Room("cycle"))->scene;
+  const ViewPair views{4, 5};
+  RelativePose& pose = Spoil(views, 20, 7, &scene);
+  // The same motion again: nothing decides between the two.
+  pose.alternatives.push_back(
+      {pose.rotation, pose.direction, pose.log10_nfa, pose.covariance});
+  const auto start = StartSolution(&scene, SolveOptions(), {}, nullptr);
+  ASSERT_TRUE(start) << start.error().ToString();
+  EXPECT_THAT(start->motions, IsEmpty());
+  EXPECT_TRUE(std::any_of(
+      start->reconsidered.begin(), start->reconsidered.end(),
+      [&](const ReconsideredPose& other) { return other.views == views; }));
+  EXPECT_EQ(start->replaced.count(views), 1u);
+}
+
 // The pair that is off has matches enough to stay; its neighbour has few, but
 // these tell its motion.
 TEST(ReconsiderPoses, AWrongPoseElsewhereDoesNotBendARightOne) {

@@ -7,7 +7,6 @@
 #include "lowlap/averaging/internal/solution_agreement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/decisions/decide_hypotheses.h"
-#include "lowlap/pipeline/internal/decisions/settle_contests.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -17,17 +16,10 @@ Result<Scene> SceneInUse(Scene scene, SolveOptions options,
   if (scene.relative_poses.empty()) return scene;
   options.reuse_ratios = !scene.scale_ratios.empty();
   Scene solved = scene;
-  LOWLAP_ASSIGN_OR_RETURN(auto start,
-                          StartSolution(&solved, options, context, nullptr));
-  LogDecisions(start.motions, solved, context);
-  LOWLAP_ASSIGN_OR_RETURN(
-      auto ratios,
-      EstimateBelievedRatios(&solved, start, options, context, nullptr));
-  LOWLAP_ASSIGN_OR_RETURN(
-      auto summary,
-      ComposePoses(&solved, start.rotations, options.poses, context, nullptr));
-  LOWLAP_RETURN_IF_ERROR(SettleContests(options, context, nullptr, &solved,
-                                        &start.rotations, &ratios, &summary));
+  LOWLAP_ASSIGN_OR_RETURN(const auto composed,
+                          ComposeSolution(&solved, options, context, nullptr));
+  LogDecisions(composed.start.motions, solved, context);
+  const PoseSummary& summary = composed.poses;
   scene.relative_poses = std::move(solved.relative_poses);
   scene.scale_ratios = std::move(solved.scale_ratios);
   for (const auto* edges : {&summary.outlier_edges, &summary.kept_outliers}) {

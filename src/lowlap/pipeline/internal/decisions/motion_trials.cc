@@ -79,7 +79,7 @@ class Runner {
     RelativePose& pose = scene.relative_poses.at(trial->views);
     pose = WithMotionFirst(pose, trial->motion);
     SolveStart start;
-    start.motions.push_back({trial->views, HypothesisGrounds::kNone, true});
+    start.replaced = {trial->views};
     LOWLAP_ASSIGN_OR_RETURN(
         start.rotations, AverageSceneRotations(scene, options_.poses, of_trial_,
                                                rotations_.third_views));

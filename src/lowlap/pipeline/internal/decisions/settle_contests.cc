@@ -137,12 +137,16 @@ std::set<ViewPair> OutByDirection(const PoseSummary& poses) {
   return pairs;
 }
 
-// The verdicts with those about the contests.
-Result<ThirdViewVerdicts> Ask(const Scene& scene, const PoseSummary& poses,
-                              const std::vector<Contest>& contests,
-                              ThirdViewVerdicts verdicts,
-                              const ScaleEstimator& estimator,
-                              const RunContext& context) {
+// What third views say of contests.
+struct Answer {
+  /// What of the evidence of the contradictions counts.
+  std::map<ViewPair, double> evidence;
+  std::vector<ViewPair> outweighed;
+};
+
+Result<Answer> Ask(const Scene& scene, const PoseSummary& poses,
+                   const std::vector<Contest>& contests,
+                   const ScaleEstimator& estimator, const RunContext& context) {
   ThirdViews third_views(scene, poses);
   std::set<ViewTriplet> triplets;
   for (const Contest& contest : contests) {
@@ -156,6 +160,7 @@ Result<ThirdViewVerdicts> Ask(const Scene& scene, const PoseSummary& poses,
   }
   LOWLAP_RETURN_IF_ERROR(third_views.Estimate(triplets, estimator, context));
   const std::set<ViewPair> by_direction = OutByDirection(poses);
+  Answer answer;
   for (const Contest& contest : contests) {
     const auto evidence_of = [&](const ViewPair& pair) {
       return third_views.EvidenceOf(pair, third_views.Witnesses(pair, contest));
@@ -167,7 +172,7 @@ Result<ThirdViewVerdicts> Ask(const Scene& scene, const PoseSummary& poses,
     bool turn = true;
     for (const ViewPair& pair : contest.contradictions) {
       const double evidence = evidence_of(pair);
-      double& counting = verdicts.evidence[pair];
+      double& counting = answer.evidence[pair];
       counting = std::max(counting, evidence);
       if (!is_weak(pair)) against += evidence;
       turn = turn && by_direction.count(pair) == 0;
@@ -178,71 +183,82 @@ Result<ThirdViewVerdicts> Ask(const Scene& scene, const PoseSummary& poses,
       for_it += is_weak(pair) ? EvidenceOfNfa(0) : evidence_of(pair);
     }
     if (!turn || links.empty() || against <= 2 * for_it) continue;
-    for (const ViewPair& pair : links) {
-      verdicts.outweighed.insert(pair);
-      verdicts.evidence[pair] = EvidenceOfNfa(0);
-    }
+    answer.outweighed.insert(answer.outweighed.end(), links.begin(),
+                             links.end());
+  }
+  return answer;
+}
+
+// The verdicts and what third views say of more contests.
+ThirdViewVerdicts WithEvidence(ThirdViewVerdicts verdicts,
+                               const Answer& answer) {
+  for (const auto& [pair, evidence] : answer.evidence) {
+    double& counting = verdicts.evidence[pair];
+    counting = std::max(counting, evidence);
   }
   return verdicts;
 }
 
-struct Composed {
-  SceneRotations rotations;
-  RatioSummary ratios;
-  PoseSummary poses;
-};
+ThirdViewVerdicts WithOutweighed(ThirdViewVerdicts verdicts,
+                                 const std::vector<ViewPair>& links) {
+  for (const ViewPair& pair : links) {
+    verdicts.outweighed.insert(pair);
+    verdicts.evidence[pair] = EvidenceOfNfa(0);
+  }
+  return verdicts;
+}
 
 // Ratios that the scene has are those of its relative poses.
-Result<Composed> Compose(const MatchVerdicts& matches,
-                         ThirdViewVerdicts verdicts,
-                         const SolveOptions& options, const RunContext& context,
-                         StageLog* stages, Scene* scene) {
-  SolveStart start;
-  LOWLAP_ASSIGN_OR_RETURN(start.rotations,
+Result<ComposedSolution> Compose(const MatchVerdicts& matches,
+                                 ThirdViewVerdicts verdicts,
+                                 SolveOptions options,
+                                 const RunContext& context, StageLog* stages,
+                                 Scene* scene) {
+  options.reuse_ratios = true;
+  ComposedSolution result;
+  LOWLAP_ASSIGN_OR_RETURN(result.start.rotations,
                           AverageSceneRotations(*scene, options.poses, context,
                                                 std::move(verdicts)));
-  AddMatchVerdicts(matches, &start.rotations);
-  Composed result;
+  AddMatchVerdicts(matches, &result.start.rotations);
   LOWLAP_ASSIGN_OR_RETURN(
       result.ratios,
-      EstimateBelievedRatios(scene, start, options, context, stages));
+      EstimateBelievedRatios(scene, result.start, options, context, stages));
   LOWLAP_ASSIGN_OR_RETURN(
-      result.poses,
-      ComposePoses(scene, start.rotations, options.poses, context, stages));
-  result.rotations = std::move(start.rotations);
+      result.poses, ComposePoses(scene, result.start.rotations, options.poses,
+                                 context, stages));
   return result;
 }
 
 }  // namespace
 
 Status SettleContests(const SolveOptions& options, const RunContext& context,
-                      StageLog* stages, Scene* scene, SceneRotations* rotations,
-                      RatioSummary* ratios, PoseSummary* poses) {
-  SolveOptions with_known = options;
-  with_known.reuse_ratios = true;
+                      StageLog* stages, Scene* scene,
+                      ComposedSolution* composed) {
+  SceneRotations& rotations = composed->start.rotations;
   for (;;) {
-    const ThirdViewVerdicts& before = rotations->third_views;
-    const std::vector<Contest> contests = NewContests(*poses, before);
+    const std::vector<Contest> contests =
+        NewContests(composed->poses, rotations.third_views);
     if (contests.empty()) return {};
-    LOWLAP_ASSIGN_OR_RETURN(ThirdViewVerdicts verdicts,
-                            Ask(*scene, *poses, contests, before,
+    LOWLAP_ASSIGN_OR_RETURN(const Answer answer,
+                            Ask(*scene, composed->poses, contests,
                                 *options.scale_estimator, context));
+    const ThirdViewVerdicts verdicts =
+        WithEvidence(rotations.third_views, answer);
     const std::vector<ScaleRatio> known = scene->scale_ratios;
-    auto composed = Compose(rotations->matches, verdicts, with_known, context,
-                            stages, scene);
-    if (!composed && composed.error().code == ErrorCode::kCancelled) {
-      return tl::unexpected<Error>(composed.error());
+    auto again =
+        Compose(rotations.matches, WithOutweighed(verdicts, answer.outweighed),
+                options, context, stages, scene);
+    if (!again && again.error().code == ErrorCode::kCancelled) {
+      return tl::unexpected<Error>(again.error());
     }
-    if (!composed || composed->poses.num_placed < poses->num_placed) {
-      verdicts.outweighed = before.outweighed;
+    if (!again || again->poses.num_placed < composed->poses.num_placed) {
       scene->scale_ratios = known;
-      LOWLAP_ASSIGN_OR_RETURN(
-          composed, Compose(rotations->matches, verdicts, with_known, context,
-                            stages, scene));
+      LOWLAP_ASSIGN_OR_RETURN(again, Compose(rotations.matches, verdicts,
+                                             options, context, stages, scene));
     }
-    *rotations = std::move(composed->rotations);
-    *ratios = composed->ratios;
-    *poses = std::move(composed->poses);
+    rotations = std::move(again->start.rotations);
+    composed->ratios = again->ratios;
+    composed->poses = std::move(again->poses);
   }
 }
 

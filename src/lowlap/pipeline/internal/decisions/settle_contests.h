@@ -24,11 +24,11 @@ namespace lowlap {
 /// which copies along a wall make third views agree on wrong ones, turn
 /// nothing.
 ///
-/// `rotations`, scene->scale_ratios and scene->poses become those of the new
-/// solution; `ratios` and `poses` are its summaries. Without a contest nothing
-/// is done. Errors: those of EstimateBelievedRatios and ComposePoses.
+/// scene->scale_ratios, scene->poses, and rotations, ratios and poses of
+/// `composed` become those of the new solution. Without a contest nothing is
+/// done. Errors: those of EstimateBelievedRatios and ComposePoses.
 Status SettleContests(const SolveOptions& options, const RunContext& context,
-                      StageLog* stages, Scene* scene, SceneRotations* rotations,
-                      RatioSummary* ratios, PoseSummary* poses);
+                      StageLog* stages, Scene* scene,
+                      ComposedSolution* composed);
 
 }  // namespace lowlap
