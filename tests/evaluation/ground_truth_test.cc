@@ -180,6 +180,12 @@ TEST(GroundTruthFromScene, GoesByIdWhereNamesAreBothNoMatchAndIds) {
   ASSERT_TRUE(by_id.has_value()) << by_id.error().ToString();
   ASSERT_EQ(by_id->size(), 2u);
   EXPECT_EQ(by_id->at(1).center.x(), 1);
+  // As in a trajectory of photographs 0000.jpg, 0001.jpg.
+  truth.views.at(0).filename = "0000";
+  truth.views.at(1).filename = "0001";
+  EXPECT_EQ(GroundTruthFromScene(truth, scene).value(), *by_id);
+  truth.views.at(0).filename = "0";
+  truth.views.at(1).filename = "1";
   // Names that match come first.
   const auto by_name =
       GroundTruthFromScene(truth, SceneOf({{"", "1.jpg"}, {"", "0.jpg"}}));

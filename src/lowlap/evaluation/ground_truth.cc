@@ -88,6 +88,14 @@ struct Level {
 constexpr Level kLevels[] = {{0, 0, false}, {1, 0, false}, {2, 2, false},
                              {3, 2, false}, {1, 1, true},  {3, 3, true}};
 
+// With leading zeros, too.
+bool IsNumber(const std::string& name, std::uint32_t number) {
+  const std::string digits = std::to_string(number);
+  if (name.size() < digits.size()) return false;
+  const std::size_t num_zeros = name.size() - digits.size();
+  return name == std::string(num_zeros, '0') + digits;
+}
+
 }  // namespace
 
 Result<GroundTruth> GroundTruthByName(
@@ -158,7 +166,7 @@ Result<GroundTruth> GroundTruthFromScene(const Scene& truth,
   bool names_are_ids = true;
   for (const auto& [id, pose] : by_id) {
     const std::string name = truth.views.at(id).PathBelowRoot();
-    names_are_ids = names_are_ids && name == std::to_string(id.value());
+    names_are_ids = names_are_ids && IsNumber(name, id.value());
     by_name.emplace(name, pose);
   }
   if (by_name.empty() || by_name.size() < by_id.size()) {
