@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/internal/measure/calibration_fit.h"
@@ -141,14 +142,15 @@ Result<LoadedScene> LoadMeasuredScene(const SceneInput& input,
   auto loaded = LoadScene(input, context, stages, check, first);
   if (!loaded) return loaded;
   if (loaded->scene.relative_poses.empty()) {
-    return MakeError(
-        ErrorCode::kInvalidScene,
-        HoldsMatches(input)
-            ? ExplainNoPose(loaded->pairs)
-            : "holds no relative poses; for an OpenMVG listing give the "
-              "matches folder with -m",
-        input.scene);
+    return MakeError(ErrorCode::kInvalidScene,
+                     HoldsMatches(input) ? ExplainNoPose(loaded->pairs)
+                     : !input.exclude.empty()
+                         ? "holds no relative poses without the excluded views"
+                         : "holds no relative poses; for an OpenMVG listing "
+                           "give the matches folder with -m",
+                     input.scene);
   }
+  RestoreGivenIntrinsics(&loaded->scene);
   return loaded;
 }
 

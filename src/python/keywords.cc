@@ -265,7 +265,10 @@ MeasuredScene MeasuredSceneOf(const py::object& scene, SceneInput input,
            {}});
   }
   if (check) RaiseIfError(check(*measured));
-  return {measured, {}};
+  if (measured->given_intrinsics.empty()) return {measured, {}};
+  const auto restored = std::make_shared<Scene>(*measured);
+  RestoreGivenIntrinsics(restored.get());
+  return {restored, {}};
 }
 
 }  // namespace lowlap::python

@@ -203,7 +203,6 @@ Solution LoadToSolve(const py::object& scene, const SceneInput& input,
                       {arguments.options, arguments.refinement});
   Solution solution;
   solution.scene = std::make_shared<Scene>(*measured.scene);
-  if (measured.pairs.empty()) RestoreGivenIntrinsics(solution.scene.get());
   solution.summary.pairs = std::move(measured.pairs);
   return solution;
 }

@@ -53,6 +53,21 @@ TEST_F(SceneFlags, TheSceneMayFollowRefineIntrinsics) {
   EXPECT_THAT(wrong.output, HasSubstr("no part 'shape'"));
 }
 
+// Its relative poses are those of the calibration as it was given.
+TEST_F(SceneFlags, MeasurementsOfASolvedSceneAreUsedWithTheirCalibration) {
+  ASSERT_EQ(Lowlap("solve --refine-intrinsics all " + Room() + " -o " +
+                   Path("refined"))
+                .exit_code,
+            0);
+  const auto ratios = [&](const std::string& scene) {
+    const Outcome outcome =
+        Lowlap("scales " + scene + " --profile " + Path("ratios.csv"));
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+    return ReadText(Path("ratios.csv"));
+  };
+  EXPECT_EQ(ratios(Path("refined/scene.lowlap")), ratios(Room()));
+}
+
 TEST_F(SceneFlags, SolveWritesNothingOverItsInput) {
   fs::create_directory(Path("matches"));
   const std::string listing = Path("matches/sfm_data.json");

@@ -6,6 +6,7 @@
 #include <map>
 #include <vector>
 
+#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "support/matchers.h"
 
@@ -63,8 +64,22 @@ TEST_F(RelateAndRefineTest, RelatesOnceMoreWithWhatAFirstSolutionRefines) {
   EXPECT_DOUBLE_EQ(focals_px_[0], kFocalFactor * true_px);
   EXPECT_NEAR(focals_px_[1], true_px, 0.01 * true_px);
   EXPECT_EQ(scene_.intrinsics.begin()->second.fx_px, focals_px_[1]);
-  EXPECT_EQ(scene_.given_intrinsics, given_);
   EXPECT_THAT(scene_.poses, IsEmpty());
+}
+
+// Relative poses of one focal length are wrong with another: what solves the
+// scene again must not go back to the one that was given.
+TEST_F(RelateAndRefineTest, ItsMeasurementsAreOfTheIntrinsicsItLeaves) {
+  FirstSolution first;
+  first.refinement.focal = true;
+  ASSERT_THAT(Relate(first), IsOk());
+  const auto related = scene_.intrinsics;
+  SolveOptions options;
+  RefineAllIntrinsics(first.refinement, &scene_, &options.adjustment);
+  ASSERT_THAT(SolveScene(&scene_, options, {}, nullptr), IsOk());
+  EXPECT_NE(scene_.intrinsics, related);
+  RestoreGivenIntrinsics(&scene_);
+  EXPECT_EQ(scene_.intrinsics, related);
 }
 
 TEST_F(RelateAndRefineTest, HoldsIntrinsicsThatAreNotToBeRefined) {

@@ -41,7 +41,8 @@ Result<LoadedScene> LoadScene(const SceneInput& input,
                               const ViewCheck& check = nullptr,
                               const FirstSolution& first = {});
 
-/// The same; kInvalidScene if there are no relative poses in the end.
+/// The same, with the intrinsics with which the relative poses were measured
+/// (RestoreGivenIntrinsics); kInvalidScene if there are none in the end.
 Result<LoadedScene> LoadMeasuredScene(const SceneInput& input,
                                       const RunContext& context,
                                       StageLog* stages,

@@ -1,6 +1,5 @@
 #include "cli/flags/scene_input.h"
 
-#include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/core/internal/propagate.h"
 
 namespace lowlap::cli {
@@ -32,10 +31,7 @@ Result<LoadedScene> LoadSceneToSolve(const SceneInputFlags& flags,
                                      const RunContext& context,
                                      StageLog* stages, const ViewCheck& check) {
   LOWLAP_ASSIGN_OR_RETURN(const auto first, MakeFirstSolution(solve));
-  LOWLAP_ASSIGN_OR_RETURN(
-      auto loaded, LoadMeasuredScene(flags, context, stages, check, first));
-  if (loaded.pairs.empty()) RestoreGivenIntrinsics(&loaded.scene);
-  return loaded;
+  return LoadMeasuredScene(flags, context, stages, check, first);
 }
 
 std::vector<NamedFile> InputFiles(const SceneInputFlags& flags) {

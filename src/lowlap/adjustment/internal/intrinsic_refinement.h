@@ -17,8 +17,8 @@ namespace lowlap {
 void RefineAllIntrinsics(const IntrinsicRefinement& refinement, Scene* scene,
                          AdjustmentOptions* options);
 
-/// Back to scene->given_intrinsics, which is empty then: an adjustment of an
-/// adjusted scene starts from the calibration as it was given.
+/// Back to scene->given_intrinsics, which is empty then: what starts from the
+/// measurements of an adjusted scene starts from their calibration.
 void RestoreGivenIntrinsics(Scene* scene);
 
 /// IntrinsicShiftPx from the given intrinsics to the present ones: of all

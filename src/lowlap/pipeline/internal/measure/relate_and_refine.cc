@@ -21,16 +21,18 @@ Result<bool> TakeRefinedIntrinsics(const FirstSolution& first,
     return tl::unexpected<Error>(solved.error());
   }
   constexpr double kLargeShiftPx = 1;
-  if (!solved || LargestIntrinsicShiftPx(refined) <= kLargeShiftPx) {
+  if (!solved) {
+    context.Log(LogLevel::kWarning, "intrinsics not refined before the rest: " +
+                                        solved.error().ToString());
     return false;
   }
+  if (LargestIntrinsicShiftPx(refined) <= kLargeShiftPx) return false;
   context.Log(LogLevel::kInfo,
               "relative poses once more, with refined intrinsics");
   for (const std::string& line : DescribeIntrinsicChanges(refined)) {
     context.Log(LogLevel::kInfo, line);
   }
   scene->intrinsics = refined.intrinsics;
-  scene->given_intrinsics = refined.given_intrinsics;
   return true;
 }
 

@@ -25,9 +25,9 @@ using RelateViews = std::function<Result<std::vector<PairReport>>(Scene*)>;
 
 /// Relative poses from a wrong focal length are wrong themselves: if a first
 /// solution moves the intrinsics by more than a pixel, views are related once
-/// more with the refined ones, which the scene then has, besides those given
-/// (Scene::given_intrinsics). A first solution that fails changes nothing.
-/// Errors: those of `relate`; kCancelled.
+/// more with the refined ones, which are then the scene's: what is measured
+/// with them is only right with them. A first solution that fails changes
+/// nothing, with a warning. Errors: those of `relate`; kCancelled.
 Result<std::vector<PairReport>> RelateAndRefine(const RelateViews& relate,
                                                 const FirstSolution& first,
                                                 const RunContext& context,
