@@ -45,8 +45,8 @@ struct Scene {
   std::string root_path;  // image folder; relative: to where the program runs
   std::map<ViewId, View> views;
   std::map<IntrinsicId, Intrinsic> intrinsics;
-  /// Of the intrinsics that an adjustment moved: as they were before, with which
-  /// the relative poses were measured.
+  /// Of the intrinsics that an adjustment moved: as they were before, with
+  /// which the relative poses were measured.
   std::map<IntrinsicId, Intrinsic> given_intrinsics;
   std::map<PoseId, Pose> poses;  // only solved poses
 
