@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <string>
 #include <vector>
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
@@ -13,6 +14,7 @@
 namespace lowlap {
 namespace {
 
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::IsError;
 using testing::IsOk;
@@ -44,13 +46,18 @@ class RelateAndRefineTest : public ::testing::Test {
       scene->relative_poses = measured_.relative_poses;
       return Result<std::vector<PairReport>>(std::vector<PairReport>(2));
     };
-    return RelateAndRefine(relate, first, {}, nullptr, &scene_);
+    RunContext context;
+    context.log = [this](LogLevel level, const std::string& message) {
+      if (level == LogLevel::kWarning) warnings_ += message + '\n';
+    };
+    return RelateAndRefine(relate, first, context, nullptr, &scene_);
   }
 
   Scene measured_;
   Scene scene_;
   std::map<IntrinsicId, Intrinsic> given_;
   std::vector<double> focals_px_;  // with which views were related
+  std::string warnings_;
 };
 
 TEST_F(RelateAndRefineTest, RelatesOnceMoreWithWhatAFirstSolutionRefines) {
@@ -94,6 +101,7 @@ TEST_F(RelateAndRefineTest, WithoutASolutionNothingChanges) {
   FirstSolution first;
   first.refinement.focal = true;
   ASSERT_THAT(Relate(first), IsOk());
+  EXPECT_THAT(warnings_, HasSubstr("intrinsics not refined before the rest: "));
   EXPECT_EQ(focals_px_.size(), 1u);
   EXPECT_EQ(scene_.intrinsics, given_);
 }

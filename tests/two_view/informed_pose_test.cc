@@ -75,7 +75,6 @@ TEST(InformPose, ThePriorDecidesBetweenTheMotionsOfAPlane) {
   }
 }
 
-// What the plane leaves open the covariance no longer does: the prior is in it.
 TEST(InformPose, AnotherMotionOfWeakMatchesIsAsWeak) {
   PlaneUnderItsTwin twin(0);
   twin.pose.weakness = PoseWeakness::kRepeats;
@@ -87,6 +86,7 @@ TEST(InformPose, AnotherMotionOfWeakMatchesIsAsWeak) {
   EXPECT_EQ(informed.pose.weakness, PoseWeakness::kRepeats);
 }
 
+// What the plane leaves open the covariance no longer does: the prior is in it.
 TEST(InformPose, TheCovarianceHoldsThePrior) {
   double before = 0;
   for (const double stddev_deg : {0.02, 0.2, 2.0}) {

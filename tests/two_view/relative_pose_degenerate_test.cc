@@ -12,6 +12,7 @@
 namespace lowlap {
 namespace {
 
+using testing::AmbiguousPlane;
 using testing::DirectionErrorDeg;
 using testing::IsError;
 using testing::IsOk;
@@ -45,20 +46,9 @@ TEST(EstimateRelativePose, PlanarSceneIsDecidedByVisibility) {
   }
 }
 
-/// A motion towards a slanted plane, whose mirror image keeps all of it in
-/// front of both cameras.
-TwoViewSceneOptions AmbiguousOptions() {
-  TwoViewSceneOptions options;
-  options.planar = true;
-  options.noise_px = 0.3;
-  options.cam2_from_cam1 = {RotationFromAngleAxis(Vec3(0.1, -0.1, 0)),
-                            Vec3(0, 0.3, -1).normalized()};
-  return options;
-}
-
 TEST(EstimateRelativePose, AmbiguousPlanarSceneKeepsBothMotions) {
   for (int seed = 0; seed < 8; ++seed) {
-    const TwoViewScene scene = MakeTwoViewScene(AmbiguousOptions(), seed);
+    const TwoViewScene scene = MakeTwoViewScene(AmbiguousPlane(), seed);
     const auto result = EstimateRelativePose(scene.Input(), {}, seed);
     ASSERT_THAT(result, IsOk());
     EXPECT_EQ(result->geometry, TwoViewGeometry::kAmbiguousPlane) << seed;
@@ -78,7 +68,7 @@ TEST(EstimateRelativePose, EveryAlternativeIsMeaningful) {
   // than a sample: its NFA is infinite, and no scene can hold it.
   int num_planar = 0;
   for (int seed = 0; seed < 300; ++seed) {
-    TwoViewSceneOptions options = AmbiguousOptions();
+    TwoViewSceneOptions options = AmbiguousPlane();
     options.num_right = 7 + seed % 4;
     options.num_wrong = 4;
     options.noise_px = 1;
@@ -116,7 +106,7 @@ TEST(ImproveRelativePose, APoseThatNoMatchFitsComesBackAsItWas) {
 
 TEST(EstimateRelativePose, AFewPointsOffThePlaneDecide) {
   for (int seed = 0; seed < 8; ++seed) {
-    TwoViewSceneOptions options = AmbiguousOptions();
+    TwoViewSceneOptions options = AmbiguousPlane();
     options.num_off_plane = 40;
     const TwoViewScene scene = MakeTwoViewScene(options, 100 + seed);
     const auto result = EstimateRelativePose(scene.Input(), {}, seed);

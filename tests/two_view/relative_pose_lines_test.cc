@@ -112,12 +112,7 @@ TEST(RelativePoseFromLines, LinesSharpenTheRotationOfFewNoisyPoints) {
 // Many points of one plane, which fit one of its two motions better by how
 // their errors fell, and parallel lines on it.
 TEST(RelativePoseFromLines, OneDirectionOrdersTheMotionsOfAPlane) {
-  TwoViewSceneOptions options;
-  options.planar = true;
-  options.num_right = 1000;
-  options.noise_px = 0.4;
-  options.cam2_from_cam1 = {RotationFromAngleAxis(Vec3(0.1, -0.1, 0)),
-                            Vec3(0, 0.3, -1).normalized()};
+  const TwoViewSceneOptions options = testing::AmbiguousPlaneOfManyPoints();
   constexpr FeatureIndex kLines = 12;
   int num_first_without = 0;
   for (int seed = 28; seed < 36; ++seed) {

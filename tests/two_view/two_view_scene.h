@@ -50,6 +50,25 @@ struct TwoViewSceneOptions {
   double baseline = 1;
 };
 
+/// A motion towards a slanted plane; the other motion of it, too, keeps all of
+/// it in front of both cameras.
+inline TwoViewSceneOptions AmbiguousPlane() {
+  TwoViewSceneOptions options;
+  options.planar = true;
+  options.noise_px = 0.3;
+  options.cam2_from_cam1 = {RotationFromAngleAxis(Vec3(0.1, -0.1, 0)),
+                            Vec3(0, 0.3, -1).normalized()};
+  return options;
+}
+
+/// Of which the errors of many points leave either motion the better fit.
+inline TwoViewSceneOptions AmbiguousPlaneOfManyPoints() {
+  TwoViewSceneOptions options = AmbiguousPlane();
+  options.num_right = 1000;
+  options.noise_px = 0.4;
+  return options;
+}
+
 inline constexpr double kFocalPx = 1300;
 
 /// The plane n . X = 1 of planar scenes, in camera 1.

@@ -66,8 +66,8 @@ struct ReconsideredPose {
 };
 
 struct SolveResult {
-  /// One for every relative pose that came with alternatives, by views; what
-  /// nothing decided before it was reconsidered is only there.
+  /// One for every relative pose that came with alternatives, by views, without
+  /// those that nothing decided and that were reconsidered.
   std::vector<HypothesisDecision> motions;
   std::vector<ReconsideredPose> reconsidered;  // by views
   RatioSummary ratios;

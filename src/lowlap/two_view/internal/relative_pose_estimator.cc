@@ -203,18 +203,17 @@ Result<TwoViewResult> EstimateFrom(const TwoViewInput& input,
   if (plane) other = PlanarAlternative(search, pairs, *best, *plane);
   if (other) {
     // Few matches may leave the other motion none in front of the cameras.
-    std::optional<ScenePlane> plane_of_other;
-    if (other->IsMeaningful()) {
-      plane_of_other = DominantPlaneOf(*other, pairs, random);
-    }
     bool is_decided = true;
-    if (plane_of_other) {
+    if (other->IsMeaningful()) {
+      std::optional<ScenePlane> plane_of_other =
+          DominantPlaneOf(*other, pairs, random);
       const MotionLead lead =
-          CompareMotions(search, pairs, *best, *plane, *other, *plane_of_other);
+          CompareMotions(search, pairs, *best, *plane, *other,
+                         plane_of_other ? &*plane_of_other : nullptr);
       is_decided = lead.IsDecisive();
       if (lead.IsBehind()) {
         std::swap(*best, *other);
-        std::swap(*plane, *plane_of_other);
+        std::swap(plane, plane_of_other);
       }
     }
     // Where both are one motion, the better optimum of it is kept.

@@ -31,7 +31,7 @@ MotionLead CompareMotions(const PoseSearch& search, const PointPairs& pairs,
                           const PoseCandidate& first,
                           const ScenePlane& plane_of_first,
                           const PoseCandidate& second,
-                          const ScenePlane& plane_of_second) {
+                          const ScenePlane* plane_of_second) {
   const double threshold_px = first.support.threshold;
   // Wider than the loss: what noise alone makes of it must stay small.
   const double scale_px = 0.5 * threshold_px;
@@ -57,8 +57,12 @@ MotionLead CompareMotions(const PoseSearch& search, const PointPairs& pairs,
   lead.of_all = of_directions + of_points;
   lead.noise = std::sqrt(squared);
   lead.beside_plane = of_directions;
-  if (ParallaxEvidence(first.pose, plane_of_first, pairs, threshold_px) < 0 ||
-      ParallaxEvidence(second.pose, plane_of_second, pairs, threshold_px) < 0) {
+  const auto is_borne_out = [&](const PoseCandidate& motion,
+                                const ScenePlane& plane) {
+    return ParallaxEvidence(motion.pose, plane, pairs, threshold_px) < 0;
+  };
+  if (is_borne_out(first, plane_of_first) ||
+      (plane_of_second != nullptr && is_borne_out(second, *plane_of_second))) {
     lead.beside_plane += off_plane;
   }
   return lead;

@@ -30,11 +30,12 @@ struct MotionLead {
   bool IsBehind() const;
 };
 
-/// That of `first` over `second`, whose inliers lie mostly on these planes.
+/// That of `first`, whose inliers lie mostly on its plane, over `second`; null:
+/// that one has no plane.
 MotionLead CompareMotions(const PoseSearch& search, const PointPairs& pairs,
                           const PoseCandidate& first,
                           const ScenePlane& plane_of_first,
                           const PoseCandidate& second,
-                          const ScenePlane& plane_of_second);
+                          const ScenePlane* plane_of_second);
 
 }  // namespace lowlap

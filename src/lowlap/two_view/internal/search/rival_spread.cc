@@ -7,8 +7,8 @@
 namespace lowlap {
 namespace {
 
-// A quarter of what tells the two motions of a plane apart (MotionLead, ten
-// digits), of which noise alone reaches half at most.
+// A quarter of what tells the two motions of a plane apart at least
+// (MotionLead, ten digits).
 constexpr double kScoreNoiseDigits = 2.5;
 
 }  // namespace
