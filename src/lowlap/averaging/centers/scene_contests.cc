@@ -40,11 +40,17 @@ std::vector<Contest> FindSceneContests(const Scene& scene,
   const auto is_placed = [&](const ViewPair& views) {
     return placed.count(views.first) > 0 && placed.count(views.second) > 0;
   };
+  const auto evidence_of = [&](const ViewPair& views) {
+    const auto counting = rotations.third_views.evidence.find(views);
+    return counting != rotations.third_views.evidence.end()
+               ? counting->second
+               : EvidenceOfNfa(scene.relative_poses.at(views).log10_nfa);
+  };
   EvidenceOfPairs in_use;
   for (const DirectionEdge& edge : centers.problem.edges) {
     const ViewPair views = ViewsOf(centers.problem, edge);
     if (!is_placed(views)) continue;
-    in_use[views] = EvidenceOfNfa(scene.relative_poses.at(views).log10_nfa);
+    in_use[views] = evidence_of(views);
   }
   for (const OutlierEdge& edge : centers.kept_outliers) {
     in_use.erase(edge.views);
@@ -61,11 +67,8 @@ std::vector<Contest> FindSceneContests(const Scene& scene,
       const Mat3 turn =
           rotations.cam_from_world.at(edge.views.second).transpose() *
           pose.rotation * rotations.cam_from_world.at(edge.views.first);
-      const auto counting = rotations.third_views.evidence.find(edge.views);
-      rejected[edge.views] = {counting != rotations.third_views.evidence.end()
-                                  ? counting->second
-                                  : EvidenceOfNfa(pose.log10_nfa),
-                              turn, RotationStddev(pose)};
+      rejected[edge.views] = {evidence_of(edge.views), turn,
+                              RotationStddev(pose)};
     }
   }
   EvidenceOfRatios ratios;

@@ -118,13 +118,13 @@ struct MatchVerdicts {
   std::vector<ViewPair> untold;   // too few matches to say
 };
 
-/// What third views say of relative poses whose rotations contradict one
-/// another, by views.
+/// What third views say of relative poses that contradict one another, by
+/// views.
 struct ThirdViewVerdicts {
   /// To be left out: others that contradict them are borne out better.
   std::set<ViewPair> outweighed;
-  /// What of their evidence (EvidenceOfNfa) counts, where they contradict the
-  /// solution; all, unless listed.
+  /// What of their evidence (EvidenceOfNfa) counts in contests; all, unless
+  /// listed.
   std::map<ViewPair, double> evidence;
 };
 

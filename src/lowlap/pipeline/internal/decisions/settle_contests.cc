@@ -112,15 +112,14 @@ class ThirdViews {
   std::map<ViewTriplet, const ScaleRatio*> known_;
 };
 
-// The contests about which third views were not asked.
+// The contests with a contradiction about which third views were not asked.
 std::vector<Contest> NewContests(const PoseSummary& poses,
-                                 const ThirdViewVerdicts& verdicts) {
+                                 const std::set<ViewPair>& asked) {
   std::vector<Contest> contests;
   for (const Contest& contest : poses.contests) {
-    if (std::any_of(contest.contradictions.begin(),
-                    contest.contradictions.end(), [&](const ViewPair& pair) {
-                      return verdicts.evidence.count(pair) == 0;
-                    })) {
+    if (std::any_of(
+            contest.contradictions.begin(), contest.contradictions.end(),
+            [&](const ViewPair& pair) { return asked.count(pair) == 0; })) {
       contests.push_back(contest);
     }
   }
@@ -139,9 +138,14 @@ std::set<ViewPair> OutByDirection(const PoseSummary& poses) {
 
 // What third views say of contests.
 struct Answer {
-  /// What of the evidence of the contradictions counts.
+  /// What of the evidence of contradictions and links counts.
   std::map<ViewPair, double> evidence;
   std::vector<ViewPair> outweighed;
+
+  void Count(const ViewPair& pair, double value) {
+    double& counting = evidence[pair];
+    counting = std::max(counting, value);
+  }
 };
 
 Result<Answer> Ask(const Scene& scene, const PoseSummary& poses,
@@ -169,20 +173,22 @@ Result<Answer> Ask(const Scene& scene, const PoseSummary& poses,
       return scene.relative_poses.at(pair).weakness.has_value();
     };
     double against = 0, for_it = 0;
-    bool turn = true;
+    std::set<ViewPair> others = by_direction;
     for (const ViewPair& pair : contest.contradictions) {
       const double evidence = evidence_of(pair);
-      double& counting = answer.evidence[pair];
-      counting = std::max(counting, evidence);
+      answer.Count(pair, evidence);
       if (!is_weak(pair)) against += evidence;
-      turn = turn && by_direction.count(pair) == 0;
+      others.erase(pair);
     }
     const std::vector<ViewPair> links =
-        third_views.Across(contest.weakest_links, by_direction);
+        third_views.Across(contest.weakest_links, others);
     for (const ViewPair& pair : links) {
-      for_it += is_weak(pair) ? EvidenceOfNfa(0) : evidence_of(pair);
+      const double evidence =
+          is_weak(pair) ? EvidenceOfNfa(0) : evidence_of(pair);
+      answer.Count(pair, evidence);
+      for_it += evidence;
     }
-    if (!turn || links.empty() || against <= 2 * for_it) continue;
+    if (links.empty() || against <= 2 * for_it) continue;
     answer.outweighed.insert(answer.outweighed.end(), links.begin(),
                              links.end());
   }
@@ -235,10 +241,14 @@ Status SettleContests(const SolveOptions& options, const RunContext& context,
                       StageLog* stages, Scene* scene,
                       ComposedSolution* composed) {
   SceneRotations& rotations = composed->start.rotations;
+  std::set<ViewPair> asked;
   for (;;) {
-    const std::vector<Contest> contests =
-        NewContests(composed->poses, rotations.third_views);
+    const std::vector<Contest> contests = NewContests(composed->poses, asked);
     if (contests.empty()) return {};
+    for (const Contest& contest : contests) {
+      asked.insert(contest.contradictions.begin(),
+                   contest.contradictions.end());
+    }
     LOWLAP_ASSIGN_OR_RETURN(const Answer answer,
                             Ask(*scene, composed->poses, contests,
                                 *options.scale_estimator, context));

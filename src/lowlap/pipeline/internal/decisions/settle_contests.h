@@ -7,22 +7,21 @@
 
 namespace lowlap {
 
-/// Asks third views about relative poses whose rotations contradict the
-/// solution and contest a part of it (PoseSummary::contests), and composes the
-/// poses again with what they say.
+/// Asks third views about relative poses that contradict the solution and
+/// contest a part of it (PoseSummary::contests), and composes the poses again
+/// with what they say.
 ///
 /// A relative pose that joins two places that look alike explains the matches
 /// of its two views as well as a right one does. But a right one sees what its
 /// neighbours see: with a relative pose of one side of the contested cut it
 /// shares points, lines or planes that agree on a scale ratio. So what counts
 /// of its evidence is at most that of the best such ratio, if that is not weak
-/// (IsWeak). The contest is found again, or not, with what is left
-/// (ThirdViewVerdicts::evidence). If that is more than twice what third views
-/// leave of the links that it contradicts, these are left out instead
+/// (IsWeak), of the links of the cut as of those that contradict them. The
+/// contest is found again, or not, with what is left
+/// (ThirdViewVerdicts::evidence). If the contradictions have more than twice
+/// what the links have, these are left out instead
 /// (ThirdViewVerdicts::outweighed), unless that loses a view. Weak relative
-/// poses (RelativePose::weakness) count nothing there, and directions alone, of
-/// which copies along a wall make third views agree on wrong ones, turn
-/// nothing.
+/// poses (RelativePose::weakness) count nothing there.
 ///
 /// scene->scale_ratios, scene->poses, and rotations, ratios and poses of
 /// `composed` become those of the new solution. Without a contest nothing is
