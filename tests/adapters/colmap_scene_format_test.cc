@@ -86,6 +86,36 @@ TEST_F(ColmapSceneFormat, APoseOfLinesAloneGoesIntoADatabaseAndComesOut) {
                          ::testing::HasSubstr("matches of 1 pairs without")));
 }
 
+TEST_F(ColmapSceneFormat, WhatADatabaseCannotHoldOfARelativePoseIsCounted) {
+  const std::string path = folder_.Path("database.db");
+  {
+    ColmapDatabase file(path, ColmapDatabase::Version::k3_8);
+    file.AddCamera(1, 1, 800, 600, {500, 510, 400, 300});
+    for (const int id : {1, 2}) {
+      file.AddImage(id, std::to_string(id) + ".jpg", 1, {10.5F, 20.25F}, 2);
+    }
+  }
+  auto scene = ReadScene(path);
+  ASSERT_THAT(scene, IsOk());
+  scene->root_path = "images";
+  scene->features.begin()->second.repeated_points = {0};
+  RelativePose& pose = scene->relative_poses[{1, 2}];
+  pose.views = {1, 2};
+  EXPECT_THAT(WriteScene(*scene, path, "colmap-db").value(),
+              ::testing::ElementsAre(
+                  "colmap-db cannot hold 1 image folder, 1 marks of features "
+                  "that repeat: left out"));
+  pose.log10_nfa = -20;
+  pose.covariance = Eigen::Matrix<double, 5, 5>::Identity();
+  pose.alternatives.resize(2);
+  pose.weakness = PoseWeakness::kRepeats;
+  EXPECT_THAT(WriteScene(*scene, path, "colmap-db").value(),
+              ::testing::ElementsAre(::testing::HasSubstr(
+                  "1 NFAs of relative poses, 1 weaknesses of relative poses, 1 "
+                  "covariances of relative poses, 2 alternatives of relative "
+                  "poses: left out")));
+}
+
 TEST_F(ColmapSceneFormat, AFolderWithoutTheNamedFormIsAnErrorWithTheFile) {
   const auto expect_none = [&](const char* written, const char* missing) {
     const std::string path = folder_.Path(written);

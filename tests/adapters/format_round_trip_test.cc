@@ -61,8 +61,15 @@ Scene ExampleScene() {
   scene.poses.erase(scene.views.at(4).pose_id);
   scene.views.at(4).pose_id = scene.views.at(0).pose_id;
   scene.control_points[4].position = {1, 2, 3};
-  auto& covariances = scene.features.at(0).point_covariances;
-  covariances.assign(scene.features.at(0).points_px.size(), Vec3(1, 0, 2));
+  ViewFeatures& features = scene.features.at(0);
+  features.point_covariances.assign(features.points_px.size(), Vec3(1, 0, 2));
+  features.segments[0].stddev_px = 0.75;
+  features.repeated_points = {1, 2};
+  features.repeated_segments = {0};
+  RelativePose& pose = scene.relative_poses.begin()->second;
+  pose.covariance = Eigen::Matrix<double, 5, 5>::Identity();
+  pose.alternatives.push_back({pose.rotation, -pose.direction, -3, {}});
+  pose.weakness = PoseWeakness::kRepeats;
   return scene;
 }
 
@@ -75,7 +82,8 @@ SceneContents Common(const SceneContents& a, const SceneContents& b) {
 
 /// Of formats that need something of a camera, what they keep without one.
 const SceneContents kNeedNoCamera = {
-    SceneContent::kSegments, SceneContent::kLineTracks, SceneContent::kLines};
+    SceneContent::kSegments, SceneContent::kLineTracks, SceneContent::kLines,
+    SceneContent::kLineObservations};
 
 /// Formats that keep a scene by themselves. A database of COLMAP does not: it
 /// is written into one that exists.

@@ -49,6 +49,9 @@ class Inventory {
   }
 
   void AddViews() {
+    if (Holds(SceneContent::kRootPath)) {
+      items_.push_back({"root path " + scene_.root_path, {}});
+    }
     if (Holds(SceneContent::kSharedPoses)) {
       std::map<PoseId, double> views;
       for (const auto& [id, view] : scene_.views) ++views[view.pose_id];
@@ -107,6 +110,30 @@ class Inventory {
       }
       if (Holds(SceneContent::kKeypoints)) items_.push_back(points);
       if (Holds(SceneContent::kSegments)) items_.push_back(segments);
+      if (Holds(SceneContent::kKeypointShapes)) {
+        SceneItem shapes{"shapes", {place_of_view_.at(view)}};
+        for (const Vec3& shape : features.point_covariances) {
+          Append(shape, &shapes.numbers);
+        }
+        items_.push_back(shapes);
+      }
+      if (Holds(SceneContent::kSegmentDeviations)) {
+        SceneItem deviations{"deviations", {place_of_view_.at(view)}};
+        for (const LineSegment& segment : features.segments) {
+          deviations.numbers.push_back(segment.stddev_px);
+        }
+        items_.push_back(deviations);
+      }
+      if (Holds(SceneContent::kRepeatedFeatures)) {
+        SceneItem repeated{"repeated", {place_of_view_.at(view)}};
+        for (const auto* list :
+             {&features.repeated_points, &features.repeated_segments}) {
+          repeated.numbers.push_back(static_cast<double>(list->size()));
+          repeated.numbers.insert(repeated.numbers.end(), list->begin(),
+                                  list->end());
+        }
+        items_.push_back(repeated);
+      }
     }
   }
 
@@ -124,6 +151,27 @@ class Inventory {
     items_.push_back(item);
   }
 
+  void AddEvidence(const RelativePose& pose) {
+    if (Holds(SceneContent::kPoseEvidence)) {
+      items_.push_back({"NFA", {pose.log10_nfa, pose.point_threshold_px}});
+    }
+    if (Holds(SceneContent::kPoseWeaknesses) && pose.weakness) {
+      items_.push_back({PoseWeaknessName(*pose.weakness), {}});
+    }
+    if (Holds(SceneContent::kPoseCovariances) && pose.covariance) {
+      SceneItem item{"covariance of a relative pose", {}};
+      Append(*pose.covariance, &item.numbers);
+      items_.push_back(item);
+    }
+    if (!Holds(SceneContent::kAlternatives)) return;
+    for (const AlternativeMotion& motion : pose.alternatives) {
+      SceneItem item{"alternative", {motion.log10_nfa}};
+      Append(motion.rotation, &item.numbers);
+      Append(motion.direction, &item.numbers);
+      items_.push_back(item);
+    }
+  }
+
   void AddPairs() {
     for (const auto& [views, pose] : scene_.relative_poses) {
       if (Holds(SceneContent::kRelativePoses)) {
@@ -132,6 +180,7 @@ class Inventory {
         Append(pose.direction, &item.numbers);
         items_.push_back(item);
       }
+      AddEvidence(pose);
       if (Holds(SceneContent::kPointMatches)) {
         AddMatches("point matches", pose, pose.point_inliers);
       }
@@ -191,6 +240,12 @@ class Inventory {
         Append(line.line.direction, &item.numbers);
         Append(line.line.moment, &item.numbers);
         items_.push_back(item);
+      }
+    }
+    if (Holds(SceneContent::kLineObservations)) {
+      for (const auto& [id, line] : scene_.line_structure) {
+        items_.push_back(
+            {"line seen", {static_cast<double>(line.observations.size())}});
       }
     }
     if (Holds(SceneContent::kCoplanarPairs)) {

@@ -22,6 +22,17 @@ std::size_t CountSharedPoses(const Scene& scene) {
   return Sum(views, [](std::size_t count) { return count > 1; });
 }
 
+std::size_t CountUnlikeDefault(const std::vector<LineSegment>& segments) {
+  return static_cast<std::size_t>(
+      std::count_if(segments.begin(), segments.end(), [](const auto& segment) {
+        return segment.stddev_px != LineSegment().stddev_px;
+      }));
+}
+
+bool HasEvidence(const RelativePose& pose) {
+  return pose.log10_nfa != 0 || pose.point_threshold_px != 0;
+}
+
 std::string Joined(const std::vector<std::string>& parts) {
   std::string text;
   for (const std::string& part : parts) {
@@ -35,6 +46,10 @@ std::string Joined(const std::vector<std::string>& parts) {
 const std::vector<ContentKind>& ContentKinds() {
   using Content = SceneContent;
   static const std::vector<ContentKind> kinds = {
+      {Content::kRootPath, "image folder",
+       [](const Scene& scene) -> std::size_t {
+         return scene.root_path.empty() ? 0 : 1;
+       }},
       {Content::kNames, "names",
        [](const Scene& scene) {
          return Sum(scene.views,
@@ -84,8 +99,43 @@ const std::vector<ContentKind>& ContentKinds() {
            return features.segments.size();
          });
        }},
+      {Content::kSegmentDeviations, "standard deviations of segments",
+       [](const Scene& scene) {
+         return Sum(scene.features, [](const ViewFeatures& features) {
+           return CountUnlikeDefault(features.segments);
+         });
+       }},
+      {Content::kRepeatedFeatures, "marks of features that repeat",
+       [](const Scene& scene) {
+         return Sum(scene.features, [](const ViewFeatures& features) {
+           return features.repeated_points.size() +
+                  features.repeated_segments.size();
+         });
+       }},
       {Content::kRelativePoses, "relative poses",
        [](const Scene& scene) { return scene.relative_poses.size(); }},
+      {Content::kPoseEvidence, "NFAs of relative poses",
+       [](const Scene& scene) {
+         return Sum(scene.relative_poses, HasEvidence);
+       }},
+      {Content::kPoseWeaknesses, "weaknesses of relative poses",
+       [](const Scene& scene) {
+         return Sum(scene.relative_poses, [](const RelativePose& pose) {
+           return pose.weakness.has_value();
+         });
+       }},
+      {Content::kPoseCovariances, "covariances of relative poses",
+       [](const Scene& scene) {
+         return Sum(scene.relative_poses, [](const RelativePose& pose) {
+           return pose.covariance.has_value();
+         });
+       }},
+      {Content::kAlternatives, "alternatives of relative poses",
+       [](const Scene& scene) {
+         return Sum(scene.relative_poses, [](const RelativePose& pose) {
+           return pose.alternatives.size();
+         });
+       }},
       {Content::kPointMatches, "point matches",
        [](const Scene& scene) {
          return Sum(scene.relative_poses, [](const RelativePose& pose) {
@@ -114,6 +164,12 @@ const std::vector<ContentKind>& ContentKinds() {
        }},
       {Content::kLines, "lines",
        [](const Scene& scene) { return scene.line_structure.size(); }},
+      {Content::kLineObservations, "observations of lines",
+       [](const Scene& scene) {
+         return Sum(scene.line_structure, [](const LineLandmark& line) {
+           return line.observations.size();
+         });
+       }},
       {Content::kCoplanarPairs, "coplanar pairs",
        [](const Scene& scene) { return scene.coplanar_pairs.size(); }},
       {Content::kControlPoints, "control points",

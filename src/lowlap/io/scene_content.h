@@ -12,6 +12,7 @@ namespace lowlap {
 /// The kinds of things that a scene consists of, as far as files differ in what
 /// they hold of them.
 enum class SceneContent {
+  kRootPath,     // the image folder
   kNames,        // file names of views
   kIntrinsics,   // focal lengths
   kFrames,       // image sizes and principal points
@@ -24,8 +25,14 @@ enum class SceneContent {
   kKeypoints,
   kKeypointShapes,  // covariances of key points
   kSegments,
+  kSegmentDeviations,  // other than that of a segment of which it is not known
+  kRepeatedFeatures,
   kRelativePoses,
-  kPointMatches,  // inliers of relative poses
+  kPoseEvidence,  // NFA and threshold of relative poses
+  kPoseWeaknesses,
+  kPoseCovariances,  // of relative poses
+  kAlternatives,     // of relative poses
+  kPointMatches,     // inliers of relative poses
   kLineMatches,
   kPointTracks,
   kLineTracks,
@@ -33,6 +40,7 @@ enum class SceneContent {
   kPoints,        // triangulated
   kObservations,  // of these
   kLines,         // triangulated
+  kLineObservations,
   kCoplanarPairs,
   kControlPoints,
 };

@@ -18,7 +18,7 @@ SceneFormats LimapFormats() {
                   SceneContent::kKeypoints,   SceneContent::kSegments,
                   SceneContent::kLineMatches, SceneContent::kLineTracks,
                   SceneContent::kPoints,      SceneContent::kObservations,
-                  SceneContent::kLines};
+                  SceneContent::kLines,       SceneContent::kLineObservations};
   format.needs = {SceneContent::kPoses, SceneContent::kIntrinsics};
   format.read = ReadLineFolder;
   format.write = WriteLineFolder;

@@ -12,7 +12,8 @@ SceneFormats Line3dppFormats() {
   format.description =
       "lines of Line3D++ as text, with the segments that support them";
   format.recognizes_start = IsLine3dppStart;
-  format.holds = {SceneContent::kLineTracks, SceneContent::kLines};
+  format.holds = {SceneContent::kLineTracks, SceneContent::kLines,
+                  SceneContent::kLineObservations};
   format.read = ReadOneFile(ParseLine3dpp);
   format.write = WriteOneFile(FormatLine3dpp);
   return {std::move(format)};

@@ -44,11 +44,12 @@ auto WritePrepared(FormatScene format) {
 }
 
 const SceneContents kHeld = {
-    SceneContent::kNames,        SceneContent::kIntrinsics,
-    SceneContent::kFrames,       SceneContent::kDistortions,
-    SceneContent::kPoses,        SceneContent::kSharedPoses,
-    SceneContent::kCenterPriors, SceneContent::kPoints,
-    SceneContent::kObservations, SceneContent::kControlPoints};
+    SceneContent::kRootPath,     SceneContent::kNames,
+    SceneContent::kIntrinsics,   SceneContent::kFrames,
+    SceneContent::kDistortions,  SceneContent::kPoses,
+    SceneContent::kSharedPoses,  SceneContent::kCenterPriors,
+    SceneContent::kPoints,       SceneContent::kObservations,
+    SceneContent::kControlPoints};
 
 }  // namespace
 
