@@ -51,12 +51,18 @@ Result<const SceneFormat*> FindFormatOf(const SceneFormats& formats,
   return FindSceneFormat(formats, path);
 }
 
-/// By name, or where none is given by the path.
-Result<const SceneFormat*> FindFormat(const SceneFormats& formats,
-                                      const std::string& path,
-                                      const std::string& name) {
-  return name.empty() ? FindSceneFormat(formats, path)
-                      : FindNamedSceneFormat(formats, name);
+/// One to write: by name, or where none is given by the path.
+Result<const SceneFormat*> FindFormatToWrite(const SceneFormats& formats,
+                                             const std::string& path,
+                                             const std::string& name) {
+  LOWLAP_ASSIGN_OR_RETURN(const SceneFormat* chosen,
+                          name.empty() ? FindSceneFormat(formats, path)
+                                       : FindNamedSceneFormat(formats, name));
+  if (!chosen->write) {
+    return MakeError(ErrorCode::kUnsupported,
+                     "the format " + chosen->name + " cannot be written", path);
+  }
+  return chosen;
 }
 
 template <class Value>
@@ -95,15 +101,18 @@ Result<Scene> ReadScene(const std::string& path, SceneNotes* notes,
                   path);
 }
 
+Status CheckScenePlace(const std::string& path, const std::string& format) {
+  const SceneFormats formats = AllSceneFormats();
+  LOWLAP_ASSIGN_OR_RETURN(const SceneFormat* chosen,
+                          FindFormatToWrite(formats, path, format));
+  return chosen->check_place ? chosen->check_place(path) : Status();
+}
+
 Result<SceneNotes> WriteScene(const Scene& scene, const std::string& path,
                               const std::string& format, FileSet* files) {
   const SceneFormats formats = AllSceneFormats();
   LOWLAP_ASSIGN_OR_RETURN(const SceneFormat* chosen,
-                          FindFormat(formats, path, format));
-  if (!chosen->write) {
-    return MakeError(ErrorCode::kUnsupported,
-                     "the format " + chosen->name + " cannot be written", path);
-  }
+                          FindFormatToWrite(formats, path, format));
   LOWLAP_ASSIGN_OR_RETURN(SceneNotes notes,
                           WithPath(chosen->write(scene, path, files), path));
   if (std::string loss = LossNote(*chosen, scene); !loss.empty()) {

@@ -26,6 +26,11 @@ bool IsScene(const std::string& path);
 Result<Scene> ReadScene(const std::string& path, SceneNotes* notes = nullptr,
                         const std::string& format = {});
 
+/// Whether WriteScene could write there, as far as that shows before there is a
+/// scene: the format must be one that is written, and a database to write into
+/// must exist. For asking before long work.
+Status CheckScenePlace(const std::string& path, const std::string& format = {});
+
 /// Writes a scene in the format of the extension, or in the one called `format`
 /// if it is given; with `files`, as one of them. Returns notes: what the format
 /// does not hold, counted (LossNote), and what else it changed. kUnsupported,

@@ -31,6 +31,7 @@ Result<int> Convert(const ConvertFlags& flags) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "convert needs a file to read and one to write");
   }
+  LOWLAP_RETURN_IF_ERROR(CheckScenePlace(flags.output, flags.output_format));
   SceneNotes notes;
   LOWLAP_ASSIGN_OR_RETURN(auto scene,
                           ReadScene(flags.input, &notes, flags.input_format));

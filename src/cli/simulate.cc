@@ -29,6 +29,10 @@ Result<int> RunSimulation(const SimulateFlags& flags) {
   }
   LOWLAP_RETURN_IF_ERROR(CheckDistinct(
       {}, {{"--truth", flags.truth}, {"--output", flags.output}}));
+  LOWLAP_RETURN_IF_ERROR(CheckScenePlace(flags.output));
+  if (!flags.truth.empty()) {
+    LOWLAP_RETURN_IF_ERROR(CheckScenePlace(flags.truth));
+  }
   SyntheticOptions options = flags.options;
   options.kind = *kind;
   options.seed = flags.common.seed;

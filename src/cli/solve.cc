@@ -12,6 +12,7 @@
 #include "cli/flags/truth.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/run_output.h"
+#include "third_party_adapters/scene_formats.h"
 
 namespace lowlap::cli {
 namespace {
@@ -159,6 +160,9 @@ Result<int> Solve(const SolveCommandFlags& flags) {
   LOWLAP_RETURN_IF_ERROR(CheckInputsStay(InputFiles(flags.input), output.folder,
                                          output.scene_file));
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(output.folder));
+  if (!output.scene_file.empty()) {
+    LOWLAP_RETURN_IF_ERROR(CheckScenePlace(output.scene_file));
+  }
   const auto check = [&](const Scene& views) -> Status {
     LOWLAP_RETURN_IF_ERROR(LoadGroundTruth(solve.ground_truth, views));
     return {};

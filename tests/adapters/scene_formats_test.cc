@@ -9,6 +9,7 @@
 #include "adapters/openmvg_vectors.h"
 #include "adapters/temporary_folder.h"
 #include "lowlap/io/internal/json/scene_json.h"
+#include "support/matchers.h"
 #include "third_party_adapters/openmvg/internal/prepare.h"
 #include "third_party_adapters/openmvg/internal/sfm_data_bin.h"
 
@@ -18,6 +19,8 @@ namespace {
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using testing::IsError;
+using testing::IsOk;
 
 Scene TwoViews() {
   return *openmvg::ParseSfmDataBin(openmvg::FromHex(openmvg::kTwoViewsHex));
@@ -67,6 +70,21 @@ TEST(SceneFormats, PlyIsWrittenOnly) {
   const Result<Scene> scene = ReadScene(folder.Path("a.ply"));
   ASSERT_FALSE(scene.has_value());
   EXPECT_EQ(scene.error().code, ErrorCode::kUnsupported);
+}
+
+TEST(SceneFormats, APlaceIsCheckedWithoutAScene) {
+  const TemporaryFolder folder;
+  for (const char* name : {"a.json", "a.ply", "a.kitti"}) {
+    EXPECT_THAT(CheckScenePlace(folder.Path(name)), IsOk()) << name;
+  }
+  EXPECT_THAT(CheckScenePlace(folder.Path("a.db")),
+              IsError(ErrorCode::kNotFound, "no such database"));
+  EXPECT_THAT(CheckScenePlace(folder.Path("a"), "colmap-db"),
+              IsError(ErrorCode::kNotFound, "no such database"));
+  EXPECT_THAT(CheckScenePlace(folder.Path("a"), "1dsfm"),
+              IsError(ErrorCode::kUnsupported, "cannot be written"));
+  EXPECT_THAT(CheckScenePlace(folder.Path("a.txt")),
+              IsError(ErrorCode::kUnsupported, "not a known scene format"));
 }
 
 TEST(SceneFormats, AnUnknownFormatIsAnErrorThatListsTheKnown) {

@@ -4,7 +4,10 @@
 #include <sys/stat.h>
 
 #include <filesystem>
+#include <string>
+#include <utility>
 
+#include "adapters/colmap_database.h"
 #include "cli_fixture.h"
 
 namespace lowlap {
@@ -12,6 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::StartsWith;
 
 class Output : public Cli {
  protected:
@@ -97,12 +101,36 @@ TEST_F(Output, AFormatThatCannotHoldTheSceneCostsNoOtherResult) {
   ASSERT_EQ(Lowlap("simulate --views 4 --pairs cycle -o " + Path("a.lowlap"))
                 .exit_code,
             0);
+  fs::create_directory(Path("out"));
+  // Of no images.
+  ColmapDatabase(Path("out/none.db"), ColmapDatabase::Version::k3_8);
   const Outcome solved = Lowlap("solve " + Path("a.lowlap") +
                                 " --no-adjust -o " + Path("out/none.db"));
   EXPECT_EQ(solved.exit_code, 1);
   EXPECT_THAT(solved.output, HasSubstr(Path("out/none.db")));
   EXPECT_THAT(solved.output, HasSubstr("cameras placed: 4/4"));
-  EXPECT_EQ(FilesIn("out"), 5u);
+  EXPECT_EQ(FilesIn("out"), 6u);
+}
+
+TEST_F(Output, WhatCannotBeWrittenIntoIsSaidBeforeTheWork) {
+  Write("text.db", "no database");
+  for (const auto& [file, what] : {std::pair("none.db", "no such database"),
+                                   {"text.db", "not an SQLite database"}}) {
+    for (const std::string& command :
+         {"solve " + Path("room.lowlap") + " -o ",
+          // Not read, either.
+          "convert " + Path("no.lowlap") + " ",
+          std::string("simulate --views 4 -o "),
+          "simulate --views 4 -o " + Path("a.json") + " --truth "}) {
+      const Outcome refused = Lowlap(command + Path(file));
+      EXPECT_EQ(refused.exit_code, 1) << command;
+      EXPECT_THAT(refused.output,
+                  StartsWith("error: " + Path(file) + ": " + std::string(what)))
+          << command;
+    }
+  }
+  EXPECT_FALSE(fs::exists(Path("scene.lowlap")));
+  EXPECT_FALSE(fs::exists(Path("a.json")));
 }
 
 TEST_F(Output, WhatAKilledRunLeftGoesWithTheNextOne) {

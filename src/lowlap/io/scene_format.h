@@ -36,6 +36,9 @@ struct SceneFormat {
   SceneContents needs;
   /// Null if it is written only. `notes` is never null.
   std::function<Result<Scene>(const std::string& path, SceneNotes* notes)> read;
+  /// Whether a scene can be written to `path`, as far as that shows before
+  /// there is one; null: always.
+  std::function<Status(const std::string& path)> check_place;
   /// Adds what is to be written to `files`, but for a database, which is
   /// written into at once; null if it is read only.
   std::function<Result<SceneNotes>(const Scene&, const std::string& path,

@@ -41,11 +41,14 @@ Result<Database> ReadDatabase(const std::string& path);
 /// and noted; tracks are made of the others.
 Result<Scene> ReadDatabaseScene(const std::string& path, SceneNotes* notes);
 
+/// Whether there is a database to write into: kNotFound, kParse otherwise.
+Status CheckDatabaseToUpdate(const std::string& path);
+
 /// Makes the relative poses of a scene and their inliers the two-view
 /// geometries of its views in an existing database; views are found by the
 /// names of their images. One transaction, all or nothing. Returns notes.
 ///
-/// Errors: kNotFound (no such database), kInvalidArgument (an image that the
+/// Errors: those of CheckDatabaseToUpdate, kInvalidArgument (an image that the
 /// database does not have, or other keypoints than the scene's points), and as
 /// above.
 Result<SceneNotes> WriteRelativePoses(const Scene& scene,

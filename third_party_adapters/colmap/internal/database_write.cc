@@ -260,8 +260,7 @@ class DatabaseWriter {
 
 }  // namespace
 
-Result<SceneNotes> WriteRelativePoses(const Scene& scene,
-                                      const std::string& path) {
+Status CheckDatabaseToUpdate(const std::string& path) {
   std::error_code ignored;
   if (!std::filesystem::exists(path, ignored)) {
     return MakeError(ErrorCode::kNotFound,
@@ -272,6 +271,12 @@ Result<SceneNotes> WriteRelativePoses(const Scene& scene,
   if (!IsDatabase(path)) {
     return MakeError(ErrorCode::kParse, "not an SQLite database", path);
   }
+  return {};
+}
+
+Result<SceneNotes> WriteRelativePoses(const Scene& scene,
+                                      const std::string& path) {
+  LOWLAP_RETURN_IF_ERROR(CheckDatabaseToUpdate(path));
   LOWLAP_RETURN_IF_ERROR(ValidateScene(scene));
   Result<SceneNotes> notes =
       Caught([&] { return DatabaseWriter(scene, path).Write(); });

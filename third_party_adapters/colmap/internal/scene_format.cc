@@ -116,6 +116,7 @@ SceneFormats ColmapFormats() {
                     SceneContent::kKeypoints,    SceneContent::kRelativePoses,
                     SceneContent::kPointMatches, SceneContent::kPointTracks};
   database.read = ReadDatabaseScene;
+  database.check_place = CheckDatabaseToUpdate;
   database.write = [](const Scene& scene, const std::string& path,
                       FileSet*) -> Result<SceneNotes> {
     return WriteRelativePoses(scene, path);
