@@ -54,6 +54,14 @@ TEST_F(CompareCommand, WithoutTruthAndAdjustment) {
   ASSERT_EQ(compared.exit_code, 0) << compared.output;
   EXPECT_THAT(compared.output, HasSubstr("difference before"));
   EXPECT_THAT(compared.output, Not(HasSubstr("after")));
+  EXPECT_TRUE(std::filesystem::exists(Path("out/difference.svg")));
+  // Another run of it leaves no plot of this one.
+  ASSERT_EQ(OnRoom("compare", "--no-adjust --strategies graph --gt " +
+                                  Path("truth.lowlap") + " -o " + Path("out"))
+                .exit_code,
+            0);
+  EXPECT_TRUE(std::filesystem::exists(Path("out/position_error.svg")));
+  EXPECT_FALSE(std::filesystem::exists(Path("out/difference.svg")));
 }
 
 TEST_F(CompareCommand, UnknownStrategiesAreRefused) {

@@ -324,6 +324,17 @@ TEST(ComparisonOutput, FilesAreWrittenOrTheFolderIsNamed) {
               testing::UnorderedElementsAre(
                   "compare.csv", "compare.json", "position_error.svg",
                   "cameras_placed.svg", "direction_error.svg", "time.svg"));
+  // A plot of the run before does not stay beside tables that it is not of.
+  comparison.has_truth = false;
+  std::ofstream(folder / "new" / "my_position_error.svg") << "mine";
+  ASSERT_TRUE(WriteComparison(comparison, Scene(), (folder / "new").string()));
+  EXPECT_TRUE(fs::exists(folder / "new" / "difference.svg"));
+  EXPECT_FALSE(fs::exists(folder / "new" / "position_error.svg"));
+  EXPECT_TRUE(fs::exists(folder / "new" / "my_position_error.svg"));
+  // What has the name of a plot and is no file is none of ours.
+  fs::create_directory(folder / "new" / "position_error.svg");
+  ASSERT_TRUE(WriteComparison(comparison, Scene(), (folder / "new").string()));
+  EXPECT_TRUE(fs::exists(folder / "new" / "position_error.svg"));
   std::ofstream(folder / "file") << "in the way";
   const Status refused =
       WriteComparison(comparison, Scene(), (folder / "file").string());

@@ -133,7 +133,8 @@ Result<std::vector<std::pair<std::string, std::string>>> DrawComparison(
     const Comparison& comparison);
 
 /// Makes the folder and writes compare.csv, compare.json and the plots into it,
-/// each whole or not at all.
+/// each whole or not at all. A plot that an earlier comparison left, and this
+/// one does not have, is removed.
 Status WriteComparison(const Comparison& comparison, const Scene& scene,
                        const std::string& folder);
 

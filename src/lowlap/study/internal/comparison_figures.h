@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 
 #include "lowlap/study/compare_strategies.h"
 
@@ -22,6 +23,10 @@ bool IsAdjusted(const Comparison& comparison);
 std::optional<double> MeanOf(const std::optional<ErrorStatistics>& errors);
 std::optional<double> MedianOf(const std::optional<ErrorStatistics>& errors);
 std::optional<double> MaxOf(const std::optional<ErrorStatistics>& errors);
+
+/// The file of the plot of position errors; without a truth it shows
+/// differences, and has another name.
+std::string PositionPlotName(bool has_truth);
 
 std::optional<double> WallOf(const StrategyResult& result, const char* stage);
 

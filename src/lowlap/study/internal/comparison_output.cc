@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <filesystem>
 #include <optional>
+#include <system_error>
 
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/output_folder.h"
@@ -45,6 +47,20 @@ Json QualityJson(const SolutionQuality& quality) {
   json["points"] = consistency.num_points;
   json["reprojection_rmse_px"] = consistency.reprojection_rmse_px;
   return json;
+}
+
+// What a comparison with a truth, or without one, left there before.
+Status RemoveOtherPlot(const Comparison& comparison,
+                       const std::string& folder) {
+  namespace fs = std::filesystem;
+  const fs::path other =
+      fs::path(folder) / PositionPlotName(!comparison.has_truth);
+  std::error_code error;
+  if (!fs::is_regular_file(fs::symlink_status(other, error))) return {};
+  fs::remove(other, error);
+  if (!error) return {};
+  return MakeError(ErrorCode::kIo, "cannot be removed: " + error.message(),
+                   other.string());
 }
 
 }  // namespace
@@ -217,7 +233,8 @@ Status WriteComparison(const Comparison& comparison, const Scene& scene,
   LOWLAP_ASSIGN_OR_RETURN(auto files, DrawComparison(comparison));
   files.emplace_back("compare.csv", ToCsv(comparison));
   files.emplace_back("compare.json", ToJson(comparison, scene) + "\n");
-  return WriteTextFiles(files, folder);
+  LOWLAP_RETURN_IF_ERROR(WriteTextFiles(files, folder));
+  return RemoveOtherPlot(comparison, folder);
 }
 
 }  // namespace lowlap

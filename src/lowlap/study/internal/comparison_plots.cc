@@ -64,6 +64,10 @@ void ChooseScale(BarPlot* plot) {
 
 }  // namespace
 
+std::string PositionPlotName(bool has_truth) {
+  return has_truth ? "position_error.svg" : "difference.svg";
+}
+
 Result<std::vector<std::pair<std::string, std::string>>> DrawComparison(
     const Comparison& comparison) {
   const bool adjusted = IsAdjusted(comparison);
@@ -84,9 +88,7 @@ Result<std::vector<std::pair<std::string, std::string>>> DrawComparison(
                    "mean difference (mean baselines)");
     AddBothBars(comparison, figure, &plot);
     ChooseScale(&plot);
-    plots.emplace_back(
-        comparison.has_truth ? "position_error.svg" : "difference.svg",
-        std::move(plot));
+    plots.emplace_back(PositionPlotName(comparison.has_truth), std::move(plot));
   }
   {
     BarPlot plot = Bars(comparison, "Cameras placed",
