@@ -1,9 +1,13 @@
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/flags/distinct_files.h"
 #include "lowlap/core/internal/atomic_file.h"
+#include "lowlap/core/internal/joined.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 #include "third_party_adapters/scene_formats.h"
@@ -19,6 +23,37 @@ struct SimulateFlags {
   std::string truth;
 };
 
+// Options that do not change scenes of every kind.
+Status CheckOptionsOfKind(const SyntheticOptions& options) {
+  using Kind = SyntheticKind;
+  struct OfKinds {
+    const char* option;
+    bool is_given;
+    std::vector<Kind> kinds;
+  };
+  const std::vector<Kind> with_walls = {
+      Kind::kRoom,      Kind::kCorridor,     Kind::kRing, Kind::kPlanar,
+      Kind::kCollinear, Kind::kPureRotation, Kind::kTwins};
+  for (const auto& [option, is_given, kinds] : std::vector<OfKinds>{
+           {"--off-line", options.off_line_m > 0, {Kind::kCollinear}},
+           {"--twin-baseline", options.twin_baseline_m > 0, {Kind::kTwins}},
+           {"--wall-bulge", options.wall_bulge_m > 0, with_walls},
+           {"--box-offset", options.box_offset_m > 0, with_walls},
+           {"--look-outwards",
+            options.look_outwards,
+            {Kind::kRoom, Kind::kCloud, Kind::kPureRotation, Kind::kTwins}}}) {
+    if (!is_given ||
+        std::find(kinds.begin(), kinds.end(), options.kind) != kinds.end()) {
+      continue;
+    }
+    return MakeError(ErrorCode::kInvalidArgument,
+                     std::string(option) + " has no effect with --kind " +
+                         SyntheticKindName(options.kind) + ", only with " +
+                         Joined(kinds, ", ", SyntheticKindName));
+  }
+  return {};
+}
+
 Result<int> RunSimulation(const SimulateFlags& flags) {
   const auto kind = SyntheticKindFromName(flags.kind);
   if (!kind) {
@@ -27,14 +62,15 @@ Result<int> RunSimulation(const SimulateFlags& flags) {
                          "'; known: room, corridor, ring, cloud, planar, "
                          "collinear, pure_rotation, twins");
   }
+  SyntheticOptions options = flags.options;
+  options.kind = *kind;
+  LOWLAP_RETURN_IF_ERROR(CheckOptionsOfKind(options));
   LOWLAP_RETURN_IF_ERROR(CheckDistinct(
       {}, {{"--truth", flags.truth}, {"--output", flags.output}}));
   LOWLAP_RETURN_IF_ERROR(CheckScenePlace(flags.output));
   if (!flags.truth.empty()) {
     LOWLAP_RETURN_IF_ERROR(CheckScenePlace(flags.truth));
   }
-  SyntheticOptions options = flags.options;
-  options.kind = *kind;
   options.seed = flags.common.seed;
   LOWLAP_ASSIGN_OR_RETURN(const auto synthetic, Simulate(options));
   FileSet files;

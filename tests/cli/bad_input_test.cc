@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <string>
+#include <utility>
 
 #include "cli_fixture.h"
 #include "support/data_folder.h"
@@ -86,6 +87,20 @@ TEST_F(BadInput, OptionsThatWouldBeIgnored) {
                                   "--tolerance 0.1", "--time-limit 1"}) {
       ExpectRefused("robustness" + Out() + study + " " + of_curves, "excludes");
     }
+  }
+}
+
+TEST_F(BadInput, OptionsOfOtherKindsOfSimulation) {
+  for (const auto& [kind, option] : {std::pair("ring", "--look-outwards"),
+                                     {"corridor", "--look-outwards"},
+                                     {"room", "--off-line 0.1"},
+                                     {"room", "--twin-baseline 0.1"},
+                                     {"cloud", "--wall-bulge 0.1"},
+                                     {"cloud", "--box-offset 0.1"}}) {
+    const std::string name =
+        std::string(option).substr(0, std::string(option).find(' '));
+    ExpectRefused("simulate" + Out() + "--kind " + kind + " " + option,
+                  name + " has no effect with --kind " + kind + ", only with ");
   }
 }
 
