@@ -1,6 +1,9 @@
 #include <cstdio>
 #include <memory>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/flags/distinct_files.h"
@@ -21,8 +24,8 @@ struct AdjustFlags {
   std::string scene;
   std::string output;
   std::vector<std::string> features = {"points", "lines", "coplanar"};
-  std::string coplanar_ties = "planes";
-  bool directions = AdjustmentOptions{}.use_directions;
+  std::optional<std::string> coplanar_ties;
+  std::optional<bool> directions;
   bool retriangulate = false;
   std::string refine_intrinsics;
   double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;
@@ -32,10 +35,8 @@ struct AdjustFlags {
 Result<int> Adjust(const AdjustFlags& flags) {
   const RunContext context = MakeContext(flags.common);
   AdjustmentOptions options;
-  LOWLAP_RETURN_IF_ERROR(SetAdjustedFeatures(flags.features, &options));
-  LOWLAP_ASSIGN_OR_RETURN(options.coplanar_ties,
-                          ParseCoplanarTies(flags.coplanar_ties));
-  options.use_directions = flags.directions;
+  LOWLAP_RETURN_IF_ERROR(ChooseAdjustment(flags.features, flags.coplanar_ties,
+                                          flags.directions, &options));
   options.principal_point_stddev = flags.principal_point_stddev;
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   // What cannot be written is found before the work.
@@ -62,6 +63,7 @@ Result<int> Adjust(const AdjustFlags& flags) {
   }
   LOWLAP_RETURN_IF_ERROR(
       SetRefinement(flags.refine_intrinsics, &scene, &options));
+  WarnOfIdleTies(flags.coplanar_ties, flags.directions, options, context);
   StageLog stages;
   SolveResult result;
   if (flags.retriangulate ||

@@ -29,6 +29,8 @@ Result<int> Compare(const CompareFlags& flags) {
   options.reference = flags.reference;
   LOWLAP_ASSIGN_OR_RETURN(options.solve, MakeSolveOptions(flags.solve));
   LOWLAP_RETURN_IF_ERROR(options.Validate());
+  WarnOfIdleTies(flags.solve.coplanar_ties, flags.solve.directions,
+                 options.solve.adjustment, context);
   // A folder that cannot be written is found before the work.
   LOWLAP_RETURN_IF_ERROR(CheckOutputFolder(flags.output));
   StageLog stages;

@@ -4,6 +4,7 @@
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli/command.h"
 #include "cli/flags/distinct_files.h"
@@ -20,6 +21,8 @@ namespace {
 // Values of OpenMVG's flags, by their letters; empty: not given.
 struct HostFlags {
   std::map<char, std::string> values;
+  // lowlap's own that have no effect with -e NONE, by name.
+  std::vector<std::pair<std::string, Option>> of_adjustment;
   bool priors = false;
 };
 
@@ -102,6 +105,9 @@ void AddHostFlags(CLI::App* command, HostFlags* host) {
   AddOption(command, "-e,--refine_extrinsic_config", host->values['e'],
             "As in OpenMVG: ADJUST_ALL (default), or NONE: --no-adjust")
       .Must(Check::OneOf({"ADJUST_ALL", "NONE"}));
+  for (const std::string& name : OptionsOfAdjustment()) {
+    host->of_adjustment.emplace_back(name, FindOption(command, name));
+  }
   AddOption(command, "-T,--translationAveraging", host->values['T'],
             "--strategy by OpenMVG's number: 1 is linf, 2 l2_chordal, 3 "
             "soft_l1; lowlap's own is the default")
@@ -141,6 +147,14 @@ Result<SolveFlags> WithHostFlags(SolveFlags solve, const HostFlags& host,
         std::string(value('f').empty() ? "--refine-intrinsics" : "-f") +
             ": the bundle adjustment, which --no-adjust (-e NONE) leaves out, "
             "refines intrinsics");
+  }
+  for (const auto& [name, option] : host.of_adjustment) {
+    if (solve.no_adjust && option.IsGiven()) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       name +
+                           " has no effect with -e NONE, which leaves the "
+                           "bundle adjustment out");
+    }
   }
   for (const IgnoredFlag& flag : kIgnored) {
     if (value(flag.names[1]).empty()) continue;

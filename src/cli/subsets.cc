@@ -66,8 +66,10 @@ Result<std::string> SettingsText(const SubsetsFlags& flags, const Scene& scene,
   for (const std::string& kind : flags.solve.adjust_features) {
     text += " " + kind;
   }
-  return text + "\nties " + flags.solve.coplanar_ties +
-         (flags.solve.directions ? "\ndirections" : "\nno directions") +
+  return text + "\nties " +
+         flags.solve.coplanar_ties.value_or(kDefaultCoplanarTies) +
+         (flags.solve.directions.value_or(true) ? "\ndirections"
+                                                : "\nno directions") +
          "\nrefine " + flags.solve.refine_intrinsics + "\nprincipal point " +
          NumberText(flags.solve.principal_point_stddev, 9) + "\n";
 }
@@ -168,6 +170,8 @@ Result<int> Subsets(const SubsetsFlags& flags) {
                           LoadGroundTruth(flags.solve.ground_truth, scene));
   LOWLAP_RETURN_IF_ERROR(SetRefinement(flags.solve.refine_intrinsics, &scene,
                                        &options.adjustment));
+  WarnOfIdleTies(flags.solve.coplanar_ties, flags.solve.directions,
+                 options.adjustment, context);
   LOWLAP_ASSIGN_OR_RETURN(
       const auto chosen,
       ChooseSubsets(scene, flags.drop, flags.sample, flags.common.seed));

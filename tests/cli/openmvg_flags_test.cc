@@ -120,6 +120,13 @@ TEST_F(OpenMvgFlags, AreRefusedWhereLowlapDoesNotDoIt) {
   ExpectRefused("-f ADJUST_ALL -e NONE", "-f: the bundle adjustment");
   ExpectRefused("--refine-intrinsics focal -e NONE",
                 "--refine-intrinsics: the bundle adjustment");
+  for (const std::string of_adjustment :
+       {"--adjust-features points", "--coplanar-ties both", "--no-directions",
+        "--principal-point-stddev 0.001"}) {
+    ExpectRefused("-e NONE " + of_adjustment,
+                  " has no effect with -e NONE, which leaves the bundle "
+                  "adjustment out");
+  }
   ExpectRefused("-e ADJUST_ROTATION", "ADJUST_ROTATION");
 }
 

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cli_fixture.h"
 #include "lowlap/core/internal/atomic_file.h"
@@ -101,6 +103,36 @@ TEST_F(SceneFlags, AdjustAndMergeWriteNothingOverTheirInput) {
     EXPECT_EQ(outcome.exit_code, 1) << arguments;
     EXPECT_THAT(outcome.output, HasSubstr("name one file")) << arguments;
     EXPECT_EQ(ReadText(scene), text) << arguments;
+  }
+}
+
+TEST_F(SceneFlags, TiesThatAreAskedForAndIgnoredGetAWarning) {
+  const std::string points = " --adjust-features points",
+                    directions = " --directions",
+                    ties = " --coplanar-ties pairs";
+  const std::vector<std::array<std::string, 3>> cases = {
+      {points, ties, "--coplanar-ties is ignored: coplanar is not among"},
+      {points, directions, "--directions is ignored: the adjustment has no"},
+      {ties, directions, "--directions is ignored: --coplanar-ties pairs"},
+      {" --refine-intrinsics focal", directions,
+       "--directions is ignored: intrinsics move"},
+      {" --principal-point-stddev 0.001", directions,
+       "--directions is ignored: intrinsics move"}};
+  for (const std::string& command :
+       {"solve " + Room(), "adjust " + Truth(),
+        "compare " + Room() + " --strategies graph"}) {
+    const auto said = [&](const std::string& flags) {
+      const Outcome outcome = Lowlap(command + " -q -o " + Path("out") + flags);
+      EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+      return outcome.output;
+    };
+    for (const auto& [with, asked, warning] : cases) {
+      if (command[0] == 'c' && with == " --refine-intrinsics focal") continue;
+      EXPECT_THAT(said(with + asked), HasSubstr("warning: " + warning));
+      EXPECT_THAT(said(with), Not(HasSubstr("is ignored")));
+    }
+    EXPECT_THAT(said(directions), Not(HasSubstr("is ignored")));
+    EXPECT_THAT(said(ties), Not(HasSubstr("is ignored")));
   }
 }
 

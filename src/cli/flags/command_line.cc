@@ -111,6 +111,8 @@ Option Option::Needs(const Option& other) {
   return *this;
 }
 
+bool Option::IsGiven() const { return option_->count() > 0; }
+
 CLI::App* AddCommand(CLI::App* program, const std::string& name,
                      const std::string& help) {
   return program->add_subcommand(name, help);
@@ -156,6 +158,21 @@ Option AddOption(CLI::App* command, const std::string& names,
 Option AddFlag(CLI::App* command, const std::string& names, bool& value,
                const std::string& help) {
   return Option(command->add_flag(names, value, help));
+}
+
+Option AddFlag(CLI::App* command, const std::string& names,
+               std::optional<bool>& value, const std::string& help) {
+  CLI::Option* option = command->add_flag_function(
+      names, [&value](std::int64_t sign) { value = sign > 0; }, help);
+  option->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
+  return Option(option).Must(Check(
+      [](const std::string& text) -> std::string {
+        bool known = false;
+        return CLI::detail::lexical_cast(text, known)
+                   ? ""
+                   : "'" + text + "' is neither true nor false";
+      },
+      ""));
 }
 
 Option FindOption(CLI::App* command, const std::string& name) {

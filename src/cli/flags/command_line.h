@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -59,6 +60,8 @@ class Option {
   Option Must(const Check& check);
   Option Excludes(const Option& other);
   Option Needs(const Option& other);
+  /// Whether the command line has it, once that is read.
+  bool IsGiven() const;
 
  private:
   CLI::Option* option_;
@@ -83,6 +86,9 @@ Option AddOption(CLI::App* command, const std::string& names,
                  const std::string& help);
 Option AddFlag(CLI::App* command, const std::string& names, bool& value,
                const std::string& help);
+/// The same, which tells whether it was given.
+Option AddFlag(CLI::App* command, const std::string& names,
+               std::optional<bool>& value, const std::string& help);
 /// One that was added before.
 Option FindOption(CLI::App* command, const std::string& name);
 

@@ -185,38 +185,9 @@ void AddAdjustFlags(CLI::App* command, SolveFlags* flags) {
   AddPrincipalPointFlag(command, &flags->principal_point_stddev);
   Option no_adjust = AddFlag(command, "--no-adjust", flags->no_adjust,
                              "Stop before the bundle adjustment");
-  for (const char* of_adjustment :
-       {"--adjust-features", "--coplanar-ties", "--directions",
-        "--principal-point-stddev"}) {
+  for (const std::string& of_adjustment : OptionsOfAdjustment()) {
     no_adjust.Excludes(FindOption(command, of_adjustment));
   }
-}
-
-void AddCoplanarTiesFlag(CLI::App* command, std::string* ties) {
-  AddOption(command, "--coplanar-ties", *ties,
-            "What of the coplanar kind holds the end of the bundle adjustment: "
-            "the pairs of lines of the ratios, the planes of the scene with "
-            "the points and lines on them (the pairs where there are none), or "
-            "both")
-      .Must(Check::OneOf({"pairs", "planes", "both"}))
-      .ShowDefault();
-}
-
-void AddDirectionsFlag(CLI::App* command, bool* directions) {
-  AddFlag(command, "--directions,!--no-directions", *directions,
-          "Whether the directions of parallel lines hold rotations in the "
-          "bundle adjustment; never with --coplanar-ties pairs, nor while "
-          "intrinsics move");
-}
-
-void AddPrincipalPointFlag(CLI::App* command, double* stddev) {
-  AddOption(command, "--principal-point-stddev", *stddev,
-            "How well the given principal points are known, as a share "
-            "of the image diagonal (0.0003: a pixel of six "
-            "megapixels): the bundle adjustment moves them within "
-            "this; 0: it holds them")
-      .Must(Check::NonNegative())
-      .ShowDefault();
 }
 
 void AddStrictFlag(CLI::App* command, bool* strict) {
@@ -284,11 +255,9 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags) {
   LOWLAP_ASSIGN_OR_RETURN(
       options.poses.averager,
       AveragerRegistry::WithBuiltIns().Make(flags.strategy));
-  LOWLAP_RETURN_IF_ERROR(
-      SetAdjustedFeatures(flags.adjust_features, &options.adjustment));
-  LOWLAP_ASSIGN_OR_RETURN(options.adjustment.coplanar_ties,
-                          ParseCoplanarTies(flags.coplanar_ties));
-  options.adjustment.use_directions = flags.directions;
+  LOWLAP_RETURN_IF_ERROR(ChooseAdjustment(flags.adjust_features,
+                                          flags.coplanar_ties, flags.directions,
+                                          &options.adjustment));
   options.adjustment.principal_point_stddev = flags.principal_point_stddev;
   options.adjust = !flags.no_adjust;
   LOWLAP_RETURN_IF_ERROR(options.Validate());
@@ -322,6 +291,8 @@ Result<int> SolveAndWrite(Scene scene, const SolveFlags& flags,
                           LoadGroundTruth(flags.ground_truth, scene));
   LOWLAP_RETURN_IF_ERROR(
       SetRefinement(flags.refine_intrinsics, &scene, &options.adjustment));
+  WarnOfIdleTies(flags.coplanar_ties, flags.directions, options.adjustment,
+                 context);
 
   auto result = solver(&scene, options, context, stages);
   if (!result) {

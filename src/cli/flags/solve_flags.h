@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/flags/adjust_flags.h"
 #include "cli/flags/command_line.h"
 #include "lowlap/adjustment/bundle_adjuster.h"
 #include "lowlap/core/result.h"
@@ -34,8 +35,8 @@ struct SolveFlags {
   ScaleFlags scale;
   std::string strategy = "graph";
   std::vector<std::string> adjust_features = {"points", "lines", "coplanar"};
-  std::string coplanar_ties = "planes";
-  bool directions = AdjustmentOptions{}.use_directions;
+  std::optional<std::string> coplanar_ties;
+  std::optional<bool> directions;
   bool no_adjust = false;
   std::string refine_intrinsics;
   double principal_point_stddev = AdjustmentOptions{}.principal_point_stddev;
@@ -48,15 +49,8 @@ Result<SolveOptions> MakeSolveOptions(const SolveFlags& flags);
 /// The same, for what is related first (RelateAndRefine).
 Result<FirstSolution> MakeFirstSolution(const SolveFlags& flags);
 
-/// --coplanar-ties
-void AddCoplanarTiesFlag(CLI::App* command, std::string* ties);
-/// --directions
-void AddDirectionsFlag(CLI::App* command, bool* directions);
-/// --adjust-features, --coplanar-ties, --directions, --principal-point-stddev,
-/// --no-adjust.
+/// --no-adjust and OptionsOfAdjustment.
 void AddAdjustFlags(CLI::App* command, SolveFlags* flags);
-/// --principal-point-stddev
-void AddPrincipalPointFlag(CLI::App* command, double* stddev);
 
 /// --strategy, of the built-in AveragerRegistry, which the help lists.
 void AddStrategyFlag(CLI::App* command, std::string* strategy);
