@@ -108,43 +108,61 @@ void AddSimulate(CLI::App* program, Action* action) {
       .Required();
   AddOption(command, "--truth", flags->truth,
             "Also write the scene with its true solution, to this file");
-  AddOption(command, "--views", o.num_views, "Number of views");
+  AddOption(command, "--views", o.num_views, "Number of views")
+      .Must(Check::Between(2, 100000));
   AddOption(command, "--pairs", o.pairs,
             "chain, cycle, window:N, loop:N or all");
-  AddOption(command, "--points", o.points_per_wall, "Points per wall");
-  AddOption(command, "--lines", o.lines_per_wall, "Lines per wall");
+  AddOption(command, "--points", o.points_per_wall, "Points per wall")
+      .Must(Check::Between(0, 1000000));
+  AddOption(command, "--lines", o.lines_per_wall, "Lines per wall")
+      .Must(Check::Between(0, 1000000));
   AddOption(command, "--trifocal-points", o.trifocal_point_share,
-            "Share of points that three or more views may see");
+            "Share of points that three or more views may see")
+      .Must(Check::Between(0.0, 1.0));
   AddOption(command, "--trifocal-lines", o.trifocal_line_share,
-            "Share of lines that three or more views may see");
-  AddOption(command, "--noise", o.noise_px, "Noise of features, in pixels");
+            "Share of lines that three or more views may see")
+      .Must(Check::Between(0.0, 1.0));
+  AddOption(command, "--noise", o.noise_px, "Noise of features, in pixels")
+      .Must(Check::NonNegative());
   AddOption(command, "--wrong-points", o.wrong_point_share,
-            "Share of wrong point tracks");
+            "Share of wrong point tracks")
+      .Must(Check::Between(0.0, 1.0));
   AddOption(command, "--wrong-lines", o.wrong_line_share,
-            "Share of wrong line tracks");
+            "Share of wrong line tracks")
+      .Must(Check::Between(0.0, 1.0));
   AddOption(command, "--wrong-candidates", o.wrong_candidate_share,
-            "Share of candidate line pairs that are not coplanar");
+            "Share of candidate line pairs that are not coplanar")
+      .Must(Check::Between(0.0, 1.0));
   AddOption(command, "--broken-lines", o.broken_line_share,
-            "Share of lines that fall into two segments");
+            "Share of lines that fall into two segments")
+      .Must(Check::Between(0.0, 1.0));
   AddOption(command, "--rotation-noise", o.rotation_noise_deg,
-            "Error of relative rotations, in degrees");
+            "Error of relative rotations, in degrees")
+      .Must(Check::NonNegative());
   AddOption(command, "--direction-noise", o.direction_noise_deg,
-            "Error of relative directions, in degrees");
+            "Error of relative directions, in degrees")
+      .Must(Check::NonNegative());
   AddOption(command, "--pose-noise-of-points", o.pose_noise_factor,
             "Errors of relative poses as the points with their noise "
-            "leave them, times this factor");
+            "leave them, times this factor")
+      .Must(Check::NonNegative());
   AddOption(command, "--wrong-directions", o.wrong_direction_share,
-            "Share of relative poses with any direction");
+            "Share of relative poses with any direction")
+      .Must(Check::Between(0.0, 1.0));
   AddOption(command, "--off-line", o.off_line_m,
-            "Collinear: how far centres are off the line, in metres");
+            "Collinear: how far centres are off the line, in metres")
+      .Must(Check::NonNegative());
   AddOption(command, "--twin-baseline", o.twin_baseline_m,
             "Twins: distance of every odd view from the one before "
-            "it, in metres");
+            "it, in metres")
+      .Must(Check::NonNegative());
   AddOption(command, "--wall-bulge", o.wall_bulge_m,
-            "How far the middle of every wall bows out, in metres");
+            "How far the middle of every wall bows out, in metres")
+      .Must(Check::NonNegative());
   AddOption(command, "--box-offset", o.box_offset_m,
             "How far the front of a box, in the middle of every wall, is "
-            "before it, in metres");
+            "before it, in metres")
+      .Must(Check::NonNegative());
   AddFlag(command, "--look-outwards", o.look_outwards,
           "Rooms: look at the wall behind the camera's back");
   AddCommonFlags(command, &flags->common);

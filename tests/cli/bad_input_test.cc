@@ -104,6 +104,28 @@ TEST_F(BadInput, OptionsOfOtherKindsOfSimulation) {
   }
 }
 
+TEST_F(BadInput, NumbersAreNamedByTheirOptions) {
+  ExpectRefused("simulate" + Out() + "--views 1", "--views: ");
+  ExpectRefused("simulate" + Out() + "--points -1", "--points: ");
+  ExpectRefused("simulate" + Out() + "--wrong-points 2",
+                "--wrong-points: '2' is not a number from 0 to 1");
+  ExpectRefused("simulate" + Out() + "--off-line nan",
+                "--off-line: 'nan' is not a non-negative number");
+  // Before photographs are looked for.
+  for (const char* tilt : {"0.5", "17", "nan"}) {
+    ExpectRefused(
+        "run " + folder_.string() + Out() + "--max-tilt " + tilt,
+        "--max-tilt: '" + std::string(tilt) + "' is not a number from 1 to 16");
+  }
+}
+
+TEST_F(BadInput, AListWithoutPairsOfViews) {
+  Write("pairs.txt", "# none\n");
+  ExpectRefused("run " + RoomFolder() + "/images --focal 600 --no-cache" +
+                    Out() + "--pairs " + Path("pairs.txt"),
+                "error: " + Path("pairs.txt") + ": names no pair of views");
+}
+
 // A folder for another number of trials would refuse the right one.
 TEST_F(BadInput, NumbersOfTrialsLeaveNoFolder) {
   ExpectRefused("robustness --trust --scenes 0" + Out(), "--scenes");

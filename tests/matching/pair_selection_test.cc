@@ -135,6 +135,14 @@ TEST(ParsePairsTest, ErrorsNameTheLine) {
   EXPECT_THAT(parse("\"\" 3"), IsError(ErrorCode::kParse, "no view"));
 }
 
+TEST(ParsePairsTest, TextWithoutAPairIsAnErrorOfTheFile) {
+  for (const char* text : {"", "\n \n", "# 0 1\n"}) {
+    const auto pairs = ParsePairs(FourViews(), text, "pairs.txt");
+    ASSERT_THAT(pairs, IsError(ErrorCode::kParse, "names no pair of views"));
+    EXPECT_EQ(pairs.error().file, "pairs.txt");
+  }
+}
+
 TEST(ParsePairsTest, AnAmbiguousNameIsAnError) {
   const Scene scene = SceneWith({{0, "a.jpg"}, {1, "a.jpg"}, {2, "b.jpg"}});
   EXPECT_THAT(ParsePairs(scene, "a.jpg b.jpg", "p"),

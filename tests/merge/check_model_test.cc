@@ -232,6 +232,11 @@ TEST(MatchModel, SaysWhatIsWrong) {
   for (auto& entry : model.views) entry.second.local_path.clear();
   EXPECT_THAT(MatchModel(made.scene, model, "model.json", {}),
               testing::IsError(ErrorCode::kInvalidScene, "one.png"));
+  // As formats without names give it.
+  for (auto& entry : model.views) entry.second.filename.clear();
+  EXPECT_THAT(MatchModel(made.scene, model, "model.kitti", {}),
+              testing::IsError(ErrorCode::kInvalidScene,
+                               "model.kitti: view 0: has no file name"));
 }
 
 }  // namespace

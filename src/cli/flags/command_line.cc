@@ -8,19 +8,22 @@
 #include <optional>
 #include <utility>
 
+#include "lowlap/core/internal/format.h"
+
 namespace lowlap::cli {
 namespace {
 
 template <class Allows>
-Check NumberThat(const char* adjective, const char* name, Allows allows) {
+Check NumberThat(const std::string& what, const std::string& name,
+                 Allows allows) {
   return Check(
-      [adjective, allows](const std::string& text) -> std::string {
+      [what, allows](const std::string& text) -> std::string {
         double value = 0;
         if (CLI::detail::lexical_cast(text, value) && std::isfinite(value) &&
             allows(value)) {
           return {};
         }
-        return "'" + text + "' is not a " + adjective + " number";
+        return "'" + text + "' is not a " + what;
       },
       name);
 }
@@ -35,11 +38,12 @@ Check::Check(std::function<std::string(const std::string&)> test,
     : validator_(std::make_shared<CLI::Validator>(std::move(test), name)) {}
 
 Check Check::Positive() {
-  return NumberThat("positive", "POSITIVE", [](double v) { return v > 0; });
+  return NumberThat("positive number", "POSITIVE",
+                    [](double v) { return v > 0; });
 }
 
 Check Check::NonNegative() {
-  return NumberThat("non-negative", "NONNEGATIVE",
+  return NumberThat("non-negative number", "NONNEGATIVE",
                     [](double v) { return v >= 0; });
 }
 
@@ -59,6 +63,12 @@ Check Check::WholeNumber() {
 
 Check Check::Between(int least, int greatest) {
   return Check(CLI::Range(least, greatest));
+}
+
+Check Check::Between(double least, double greatest) {
+  return NumberThat(Format("number from %g to %g", least, greatest),
+                    Format("FLOAT in [%g - %g]", least, greatest),
+                    [=](double v) { return v >= least && v <= greatest; });
 }
 
 Check Check::OneOf(const std::vector<std::string>& words) {

@@ -32,6 +32,7 @@ class Check {
   /// An integer from 0 to 2^64 - 1.
   static Check WholeNumber();
   static Check Between(int least, int greatest);
+  static Check Between(double least, double greatest);
   static Check OneOf(const std::vector<std::string>& words);
 
   const CLI::Validator& validator() const { return *validator_; }

@@ -20,6 +20,7 @@ Option AddMaxTiltFlag(CLI::App* command, double* max_tilt) {
                    "Pairs with few matches are matched again by what their "
                    "photographs show from aside, compressed by up to this (1 "
                    "to 16; 1: not at all)")
+      .Must(Check::Between(1.0, 16.0))
       .ShowDefault();
 }
 

@@ -25,6 +25,12 @@ Result<std::map<std::string, Pose>> PosesByImage(const Scene& model,
   for (const auto& [id, view] : model.views) {
     const Pose* pose = model.FindPose(id);
     if (pose == nullptr) continue;
+    if (view.filename.empty()) {
+      return MakeError(ErrorCode::kInvalidScene,
+                       "has no file name, which would tell its photograph; "
+                       "not every format holds names",
+                       {}, "view " + std::to_string(id.value()));
+    }
     const std::string path = view.PathBelowRoot();
     const std::string name =
         with_folders ? path : fs::path(path).filename().generic_string();

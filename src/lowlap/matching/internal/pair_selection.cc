@@ -86,6 +86,9 @@ Result<std::vector<ViewPair>> ParsePairs(const Scene& scene,
     if (*a == *b) return fail("a view cannot be paired with itself");
     pairs.push_back(Ordered(*a, *b));
   }
+  if (pairs.empty()) {
+    return MakeError(ErrorCode::kParse, "names no pair of views", file);
+  }
   SortAndDeduplicate(&pairs);
   return pairs;
 }

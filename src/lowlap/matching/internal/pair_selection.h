@@ -23,7 +23,8 @@ Result<std::vector<ViewPair>> SelectViewPairs(const Scene& scene,
 
 /// Pairs from text, one per line: two views as ViewNames finds them, separated
 /// by blanks; a name with blanks stands in double quotes. Empty lines and those
-/// that start with '#' are skipped. `file` is for messages only.
+/// that start with '#' are skipped; text without any pair is kParse. `file` is
+/// for messages only.
 Result<std::vector<ViewPair>> ParsePairs(const Scene& scene,
                                          const std::string& text,
                                          const std::string& file);
