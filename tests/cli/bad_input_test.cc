@@ -126,6 +126,19 @@ TEST_F(BadInput, AListWithoutPairsOfViews) {
                 "error: " + Path("pairs.txt") + ": names no pair of views");
 }
 
+// Blank photographs have no relative pose, whether or not a pair names them.
+TEST_F(BadInput, PhotographsInNoPairAreSaid) {
+  std::filesystem::create_directory(Path("images"));
+  for (const char* name : {"images/a.pgm", "images/b.pgm", "images/c.pgm"}) {
+    Write(name, "P5\n64 48\n255\n" + std::string(64 * 48, 'x'));
+  }
+  Write("pairs.txt", "a.pgm b.pgm\n");
+  ExpectRefused("run " + Path("images") + " --focal 60 --no-cache" + Out() +
+                    "--pairs " + Path("pairs.txt"),
+                "warning: c.pgm has no relative pose: no pair with it was "
+                "matched");
+}
+
 // A folder for another number of trials would refuse the right one.
 TEST_F(BadInput, NumbersOfTrialsLeaveNoFolder) {
   ExpectRefused("robustness --trust --scenes 0" + Out(), "--scenes");

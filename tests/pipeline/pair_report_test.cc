@@ -38,9 +38,11 @@ TEST(FindUnrelatedViews, NamesWhatKeepsEachViewOut) {
       pair(3, 4, 70, "no parallax: turned"), pair(2, 4, 99, "chance")};
   pairs[0].accepted = true;
   pairs[3].no_parallax = true;
+  std::map<ViewId, View> all;
+  for (const unsigned id : {0, 1, 2, 3, 4, 7, 8}) all[id] = View();
   const auto views = FindUnrelatedViews(
-      pairs, {{7, Error{ErrorCode::kParse, "no image", "7.jpg", ""}}});
-  ASSERT_EQ(views.size(), 4u);
+      all, pairs, {{7, Error{ErrorCode::kParse, "no image", "7.jpg", ""}}});
+  ASSERT_EQ(views.size(), 5u);
   EXPECT_EQ(views[0].view, 2u);
   EXPECT_EQ(views[0].reason, "chance");
   EXPECT_FALSE(views[0].no_parallax);
@@ -51,6 +53,8 @@ TEST(FindUnrelatedViews, NamesWhatKeepsEachViewOut) {
   }
   EXPECT_EQ(views[3].view, 7u);
   EXPECT_EQ(views[3].reason, "no image");
+  EXPECT_EQ(views[4].view, 8u);
+  EXPECT_EQ(views[4].reason, "no pair with it was matched");
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ Result<ImageReport> MeasureAndRefine(Scene* scene,
   ImageReport report;
   LOWLAP_ASSIGN_OR_RETURN(
       report.pairs, RelateAndRefine(relate, first, context, stages, scene));
-  report.unrelated = FindUnrelatedViews(report.pairs, measurements.failed);
+  report.unrelated =
+      FindUnrelatedViews(scene->views, report.pairs, measurements.failed);
   for (const UnrelatedView& view : report.unrelated) {
     context.Log(
         LogLevel::kWarning,

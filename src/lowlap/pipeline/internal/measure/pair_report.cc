@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <tuple>
-#include <utility>
 
 #include "lowlap/core/internal/format.h"
 
@@ -43,7 +42,7 @@ std::string ExplainNoPose(const std::vector<PairReport>& pairs) {
 }
 
 std::vector<UnrelatedView> FindUnrelatedViews(
-    const std::vector<PairReport>& pairs,
+    const std::map<ViewId, View>& all, const std::vector<PairReport>& pairs,
     const std::map<ViewId, Error>& failed) {
   // Of every view: related, or the pair that says most.
   std::map<ViewId, const PairReport*> best;
@@ -56,18 +55,19 @@ std::vector<UnrelatedView> FindUnrelatedViews(
       if (known == nullptr || rank(*known) < rank(pair)) known = &pair;
     }
   }
-  std::map<ViewId, UnrelatedView> views;
-  for (const auto& [view, pair] : best) {
-    if (pair->accepted) continue;
-    views[view] = {view, pair->no_parallax, pair->reason};
+  std::vector<UnrelatedView> views;
+  for (const auto& [id, view] : all) {
+    const auto error = failed.find(id);
+    const auto pair = best.find(id);
+    if (error != failed.end()) {
+      views.push_back({id, false, error->second.message});
+    } else if (pair == best.end()) {
+      views.push_back({id, false, "no pair with it was matched"});
+    } else if (!pair->second->accepted) {
+      views.push_back({id, pair->second->no_parallax, pair->second->reason});
+    }
   }
-  for (const auto& [view, error] : failed) {
-    views[view] = {view, false, error.message};
-  }
-  std::vector<UnrelatedView> result;
-  result.reserve(views.size());
-  for (auto& entry : views) result.push_back(std::move(entry.second));
-  return result;
+  return views;
 }
 
 }  // namespace lowlap

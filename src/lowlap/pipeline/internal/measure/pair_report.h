@@ -18,12 +18,11 @@ void CountInliers(const Scene& scene, std::vector<PairReport>* pairs);
 /// the one with the most matches was not.
 std::string ExplainNoPose(const std::vector<PairReport>& pairs);
 
-/// The views of the pairs (and those of `failed`, whose images could not be
-/// used) that no accepted pair holds, by id, each with why: what is wrong with
-/// its image; "no parallax", if a pair of it was refused for that; or the
-/// reason of its pair of most matches.
+/// The views that no accepted pair holds, by id, each with why: what is wrong
+/// with its image (`failed`); "no parallax", if a pair of it was refused for
+/// that; the reason of its pair of most matches; or that it is in no pair.
 std::vector<UnrelatedView> FindUnrelatedViews(
-    const std::vector<PairReport>& pairs,
+    const std::map<ViewId, View>& all, const std::vector<PairReport>& pairs,
     const std::map<ViewId, Error>& failed);
 
 }  // namespace lowlap
