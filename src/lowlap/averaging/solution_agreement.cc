@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/internal/error_limits.h"
 #include "lowlap/averaging/internal/problem_errors.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/averaging/rotations/internal/pose_hypotheses.h"
@@ -39,14 +40,14 @@ class Comparison {
   void SplitPoses(SolutionAgreement* agreement) const {
     for (const DirectionEdge& edge : problem_.edges) {
       if (!IsPlaced(solution_, edge)) continue;
-      const double limit_rad =
-          options_.reach *
-          std::max(options_.direction_stddev_rad, edge.stddev_rad);
       const double error_rad = DirectionErrorRad(solution_, edge);
-      if (error_rad <= limit_rad)
-        agreement->agreeing.push_back(ViewsOf(problem_, edge));
-      const bool is_held =
-          error_rad <= std::max(limit_rad, 3 * options_.least_false_rad);
+      const auto is_within = [&](double least_false_rad) {
+        return error_rad <=
+               ErrorLimits{options_.reach, least_false_rad}.DirectionRad(
+                   options_.direction_stddev_rad, edge.stddev_rad);
+      };
+      if (is_within(0)) agreement->agreeing.push_back(ViewsOf(problem_, edge));
+      const bool is_held = is_within(options_.least_false_rad);
       (is_held ? agreement->held : agreement->contradicting)
           .push_back(ViewsOf(problem_, edge));
     }

@@ -18,6 +18,9 @@
 namespace lowlap {
 namespace {
 
+// What is rarer is not by chance.
+constexpr double kMaxLog10Chance = -3;
+
 // Adds the matches whose points have none yet.
 void AddMatches(const std::vector<FeatureMatch>& extra,
                 std::vector<FeatureMatch>* matches) {
@@ -131,7 +134,6 @@ bool MostOfTheRestAgrees(const std::vector<FeatureMatch>& matches,
                          const std::vector<FeatureMatch>& inliers,
                          const ViewMeasurements& first,
                          const ViewMeasurements& second) {
-  constexpr double kMaxLog10Chance = -3;
   const std::set<FeatureMatch> agreeing(inliers.begin(), inliers.end());
   int num = 0, num_agreeing = 0;
   for (const FeatureMatch& match : matches) {
@@ -149,7 +151,6 @@ std::optional<PoseWeakness> WeaknessOf(const TwoViewResult& result,
                                        const PairMatches& putative,
                                        const ViewMeasurements& first,
                                        const ViewMeasurements& second) {
-  constexpr double kMaxLog10Chance = -3;
   // Of a pattern some copies are missed (RepeatedPattern), and agree as well:
   // an eighth of the evidence for false poses of equal windows, where a third
   // and more of it is left for right ones.

@@ -14,7 +14,7 @@ namespace lowlap {
 namespace {
 
 constexpr int kNumPlaneSamples = 200;
-constexpr std::size_t kMaxScoredMotions = 500;
+constexpr std::size_t kMaxScoredPairs = 500;
 
 // n . x1 of the depth at which a point comes nearest to its match.
 double InverseDepth(const RigidTransform& cam2_from_cam1, const Vec3& x1,
@@ -48,7 +48,7 @@ std::optional<ScenePlane> DominantPlane(const RigidTransform& cam2_from_cam1,
     return found;
   };
 
-  const std::size_t num_scored = std::min(indices.size(), kMaxScoredMotions);
+  const std::size_t num_scored = std::min(indices.size(), kMaxScoredPairs);
   std::size_t best_count = 3;
   std::optional<Vec3> best;
   for (int n = 0; n < kNumPlaneSamples; ++n) {
