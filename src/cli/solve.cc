@@ -106,7 +106,9 @@ void AddHostFlags(CLI::App* command, HostFlags* host) {
             "As in OpenMVG: ADJUST_ALL (default), or NONE: --no-adjust")
       .Must(Check::OneOf({"ADJUST_ALL", "NONE"}));
   for (const std::string& name : OptionsOfAdjustment()) {
-    host->of_adjustment.emplace_back(name, FindOption(command, name));
+    host->of_adjustment.emplace_back(
+        name == "--directions" ? "--[no-]directions" : name,
+        FindOption(command, name));
   }
   AddOption(command, "-T,--translationAveraging", host->values['T'],
             "--strategy by OpenMVG's number: 1 is linf, 2 l2_chordal, 3 "

@@ -68,8 +68,9 @@ Result<std::string> SettingsText(const SubsetsFlags& flags, const Scene& scene,
   }
   return text + "\nties " +
          flags.solve.coplanar_ties.value_or(kDefaultCoplanarTies) +
-         (flags.solve.directions.value_or(true) ? "\ndirections"
-                                                : "\nno directions") +
+         (flags.solve.directions.value_or(AdjustmentOptions{}.use_directions)
+              ? "\ndirections"
+              : "\nno directions") +
          "\nrefine " + flags.solve.refine_intrinsics + "\nprincipal point " +
          NumberText(flags.solve.principal_point_stddev, 9) + "\n";
 }

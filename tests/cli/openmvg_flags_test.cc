@@ -127,6 +127,7 @@ TEST_F(OpenMvgFlags, AreRefusedWhereLowlapDoesNotDoIt) {
                   " has no effect with -e NONE, which leaves the bundle "
                   "adjustment out");
   }
+  ExpectRefused("-e NONE --no-directions", "--[no-]directions has no effect");
   ExpectRefused("-e ADJUST_ROTATION", "ADJUST_ROTATION");
 }
 

@@ -109,9 +109,12 @@ TEST_F(SceneFlags, AdjustAndMergeWriteNothingOverTheirInput) {
 TEST_F(SceneFlags, TiesThatAreAskedForAndIgnoredGetAWarning) {
   const std::string points = " --adjust-features points",
                     directions = " --directions",
-                    ties = " --coplanar-ties pairs";
+                    ties = " --coplanar-ties pairs",
+                    no_coplanar = " --adjust-features points,lines";
   const std::vector<std::array<std::string, 3>> cases = {
       {points, ties, "--coplanar-ties is ignored: coplanar is not among"},
+      {no_coplanar, " --coplanar-ties both",
+       "--coplanar-ties is ignored: coplanar is not among"},
       {points, directions, "--directions is ignored: the adjustment has no"},
       {ties, directions, "--directions is ignored: --coplanar-ties pairs"},
       {" --refine-intrinsics focal", directions,
@@ -133,6 +136,7 @@ TEST_F(SceneFlags, TiesThatAreAskedForAndIgnoredGetAWarning) {
     }
     EXPECT_THAT(said(directions), Not(HasSubstr("is ignored")));
     EXPECT_THAT(said(ties), Not(HasSubstr("is ignored")));
+    EXPECT_THAT(said(no_coplanar + ties), Not(HasSubstr("is ignored")));
   }
 }
 

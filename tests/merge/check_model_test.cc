@@ -236,7 +236,7 @@ TEST(MatchModel, SaysWhatIsWrong) {
   for (auto& entry : model.views) entry.second.filename.clear();
   EXPECT_THAT(MatchModel(made.scene, model, "model.kitti", {}),
               testing::IsError(ErrorCode::kInvalidScene,
-                               "model.kitti: view 0: has no file name"));
+                               "model.kitti: its cameras have no file names"));
 }
 
 }  // namespace

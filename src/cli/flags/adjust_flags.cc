@@ -14,9 +14,10 @@ Status ChooseAdjustment(const std::vector<std::string>& features,
                         std::optional<bool> directions,
                         AdjustmentOptions* options) {
   LOWLAP_RETURN_IF_ERROR(SetAdjustedFeatures(features, options));
-  LOWLAP_ASSIGN_OR_RETURN(
-      options->coplanar_ties,
-      ParseCoplanarTies(coplanar_ties.value_or(kDefaultCoplanarTies)));
+  if (coplanar_ties) {
+    LOWLAP_ASSIGN_OR_RETURN(options->coplanar_ties,
+                            ParseCoplanarTies(*coplanar_ties));
+  }
   options->use_directions = directions.value_or(options->use_directions);
   return {};
 }
@@ -25,7 +26,11 @@ void WarnOfIdleTies(const std::optional<std::string>& coplanar_ties,
                     std::optional<bool> directions,
                     const AdjustmentOptions& options,
                     const RunContext& context) {
-  if (coplanar_ties && !options.use_coplanar) {
+  // Pairs leave directions out, whether there are coplanar pairs or not.
+  const bool leaves_directions_out =
+      options.coplanar_ties == CoplanarTies::kPairs && options.use_directions &&
+      options.use_lines && !options.MovesIntrinsics();
+  if (coplanar_ties && !options.use_coplanar && !leaves_directions_out) {
     context.Log(LogLevel::kWarning,
                 "--coplanar-ties is ignored: coplanar is not among "
                 "--adjust-features");

@@ -75,9 +75,10 @@ struct ReliabilityWarning {
 };
 
 /// Views that only `links`, in use, join to the others, and what contradicts
-/// these and may be right together: more than half as much evidence as they
-/// have, or as the best ratio across the one camera that they share. The scene
-/// solved without the links does not tell which are right.
+/// these and may be right together: more than half as much evidence, as it
+/// counts (ThirdViewVerdicts::evidence), as they have, or as the best ratio
+/// across the one camera that they share. The scene solved without the links
+/// does not tell which are right.
 struct Contest {
   std::vector<ViewPair> links;
   std::vector<ViewPair> contradictions;
@@ -85,8 +86,7 @@ struct Contest {
   /// Where the contradictions contradict several cuts, the links of the one of
   /// least evidence; none if only the scale is contested.
   std::vector<ViewPair> weakest_links = {};
-  /// The least evidence that is contradicted, and that of each contradiction as
-  /// it counts (EvidenceOfNfa).
+  /// The least evidence that is contradicted, and that of each contradiction.
   double evidence = 0;
   std::vector<double> evidence_against = {};
 };

@@ -22,14 +22,13 @@ namespace fs = std::filesystem;
 Result<std::map<std::string, Pose>> PosesByImage(const Scene& model,
                                                  bool with_folders) {
   std::map<std::string, Pose> poses;
+  bool has_nameless = false;
   for (const auto& [id, view] : model.views) {
     const Pose* pose = model.FindPose(id);
     if (pose == nullptr) continue;
     if (view.filename.empty()) {
-      return MakeError(ErrorCode::kInvalidScene,
-                       "has no file name, which would tell its photograph; "
-                       "not every format holds names",
-                       {}, "view " + std::to_string(id.value()));
+      has_nameless = true;
+      continue;
     }
     const std::string path = view.PathBelowRoot();
     const std::string name =
@@ -38,6 +37,11 @@ Result<std::map<std::string, Pose>> PosesByImage(const Scene& model,
       return MakeError(ErrorCode::kInvalidScene,
                        "two cameras are called '" + name + "'");
     }
+  }
+  if (poses.empty() && has_nameless) {
+    return MakeError(ErrorCode::kInvalidScene,
+                     "its cameras have no file names, which would tell their "
+                     "photographs; not every format holds names");
   }
   if (poses.empty()) {
     return MakeError(ErrorCode::kInsufficientData,

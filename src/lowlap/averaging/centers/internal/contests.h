@@ -16,7 +16,7 @@ inline double EvidenceOfNfa(double log10_nfa) {
   return 1 + std::max(0.0, -log10_nfa);
 }
 
-/// Relative poses, or ratios, with their evidence (EvidenceOfNfa).
+/// Relative poses, or ratios, with their evidence, as it counts.
 using EvidenceOfPairs = std::map<ViewPair, double>;
 using EvidenceOfRatios = std::map<ViewTriplet, double>;
 

@@ -6,7 +6,8 @@
 
 namespace lowlap {
 
-/// FindContests among the placed views of a scene. Relative poses whose own
+/// FindContests among the placed views of a scene, with what third views leave
+/// of the evidence (ThirdViewVerdicts::evidence). Relative poses whose own
 /// matches do not bear them out, or that are off by a little only, contradict
 /// nothing; what is contested as a link of the rotations already is not again.
 std::vector<Contest> FindSceneContests(const Scene& scene,

@@ -29,17 +29,16 @@ class ThirdViews {
   }
 
   // Those whose ratio bears the pair out if it is meaningful: with a relative
-  // pose in use of one side of the contested cut.
+  // pose in use that is none of the contested `links`.
   std::vector<ViewTriplet> Witnesses(const ViewPair& pair,
-                                     const Contest& contest) const {
+                                     const std::vector<ViewPair>& links) const {
     std::vector<ViewTriplet> witnesses;
     for (const auto& [middle, other] : {std::pair(pair.first, pair.second),
                                         std::pair(pair.second, pair.first)}) {
       for (const ViewId third : in_use_.NeighborsOf(middle)) {
         const ViewPair partner = OrderedPair(middle, third);
         if (third == other ||
-            std::find(contest.links.begin(), contest.links.end(), partner) !=
-                contest.links.end()) {
+            std::find(links.begin(), links.end(), partner) != links.end()) {
           continue;
         }
         witnesses.push_back(
@@ -141,52 +140,57 @@ struct Answer {
   /// What of the evidence of contradictions and links counts.
   std::map<ViewPair, double> evidence;
   std::vector<ViewPair> outweighed;
-
-  void Count(const ViewPair& pair, double value) {
-    double& counting = evidence[pair];
-    counting = std::max(counting, value);
-  }
 };
+
+void Raise(const ViewPair& pair, double value,
+           std::map<ViewPair, double>* evidence) {
+  double& counting = (*evidence)[pair];
+  counting = std::max(counting, value);
+}
 
 Result<Answer> Ask(const Scene& scene, const PoseSummary& poses,
                    const std::vector<Contest>& contests,
                    const ScaleEstimator& estimator, const RunContext& context) {
   ThirdViews third_views(scene, poses);
   std::set<ViewTriplet> triplets;
-  for (const Contest& contest : contests) {
-    for (const auto* pairs : {&contest.contradictions, &contest.links}) {
-      for (const ViewPair& pair : *pairs) {
-        for (const ViewTriplet& views : third_views.Witnesses(pair, contest)) {
-          triplets.insert(views);
-        }
+  const auto add_witnesses = [&](const std::vector<ViewPair>& pairs,
+                                 const std::vector<ViewPair>& links) {
+    for (const ViewPair& pair : pairs) {
+      for (const ViewTriplet& views : third_views.Witnesses(pair, links)) {
+        triplets.insert(views);
       }
     }
+  };
+  for (const Contest& contest : contests) {
+    add_witnesses(contest.contradictions, contest.links);
+    add_witnesses(contest.weakest_links, contest.weakest_links);
   }
   LOWLAP_RETURN_IF_ERROR(third_views.Estimate(triplets, estimator, context));
   const std::set<ViewPair> by_direction = OutByDirection(poses);
   Answer answer;
   for (const Contest& contest : contests) {
-    const auto evidence_of = [&](const ViewPair& pair) {
-      return third_views.EvidenceOf(pair, third_views.Witnesses(pair, contest));
-    };
     const auto is_weak = [&](const ViewPair& pair) {
       return scene.relative_poses.at(pair).weakness.has_value();
     };
     double against = 0, for_it = 0;
-    std::set<ViewPair> others = by_direction;
+    bool of_directions = false;
     for (const ViewPair& pair : contest.contradictions) {
-      const double evidence = evidence_of(pair);
-      answer.Count(pair, evidence);
+      const double evidence = third_views.EvidenceOf(
+          pair, third_views.Witnesses(pair, contest.links));
+      Raise(pair, evidence, &answer.evidence);
       if (!is_weak(pair)) against += evidence;
-      others.erase(pair);
+      of_directions = of_directions || by_direction.count(pair) > 0;
     }
+    // What was left out for its direction goes with the links that turn the
+    // views the same way.
     const std::vector<ViewPair> links =
-        third_views.Across(contest.weakest_links, others);
+        third_views.Across(contest.weakest_links,
+                           of_directions ? std::set<ViewPair>() : by_direction);
     for (const ViewPair& pair : links) {
       const double evidence =
-          is_weak(pair) ? EvidenceOfNfa(0) : evidence_of(pair);
-      answer.Count(pair, evidence);
-      for_it += evidence;
+          third_views.EvidenceOf(pair, third_views.Witnesses(pair, links));
+      Raise(pair, evidence, &answer.evidence);
+      for_it += is_weak(pair) ? EvidenceOfNfa(0) : evidence;
     }
     if (links.empty() || against <= 2 * for_it) continue;
     answer.outweighed.insert(answer.outweighed.end(), links.begin(),
@@ -199,8 +203,9 @@ Result<Answer> Ask(const Scene& scene, const PoseSummary& poses,
 ThirdViewVerdicts WithEvidence(ThirdViewVerdicts verdicts,
                                const Answer& answer) {
   for (const auto& [pair, evidence] : answer.evidence) {
-    double& counting = verdicts.evidence[pair];
-    counting = std::max(counting, evidence);
+    if (verdicts.outweighed.count(pair) == 0) {
+      Raise(pair, evidence, &verdicts.evidence);
+    }
   }
   return verdicts;
 }
@@ -267,6 +272,8 @@ Status SettleContests(const SolveOptions& options, const RunContext& context,
                                              options, context, stages, scene));
     }
     rotations = std::move(again->start.rotations);
+    asked.insert(rotations.third_views.outweighed.begin(),
+                 rotations.third_views.outweighed.end());
     composed->ratios = again->ratios;
     composed->poses = std::move(again->poses);
   }

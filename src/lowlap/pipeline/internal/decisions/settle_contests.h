@@ -16,12 +16,13 @@ namespace lowlap {
 /// neighbours see: with a relative pose of one side of the contested cut it
 /// shares points, lines or planes that agree on a scale ratio. So what counts
 /// of its evidence is at most that of the best such ratio, if that is not weak
-/// (IsWeak), of the links of the cut as of those that contradict them. The
-/// contest is found again, or not, with what is left
+/// (IsWeak), of the links of the weakest cut as of those that contradict them.
+/// The contest is found again, or not, with what is left
 /// (ThirdViewVerdicts::evidence). If the contradictions have more than twice
 /// what the links have, these are left out instead
-/// (ThirdViewVerdicts::outweighed), unless that loses a view. Weak relative
-/// poses (RelativePose::weakness) count nothing there.
+/// (ThirdViewVerdicts::outweighed), unless that loses a view. There, weak
+/// contradictions (RelativePose::weakness) count nothing, and weak links as
+/// what has no evidence.
 ///
 /// scene->scale_ratios, scene->poses, and rotations, ratios and poses of
 /// `composed` become those of the new solution. Without a contest nothing is
