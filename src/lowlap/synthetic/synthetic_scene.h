@@ -41,9 +41,9 @@ struct SyntheticOptions {
   /// without a single match is left out, unless points_per_wall and
   /// lines_per_wall are both 0: then only the graph of poses is of interest.
   std::string pairs = "cycle";
-  /// kRoom and kPureRotation: a small loop, looking outwards, instead of a wide
-  /// one, looking across. Neighbours then share less, and turn more than they
-  /// move.
+  /// kRoom, kCloud, kPureRotation and kTwins: a small loop, looking outwards,
+  /// instead of a wide one, looking across. Neighbours then share less, and
+  /// turn more than they move.
   bool look_outwards = false;
   /// kCollinear: how far the centres are off their line, as the standard
   /// deviation of the two coordinates across it, in metres.
