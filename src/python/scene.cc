@@ -172,6 +172,12 @@ void BindScene(py::module_& module) {
       .def_property_readonly("relative_poses",
                              MapMember(&Scene::relative_poses),
                              "By (first, second), first < second.")
+      .def_property_readonly(
+          "unrelated_pairs",
+          [](const py::object& self) {
+            return IndexArray(self.cast<const Scene&>().unrelated_pairs, self);
+          },
+          "(n, 2): views that were compared and have no relative pose.")
       .def_property_readonly("point_tracks", MapMember(&Scene::point_tracks),
                              "(n, 2) arrays: view, index of the point.")
       .def_property_readonly("line_tracks", MapMember(&Scene::line_tracks),

@@ -70,6 +70,7 @@ Scene ExampleScene() {
   pose.covariance = Eigen::Matrix<double, 5, 5>::Identity();
   pose.alternatives.push_back({pose.rotation, -pose.direction, -3, {}});
   pose.weakness = PoseWeakness::kRepeats;
+  scene.unrelated_pairs = {{0, 4}};
   return scene;
 }
 

@@ -108,7 +108,12 @@ TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
   imprecise.reason = WarningReason::kImprecise;
   imprecise.views = {2};
   imprecise.share = 0.042;
-  summary.reliability_warnings = {contradicted, weak, ratios, lost, imprecise};
+  ReliabilityWarning missing;
+  missing.reason = WarningReason::kMissingMatches;
+  missing.views = {0};
+  missing.missing = {{0, 3}, {0, 4}};
+  summary.reliability_warnings = {contradicted, weak,    ratios,
+                                  lost,         missing, imprecise};
   EXPECT_THAT(
       Warnings(summary),
       ElementsAre(
@@ -121,6 +126,8 @@ TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
           // No less than it is, as cutting 28.999... off would say.
           AllOf(HasSubstr("Doubtful: e.jpg: most of what"),
                 HasSubstr(": 29 % fits.")),
+          AllOf(HasSubstr("Doubtful: a.jpg: at their places they should see"),
+                HasSubstr(": a.jpg - d.jpg, a.jpg - e.jpg.")),
           AllOf(HasSubstr("Doubtful: c.jpg: by their deviations"),
                 HasSubstr(
                     ": a standard deviation of 4.2 % of the scene's size."))));

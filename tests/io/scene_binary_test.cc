@@ -70,8 +70,8 @@ std::string Payload(const std::string& bytes, const std::string& tag) {
 TEST(SceneBinary, LayoutOfTheHeader) {
   const std::string bytes = FullSceneBytes();
   EXPECT_EQ(bytes.substr(0, 8), "\x89LOWLAP\n");
-  EXPECT_EQ(LittleEndian(bytes, 8, 4), 7u);
-  EXPECT_EQ(LittleEndian(bytes, 12, 4), 17u);
+  EXPECT_EQ(LittleEndian(bytes, 8, 4), 8u);
+  EXPECT_EQ(LittleEndian(bytes, 12, 4), 18u);
   EXPECT_EQ(bytes.substr(16, 4), "ROOT");
   const std::string root = Payload(bytes, "ROOT");
   EXPECT_EQ(LittleEndian(root, 0, 8), FullScene().root_path.size());
@@ -108,7 +108,7 @@ TEST(SceneBinary, DamageBehindAMatchingChecksumNeverCrashes) {
   const std::string bytes = FullSceneBytes();
   for (const char* tag :
        {"ROOT", "VIEW", "INTR", "POSE", "STRU", "CTRL", "FEAT", "RELP", "PTRK",
-        "LTRK", "RATI", "LINE", "COPL"}) {
+        "LTRK", "RATI", "LINE", "COPL", "UNRE"}) {
     const std::string payload = Payload(bytes, tag);
     for (std::size_t n = 0; n < payload.size(); ++n) {
       for (const char byte : {'\x00', '\x01', '\x7F', '\xFF'}) {
@@ -152,10 +152,10 @@ TEST(SceneBinary, ForeignAndNewerFiles) {
               IsError(ErrorCode::kParse, "not a .lowlap file"));
   EXPECT_THAT(ParseSceneBinary(bytes + "x"),
               IsError(ErrorCode::kParse, "follows the last section"));
-  bytes[8] = 8;
+  bytes[8] = 9;
   EXPECT_THAT(ParseSceneBinary(bytes, "new.lowlap"),
               IsError(ErrorCode::kUnsupported,
-                      "new.lowlap: byte 8: version 8 is not 2 to 7"));
+                      "new.lowlap: byte 8: version 9 is not 2 to 8"));
 }
 
 TEST(SceneBinary, CovariancesAreOfPoses) {

@@ -19,6 +19,7 @@ namespace {
 
 using ::testing::Contains;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 using testing::IsOk;
 using ::testing::Not;
 
@@ -141,6 +142,8 @@ TEST(WeakPose, CountsOnlyWhereNothingElseJoinsItsViews) {
   EXPECT_EQ(scene.relative_poses.count({0, 2}), 0u);
   EXPECT_FALSE(reports->at(1).accepted);
   EXPECT_THAT(reports->at(1).reason, HasSubstr("side by side"));
+  // Dropped, but not compared in vain.
+  EXPECT_THAT(scene.unrelated_pairs, IsEmpty());
 
   // Much less evidence joins them otherwise.
   matches[{1, 2}].points.resize(12);
@@ -278,6 +281,28 @@ TEST_F(EqualWindowsTest, StayInAPoseThatIsGiven) {
               IsOk());
   EXPECT_EQ(scene_.relative_poses.at({0, 2}).point_inliers.size(),
             kCloud + kWindow);
+}
+
+TEST(EstimateRelativePoses, SayWhatWasComparedInVain) {
+  Random random(2);
+  constexpr FeatureIndex kCloud = 60;
+  std::vector<Vec3> points;
+  for (FeatureIndex n = 0; n < kCloud; ++n) points.push_back(Anywhere(&random));
+  // The last two stand in one place, and differ by a rotation.
+  Scene scene = SceneOf(
+      points, {Vec3(0, 0, 0), Vec3(0.5, 0.04, 0), Vec3(0.5, 0.04, 0)}, 0.2);
+  scene.unrelated_pairs = {{0, 1}};
+  std::map<ViewPair, PairMatches> matches;
+  for (FeatureIndex n = 0; n < kCloud; ++n) {
+    matches[{0, 1}].points.push_back({n, n});
+    matches[{0, 2}].points.push_back({n, (7 * n + 13) % kCloud});
+    matches[{1, 2}].points.push_back({n, n});
+  }
+  const auto reports = EstimateRelativePoses(&scene, matches, nullptr, {}, {});
+  ASSERT_THAT(reports, IsOk());
+  EXPECT_TRUE(reports->at(2).no_parallax);
+  EXPECT_EQ(scene.relative_poses.size(), 1u);
+  EXPECT_EQ(scene.unrelated_pairs, (std::vector<ViewPair>{{0, 2}}));
 }
 
 TEST(EstimateRelativePoses, SayWhatRepeats) {

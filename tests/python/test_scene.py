@@ -54,6 +54,17 @@ class SceneTest(unittest.TestCase):
             read = lowlap.read(file).relative_poses[views]
         self.assertEqual(read.weakness, "surroundings")
 
+    def test_unrelated_pairs_are_an_array(self):
+        self.assertEqual(self.scene.unrelated_pairs.shape, (0, 2))
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "scene.json"
+            self.scene.write(file)
+            content = json.loads(file.read_text())
+            content["lowlap"]["unrelated_pairs"] = [0, 4, 0, 5]
+            file.write_text(json.dumps(content))
+            pairs = lowlap.read(file).unrelated_pairs
+        self.assertEqual(pairs.tolist(), [[0, 4], [0, 5]])
+
     def test_arrays_are_on_the_scenes_memory(self):
         features = self.scene.features[0]
         points = features.points_px

@@ -106,6 +106,8 @@ Scene FullScene() {
   edge.line_inliers.clear();
   scene.relative_poses[edge.views] = edge;
 
+  scene.unrelated_pairs = {{1, 7}, {4, 10}};
+
   scene.point_tracks[0] = {{1, 0}, {4, 5}};
   scene.point_tracks[4000000000u] = {{1, 2}, {4, 2}, {7, 0}};
   scene.line_tracks[2] = {{1, 3}, {4, 0}, {4, 4}};

@@ -19,6 +19,7 @@ class Inventory {
     AddViews();
     AddFeatures();
     AddPairs();
+    AddUnrelatedPairs();
     AddTracks();
     AddStructure();
   }
@@ -134,6 +135,14 @@ class Inventory {
         }
         items_.push_back(repeated);
       }
+    }
+  }
+
+  void AddUnrelatedPairs() {
+    if (!Holds(SceneContent::kUnrelatedPairs)) return;
+    for (const auto& [first, second] : scene_.unrelated_pairs) {
+      items_.push_back(
+          {"unrelated", {place_of_view_.at(first), place_of_view_.at(second)}});
     }
   }
 

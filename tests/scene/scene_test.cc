@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/validation.h"
 #include "scene/example_scenes.h"
@@ -53,6 +55,11 @@ TEST(WithoutViews, LineSeenTwiceInOneViewIsNoLine) {
   const Scene scene = WithoutViews(FullScene(), {1});
   EXPECT_THAT(ValidateScene(scene), IsOk());
   EXPECT_EQ(scene.line_tracks.count(2), 0u);  // two segments, one view
+}
+
+TEST(WithoutViews, UnrelatedPairsGoWithTheirViews) {
+  const Scene scene = WithoutViews(FullScene(), {7});
+  EXPECT_EQ(scene.unrelated_pairs, (std::vector<ViewPair>{{4, 10}}));
 }
 
 TEST(WithoutViews, KeepsSharedIntrinsics) {
@@ -120,6 +127,7 @@ TEST(Scene, EqualityNoticesEveryMember) {
   EXPECT_TRUE(differs([](Scene& s) {
     s.relative_poses[{1, 4}].covariance.reset();
   }));
+  EXPECT_TRUE(differs([](Scene& s) { s.unrelated_pairs.pop_back(); }));
   EXPECT_TRUE(differs([](Scene& s) { s.point_tracks.erase(0); }));
   EXPECT_TRUE(differs([](Scene& s) { s.line_tracks.erase(2); }));
   EXPECT_TRUE(differs([](Scene& s) { s.scale_ratios[0].kinds[1].inliers++; }));

@@ -336,6 +336,26 @@ const Case kSolutionCases[] = {
     {"LineObservedOnce",
      [](Scene& s) { s.line_structure[2].observations.resize(1); },
      LINE ".observations", "two observations"},
+    {"UnrelatedPairOfUnknownView",
+     [](Scene& s) {
+       s.unrelated_pairs.push_back({5, 7});
+     },
+     "$.lowlap.unrelated_pairs[4]", "5"},
+    {"UnrelatedPairUnordered",
+     [](Scene& s) {
+       s.unrelated_pairs.push_back({10, 4});
+     },
+     "$.lowlap.unrelated_pairs[4]", "smaller id"},
+    {"UnrelatedPairTwice",
+     [](Scene& s) {
+       s.unrelated_pairs.push_back({4, 10});
+     },
+     "$.lowlap.unrelated_pairs[4]", "ascend"},
+    {"UnrelatedPairWithARelativePose",
+     [](Scene& s) {
+       s.unrelated_pairs.insert(s.unrelated_pairs.begin(), {1, 4});
+     },
+     "$.lowlap.unrelated_pairs[0]", "has a relative pose"},
     {"CoplanarPairOfUnknownLine",
      [](Scene& s) {
        s.coplanar_pairs.push_back({2, 9});

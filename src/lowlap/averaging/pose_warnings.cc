@@ -59,6 +59,8 @@ class Writer {
         return "";
       case WarningReason::kLostFeatures:
         return ": " + Format("%.0f", 100 * doubt.share) + " % fits";
+      case WarningReason::kMissingMatches:
+        return ": " + Pairs(doubt.missing);
       case WarningReason::kImprecise:
         return ": a standard deviation of " +
                Format("%.1f", 100 * doubt.share) + " % of the scene's size";
@@ -90,6 +92,9 @@ std::string CauseOf(WarningReason reason) {
       return "they hang on views that are doubtful";
     case WarningReason::kLostFeatures:
       return "most of what was matched in them does not fit their places";
+    case WarningReason::kMissingMatches:
+      return "at their places they should see what others see, and yet they "
+             "were compared with these in vain, as where two places look alike";
     case WarningReason::kImprecise:
       return "by their deviations they may be off by more than is promised of "
              "firm ones";

@@ -49,13 +49,17 @@ enum class WarningReason {
   kDoubtfulNeighbors,
   /// Most of what was matched in a view does not fit its pose.
   kLostFeatures,
+  /// At their places, views should see what others see that they were compared
+  /// with in vain.
+  kMissingMatches,
   /// By their stated deviations, the views may be further off than is promised
   /// of firm ones.
   kImprecise,
 };
 
 /// "contradicted_poses", "weak_scale", "contradicted_ratios", "untold_poses",
-/// "unheld", "doubtful_neighbors", "lost_features", "imprecise".
+/// "unheld", "doubtful_neighbors", "lost_features", "missing_matches",
+/// "imprecise".
 const char* WarningReasonName(WarningReason reason);
 
 /// Placed views whose place is doubtful, and why.
@@ -67,6 +71,8 @@ struct ReliabilityWarning {
   /// kUntoldPoses: the relative poses of these views, in use, that nothing
   /// bears out.
   std::vector<ViewPair> untold;
+  /// kMissingMatches: the pairs that should see the same things.
+  std::vector<ViewPair> missing;
   /// kWeakScale: the ratios in use. kContradictedRatios: those rejected.
   std::vector<ViewTriplet> ratios;
   /// kLostFeatures: the share of the features that fit. kImprecise: the

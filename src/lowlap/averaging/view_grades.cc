@@ -20,6 +20,8 @@ const char* WarningReasonName(WarningReason reason) {
       return "doubtful_neighbors";
     case WarningReason::kLostFeatures:
       return "lost_features";
+    case WarningReason::kMissingMatches:
+      return "missing_matches";
     case WarningReason::kImprecise:
       return "imprecise";
   }

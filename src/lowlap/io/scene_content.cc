@@ -114,6 +114,8 @@ const std::vector<ContentKind>& ContentKinds() {
        }},
       {Content::kRelativePoses, "relative poses",
        [](const Scene& scene) { return scene.relative_poses.size(); }},
+      {Content::kUnrelatedPairs, "pairs without a relative pose",
+       [](const Scene& scene) { return scene.unrelated_pairs.size(); }},
       {Content::kPoseEvidence, "NFAs of relative poses",
        [](const Scene& scene) {
          return Sum(scene.relative_poses, HasEvidence);

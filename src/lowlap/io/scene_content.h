@@ -28,6 +28,7 @@ enum class SceneContent {
   kSegmentDeviations,  // other than that of a segment of which it is not known
   kRepeatedFeatures,
   kRelativePoses,
+  kUnrelatedPairs,
   kPoseEvidence,  // NFA and threshold of relative poses
   kPoseWeaknesses,
   kPoseCovariances,  // of relative poses

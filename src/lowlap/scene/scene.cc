@@ -59,6 +59,7 @@ bool operator==(const Scene& a, const Scene& b) {
          a.intrinsics == b.intrinsics &&
          a.given_intrinsics == b.given_intrinsics && a.poses == b.poses &&
          a.features == b.features && a.relative_poses == b.relative_poses &&
+         a.unrelated_pairs == b.unrelated_pairs &&
          a.point_tracks == b.point_tracks && a.line_tracks == b.line_tracks &&
          a.scale_ratios == b.scale_ratios && a.structure == b.structure &&
          a.line_structure == b.line_structure &&
@@ -84,9 +85,15 @@ Scene WithoutViews(const Scene& scene, const std::vector<ViewId>& excluded) {
   Scene kept = scene;
   erase_if(kept.views, [&](const auto& e) { return is_gone(e.first); });
   erase_if(kept.features, [&](const auto& e) { return is_gone(e.first); });
-  erase_if(kept.relative_poses, [&](const auto& e) {
-    return is_gone(e.first.first) || is_gone(e.first.second);
-  });
+  const auto misses_view = [&](const ViewPair& views) {
+    return is_gone(views.first) || is_gone(views.second);
+  };
+  erase_if(kept.relative_poses,
+           [&](const auto& e) { return misses_view(e.first); });
+  kept.unrelated_pairs.erase(
+      std::remove_if(kept.unrelated_pairs.begin(), kept.unrelated_pairs.end(),
+                     misses_view),
+      kept.unrelated_pairs.end());
   std::set<PoseId> used_poses;
   std::set<IntrinsicId> used_intrinsics;
   for (const auto& [id, view] : kept.views) {

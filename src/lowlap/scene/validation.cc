@@ -51,9 +51,10 @@ const ViewTable::Entry* ViewTable::Find(ViewId view) const {
 
 Status ValidateScene(const Scene& scene) {
   const ViewTable views(scene);
-  for (const auto part : {ValidateCameras, ValidateStructure, ValidateFeatures,
-                          ValidateRelativePoses, ValidateTracks,
-                          ValidateScaleRatios, ValidateLineStructure}) {
+  for (const auto part :
+       {ValidateCameras, ValidateStructure, ValidateFeatures,
+        ValidateRelativePoses, ValidateUnrelatedPairs, ValidateTracks,
+        ValidateScaleRatios, ValidateLineStructure}) {
     if (Status status = part(scene, views); !status) return status;
   }
   return {};

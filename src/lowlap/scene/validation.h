@@ -9,8 +9,9 @@ namespace lowlap {
 /// (times the logarithm of the number of views):
 /// - every id refers to something: a view's intrinsic (unless kInvalidId), the
 ///   views, features and segments of relative poses, tracks, landmarks and
-///   ratios, the relative poses of a ratio, the lines of a coplanar pair; every
-///   intrinsic and pose is used by a view (OpenMVG refuses a file otherwise);
+///   ratios, the views of pairs without a relative pose, the relative poses of
+///   a ratio, the lines of a coplanar pair; every intrinsic and pose is used by
+///   a view (OpenMVG refuses a file otherwise);
 /// - numbers are finite, rotations are rotations and directions are unit (to
 ///   1e-6), Pluecker moments are orthogonal to their directions;
 /// - pairs are ordered (first < second) and nothing is listed twice;

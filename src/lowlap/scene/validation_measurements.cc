@@ -175,6 +175,27 @@ Status ValidateRelativePoses(const Scene& scene, const ViewTable& views) {
   return {};
 }
 
+Status ValidateUnrelatedPairs(const Scene& scene, const ViewTable& views) {
+  const std::vector<ViewPair>& pairs = scene.unrelated_pairs;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    const auto& [first, second] = pairs[n];
+    const std::string place = "$.lowlap.unrelated_pairs" + IndexPlace(2 * n);
+    for (const ViewId view : {first, second}) {
+      if (!views.Find(view)) return Invalid(UnknownView(view), place);
+    }
+    if (!(first < second)) {
+      return Invalid("the first view must have the smaller id", place);
+    }
+    if (n > 0 && !(pairs[n - 1] < pairs[n])) {
+      return Invalid("pairs must ascend", place);
+    }
+    if (scene.relative_poses.count(pairs[n]) > 0) {
+      return Invalid("the pair has a relative pose", place);
+    }
+  }
+  return {};
+}
+
 Status ValidateTrack(const ViewTable& views, const Track& track,
                      FeatureKind kind, const std::string& place) {
   const auto invalid = [&](std::string message, std::size_t flat_index) {

@@ -116,6 +116,7 @@ class Scene:
     poses: Mapping[int, Pose]
     features: Mapping[int, ViewFeatures]
     relative_poses: Mapping[Pair, RelativePose]
+    unrelated_pairs: Indices
     point_tracks: Mapping[int, Indices]
     line_tracks: Mapping[int, Indices]
     structure: Mapping[int, Landmark]

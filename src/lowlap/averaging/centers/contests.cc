@@ -4,10 +4,10 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <optional>
 #include <set>
 #include <utility>
 
+#include "lowlap/averaging/centers/internal/least_cut.h"
 #include "lowlap/geometry/internal/rotation.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -18,99 +18,6 @@ constexpr int kMaxWays = 8;
 /// Turns are the same up to this, where the solution is bent elsewhere.
 const double kSameTurnRad = RadFromDeg(6);
 constexpr double kSameTurnReach = 3;
-
-/// Maximum flow by shortest augmenting paths (Edmonds and Karp 1972); what the
-/// source still reaches is its side of the least cut. Every search leaves the
-/// one residual graph as it was.
-class LeastCut {
- public:
-  LeastCut(const ViewGraph& graph, const EvidenceOfPairs& in_use)
-      : views_(graph.views()), arcs_(views_.size()), into_(views_.size()) {
-    // Pairs are sorted, and so are the arcs of a view by where they go.
-    for (const auto& [pair, evidence] : in_use) {
-      const std::size_t first = *IndexOf(pair.first);
-      const std::size_t second = *IndexOf(pair.second);
-      arcs_[first].push_back(
-          {second, arcs_[second].size(), evidence, evidence});
-      arcs_[second].push_back(
-          {first, arcs_[first].size() - 1, evidence, evidence});
-    }
-  }
-
-  /// Empty if nothing joins the two, or `max_searches` do not fill all ways.
-  std::set<ViewId> SideOf(ViewId from_view, ViewId to_view, int max_searches) {
-    const std::optional<std::size_t> from = IndexOf(from_view);
-    const std::optional<std::size_t> to = IndexOf(to_view);
-    if (!from || !to) return {};
-    std::set<ViewId> side;
-    for (int way = 0; way < max_searches; ++way) {
-      const std::vector<std::size_t> reached = Reach(*from, *to);
-      if (into_[*to] == nullptr) {
-        if (way == 0) break;
-        for (const std::size_t n : reached) side.insert(views_[n]);
-        break;
-      }
-      FillWay(*to);
-    }
-    for (Arc* arc : used_) arc->residual = arc->evidence;
-    used_.clear();
-    return side;
-  }
-
- private:
-  struct Arc {
-    std::size_t to;
-    std::size_t back;  // index of the reverse among the arcs of `to`
-    double evidence;
-    double residual;
-  };
-
-  std::optional<std::size_t> IndexOf(ViewId view) const {
-    const auto found = std::lower_bound(views_.begin(), views_.end(), view);
-    if (found == views_.end() || *found != view) return std::nullopt;
-    return static_cast<std::size_t>(found - views_.begin());
-  }
-
-  Arc* Reverse(const Arc& arc) { return &arcs_[arc.to][arc.back]; }
-
-  // The views that `from` reaches until `to` is among them, and the arc into
-  // each but the first.
-  std::vector<std::size_t> Reach(std::size_t from, std::size_t to) {
-    std::fill(into_.begin(), into_.end(), nullptr);
-    std::vector<std::size_t> reached = {from};
-    for (std::size_t n = 0; n < reached.size() && into_[to] == nullptr; ++n) {
-      for (Arc& arc : arcs_[reached[n]]) {
-        if (!(arc.residual > 0) || arc.to == from || into_[arc.to] != nullptr) {
-          continue;
-        }
-        into_[arc.to] = &arc;
-        reached.push_back(arc.to);
-      }
-    }
-    return reached;
-  }
-
-  // As much as the way that Reach found to `to` still takes.
-  void FillWay(std::size_t to) {
-    std::vector<Arc*> way;
-    double flow = std::numeric_limits<double>::infinity();
-    for (Arc* arc = into_[to]; arc != nullptr; arc = into_[Reverse(*arc)->to]) {
-      way.push_back(arc);
-      flow = std::min(flow, arc->residual);
-    }
-    for (Arc* arc : way) {
-      Arc* const reverse = Reverse(*arc);
-      arc->residual -= flow;
-      reverse->residual += flow;
-      used_.insert(used_.end(), {arc, reverse});
-    }
-  }
-
-  const std::vector<ViewId>& views_;
-  std::vector<std::vector<Arc>> arcs_;
-  std::vector<Arc*> into_;
-  std::vector<Arc*> used_;
-};
 
 double Across(const EvidenceOfPairs& evidence, const std::set<ViewId>& side,
               std::vector<ViewPair>* pairs) {
@@ -153,22 +60,6 @@ double MostAcross(const RejectedPoses& rejected, const std::set<ViewId>& side,
     *pairs = std::move(agreeing);
   }
   return most;
-}
-
-// The smaller side of the component that `side` is a part of.
-std::vector<ViewId> SmallerSide(const ViewGraph& graph,
-                                const std::set<ViewId>& side) {
-  for (const std::vector<ViewId>& component : ConnectedComponents(graph)) {
-    if (!std::binary_search(component.begin(), component.end(),
-                            *side.begin())) {
-      continue;
-    }
-    std::vector<ViewId> other;
-    std::set_difference(component.begin(), component.end(), side.begin(),
-                        side.end(), std::back_inserter(other));
-    if (other.size() < side.size()) return other;
-  }
-  return {side.begin(), side.end()};
 }
 
 // Views that poses in use join to the others with hardly more evidence than

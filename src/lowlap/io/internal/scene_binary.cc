@@ -35,6 +35,7 @@ std::vector<std::string_view> SectionsOf(std::uint32_t version) {
   if (version >= 5) sections.emplace_back("CCOV");
   if (version >= 6) sections.emplace_back("WEAK");
   if (version >= 7) sections.emplace_back("REPT");
+  if (version >= 8) sections.emplace_back("UNRE");
   return sections;
 }
 
@@ -129,6 +130,8 @@ void TransferSection(std::string_view tag, Bytes& bytes, SceneType& scene) {
     TransferWeaknesses(record, scene);
   } else if (tag == "REPT") {
     TransferRepeated(record, scene);
+  } else if (tag == "UNRE") {
+    record.Flat("unrelated_pairs", scene.unrelated_pairs, kVisitPair);
   }
 }
 

@@ -12,6 +12,7 @@
 #include "lowlap/averaging/internal/hanging_views.h"
 #include "lowlap/averaging/internal/imprecise_views.h"
 #include "lowlap/averaging/internal/lost_features.h"
+#include "lowlap/averaging/internal/missing_matches.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
 #include "lowlap/averaging/internal/solution_agreement.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
@@ -128,6 +129,9 @@ Status JudgeViews(Scene* scene,
     poses->contests = ContestsThatStay(*scene, poses->contests);
   }
   for (ReliabilityWarning& doubt : FindLostFeatures(*scene)) {
+    poses->reliability_warnings.push_back(std::move(doubt));
+  }
+  for (ReliabilityWarning& doubt : FindMissingMatches(*scene, *poses)) {
     poses->reliability_warnings.push_back(std::move(doubt));
   }
   WarnOfHangingViews(poses);

@@ -33,6 +33,7 @@ Status ValidateCameras(const Scene& scene, const ViewTable& views);
 Status ValidateStructure(const Scene& scene, const ViewTable& views);
 Status ValidateFeatures(const Scene& scene, const ViewTable& views);
 Status ValidateRelativePoses(const Scene& scene, const ViewTable& views);
+Status ValidateUnrelatedPairs(const Scene& scene, const ViewTable& views);
 Status ValidateTracks(const Scene& scene, const ViewTable& views);
 Status ValidateScaleRatios(const Scene& scene, const ViewTable& views);
 Status ValidateLineStructure(const Scene& scene, const ViewTable& views);

@@ -21,6 +21,7 @@ void VisitSections(Sections& sections, SceneType& scene,
                 kVisitCenterCovariance);
   sections.ById("features", "view", scene.features, kVisitFeatures);
   sections.RelativePoses("relative_poses", scene.relative_poses);
+  sections.Pairs("unrelated_pairs", scene.unrelated_pairs);
   sections.ById("point_tracks", "id", scene.point_tracks, kVisitTrack);
   sections.ById("line_tracks", "id", scene.line_tracks, kVisitTrack);
   sections.ScaleRatios("scale_ratios", scene.scale_ratios);
@@ -49,12 +50,13 @@ class SectionWriter {
   void ScaleRatios(const char* name, const std::vector<ScaleRatio>& ratios) {
     Records(name, ratios, kVisitScaleRatio);
   }
-  void Pairs(const char* name, const std::vector<CoplanarPair>& pairs) {
+  template <class Pair>
+  void Pairs(const char* name, const std::vector<Pair>& pairs) {
     text_ += ",\n";
     AppendValue(name, text_);
     text_ += ": [";
     JsonRecordWriter flat(text_);
-    for (const CoplanarPair& pair : pairs) kVisitPair(flat, pair);
+    for (const Pair& pair : pairs) kVisitPair(flat, pair);
     text_ += "]";
   }
 
@@ -103,7 +105,8 @@ class SectionReader {
           : Read(record, ratio, kVisitScaleRatio);
     });
   }
-  void Pairs(const char* name, std::vector<CoplanarPair>& pairs) {
+  template <class Pair>
+  void Pairs(const char* name, std::vector<Pair>& pairs) {
     if (const auto flat = own_.Find(name)) ReadFlat(*flat, kVisitPair, pairs);
   }
 
@@ -130,8 +133,9 @@ void ReadOwnSections(const JsonValue& own, Scene& scene) {
                  ErrorCode::kUnsupported);
   }
   own.AllowOnly({"version", "given_intrinsics", "center_covariances",
-                 "features", "relative_poses", "point_tracks", "line_tracks",
-                 "scale_ratios", "line_structure", "coplanar_pairs"});
+                 "features", "relative_poses", "unrelated_pairs",
+                 "point_tracks", "line_tracks", "scale_ratios",
+                 "line_structure", "coplanar_pairs"});
   SectionReader sections(own, version.Id());
   CenterCovariances center_covariances;
   VisitSections(sections, scene, center_covariances);

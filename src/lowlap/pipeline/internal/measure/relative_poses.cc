@@ -221,6 +221,12 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
       });
   if (!done) return tl::unexpected<Error>(done.error());
 
+  scene->unrelated_pairs.clear();
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    if (!estimates[n].pose && !estimates[n].no_parallax) {
+      scene->unrelated_pairs.push_back(pairs[n]);
+    }
+  }
   LOWLAP_RETURN_IF_ERROR(EstimateAgainWithoutCopies(
       *scene, pairs, matches, measurements, options, context, &estimates));
   DropWeakPoses(&estimates);

@@ -171,6 +171,7 @@ void AddDoubts(const PoseSummary& summary, Json* poses) {
     }
     if (!doubt.against.empty()) entry["contradicted_by"] = doubt.against;
     if (!doubt.untold.empty()) entry["untold"] = doubt.untold;
+    if (!doubt.missing.empty()) entry["missing"] = doubt.missing;
     if (!doubt.ratios.empty()) entry["ratios"] = doubt.ratios;
     doubts.push_back(std::move(entry));
   }

@@ -1,0 +1,63 @@
+#pragma once
+
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "lowlap/core/ids.h"
+#include "lowlap/geometry/types.h"
+#include "lowlap/scene/scene.h"
+
+namespace lowlap {
+
+/// What two solved cameras have in common, by where the points lie that either
+/// observes.
+struct ExpectedOverlap {
+  /// Of the points of the view that should share less, those that the other
+  /// should see as well.
+  double share = 0;
+  /// Of those, the points that the other does observe; of the two views, the
+  /// larger share.
+  double found = 0;
+};
+
+/// Predicts what views of a solved scene should see of one another's landmarks.
+///
+/// A view should see a landmark of another one that lies in its image, from a
+/// direction that differs by 30 degrees at most and a distance by a factor of
+/// two, so that features are found again, unless something stands before it: a
+/// fifth nearer is the median of its own five landmarks nearest to that cell of
+/// the image, of 16 times 16. Of a view 256 landmarks are looked at, evenly
+/// spaced in their order; a view with fewer than twenty says nothing.
+class OverlapPredictor {
+ public:
+  /// `scene` must outlive this.
+  explicit OverlapPredictor(const Scene& scene);
+
+  /// nullopt: a view has no pose, no intrinsic or too few landmarks.
+  std::optional<ExpectedOverlap> Between(ViewId a, ViewId b) const;
+
+ private:
+  struct SeenPoint {
+    Vec3 position;  // in world
+    double depth;   // distance from the centre
+    const Landmark* landmark;
+  };
+  struct Camera {
+    const Pose* pose;
+    const Intrinsic* intrinsic;
+    std::vector<SeenPoint> points;
+    std::vector<double> depths;  // of the cells, by rows
+
+    bool Hides(const Vec2& pixel_px, double depth) const;
+  };
+  struct Counts {
+    double share = 0, found = 0;
+  };
+
+  static Counts Count(const Camera& from, const Camera& to, ViewId to_view);
+
+  std::map<ViewId, Camera> cameras_;
+};
+
+}  // namespace lowlap

@@ -1,0 +1,133 @@
+#include "lowlap/averaging/internal/expected_overlap.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "lowlap/geometry/internal/rotation.h"
+
+namespace lowlap {
+namespace {
+
+// A wall z = 10 of 20 x 20 points, 12 wide and high, that view 0 at the origin
+// and view 1, `offset` to the right of it, look at; each observes what
+// `observes` says of its columns 0 to 19.
+template <class Observes>
+Scene SceneOfWall(double offset, const Observes& observes) {
+  Scene scene;
+  Intrinsic& intrinsic = scene.intrinsics[0];
+  intrinsic.width_px = intrinsic.height_px = 1200;
+  intrinsic.fx_px = intrinsic.fy_px = 1000;
+  intrinsic.principal_point_px = Vec2(600, 600);
+  for (const std::uint32_t view : {0u, 1u}) {
+    scene.views[view].intrinsic_id = 0;
+    scene.views[view].pose_id = view;
+    scene.poses[view].center = Vec3(offset * view, 0, 0);
+  }
+  for (std::uint32_t n = 0; n < 400; ++n) {
+    Landmark& landmark = scene.structure[n];
+    landmark.position =
+        Vec3(n % 20, n / 20, 0) * (12.0 / 20) + Vec3(-5.9, -5.9, 10);
+    for (const std::uint32_t view : {0u, 1u}) {
+      if (observes(view, n % 20))
+        landmark.observations.push_back({view, n, Vec2::Zero()});
+    }
+  }
+  return scene;
+}
+
+bool SeesAll(std::uint32_t, std::uint32_t) { return true; }
+
+ExpectedOverlap OverlapOf(const Scene& scene) {
+  return OverlapPredictor(scene).Between(0, 1).value();
+}
+
+TEST(ExpectedOverlap, IsWhatLiesInTheOtherImage) {
+  const ExpectedOverlap same = OverlapOf(SceneOfWall(0, SeesAll));
+  EXPECT_EQ(same.share, 1);
+  EXPECT_EQ(same.found, 1);
+  // View 1 would see columns beyond the wall, if there were any: it observes
+  // the left one, and the right half of it.
+  const ExpectedOverlap half =
+      OverlapOf(SceneOfWall(3, [](std::uint32_t view, std::uint32_t column) {
+        return view == 0 || column >= 5;
+      }));
+  EXPECT_NEAR(half.share, 0.75, 0.02);
+  EXPECT_EQ(half.found, 1);
+}
+
+TEST(ExpectedOverlap, WhatIsNotFoundIsNoLessExpected) {
+  const ExpectedOverlap overlap =
+      OverlapOf(SceneOfWall(0, [](std::uint32_t view, std::uint32_t column) {
+        return view == column % 2;
+      }));
+  EXPECT_EQ(overlap.share, 1);
+  EXPECT_EQ(overlap.found, 0);
+}
+
+TEST(ExpectedOverlap, NothingBehindACameraOrFromTheSideOrFarAway) {
+  Scene scene = SceneOfWall(0, SeesAll);
+  scene.poses[1].rotation = RotationFromAngleAxis(Vec3(0, RadFromDeg(180), 0));
+  EXPECT_EQ(OverlapPredictor(scene).Between(0, 1), std::nullopt);
+  // From the other side of the wall, all in its image.
+  scene.poses[1].center = Vec3(0, 0, 20);
+  EXPECT_EQ(OverlapOf(scene).share, 0);
+  // Three times as far.
+  scene = SceneOfWall(0, SeesAll);
+  scene.poses[1].center = Vec3(0, 0, -20);
+  EXPECT_EQ(OverlapOf(scene).share, 0);
+  scene.poses[1].center = Vec3(0, 0, -5);
+  EXPECT_EQ(OverlapOf(scene).share, 1);
+}
+
+TEST(ExpectedOverlap, NothingThatIsHidden) {
+  // View 1 observes a wall at half the distance, view 0 that behind it.
+  Scene scene = SceneOfWall(
+      0, [](std::uint32_t view, std::uint32_t) { return view == 0; });
+  for (std::uint32_t n = 0; n < 400; ++n) {
+    Landmark& landmark = scene.structure[400 + n];
+    landmark.position = scene.structure.at(n).position / 2;
+    landmark.observations.push_back({1, n, Vec2::Zero()});
+  }
+  EXPECT_EQ(OverlapOf(scene).share, 0);
+  // No wall can be this thin: both see the same place.
+  for (std::uint32_t n = 0; n < 400; ++n) {
+    scene.structure.at(400 + n).position *= 2 * 0.9;
+  }
+  EXPECT_EQ(OverlapOf(scene).share, 1);
+}
+
+TEST(ExpectedOverlap, OfAViewWithFewPointsIsNotKnown) {
+  const auto with_columns = [](std::uint32_t count) {
+    return SceneOfWall(0, [=](std::uint32_t view, std::uint32_t column) {
+      return view == 0 || column < count;
+    });
+  };
+  EXPECT_TRUE(OverlapPredictor(with_columns(1)).Between(0, 1));
+  EXPECT_FALSE(OverlapPredictor(with_columns(0)).Between(0, 1));
+  EXPECT_FALSE(OverlapPredictor(with_columns(1)).Between(0, 2));
+  Scene scene = with_columns(20);
+  scene.poses.erase(1);
+  EXPECT_FALSE(OverlapPredictor(scene).Between(0, 1));
+}
+
+// Its polynomial leads points far outside back into the image.
+TEST(ExpectedOverlap, ADistortionIsFollowedWhereItIsOne) {
+  Scene scene = SceneOfWall(0, SeesAll);
+  Intrinsic& intrinsic = scene.intrinsics[0];
+  intrinsic.model = CameraModel::kRadialK1;
+  intrinsic.distortion = {-0.3};
+  EXPECT_EQ(OverlapOf(scene).share, 1);
+  // View 1 looks past the wall.
+  scene.poses[1].rotation = RotationFromAngleAxis(Vec3(0, RadFromDeg(75), 0));
+  const Vec3 point_in_cam =
+      scene.poses[1].rotation * scene.structure.at(10 * 20 + 5).position;
+  ASSERT_GT(point_in_cam.z(), 0);
+  const Vec2 folded = intrinsic.Project(point_in_cam);
+  ASSERT_GT(folded.x(), 0);
+  ASSERT_LT(folded.x(), 1200);
+  EXPECT_FALSE(OverlapPredictor(scene).Between(0, 1));
+}
+
+}  // namespace
+}  // namespace lowlap

@@ -1,0 +1,114 @@
+#include "lowlap/averaging/internal/missing_matches.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace lowlap {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+constexpr std::uint32_t kViews = 8;
+
+// Eight cameras one beside the other before a wall. Those from 5 on belong
+// elsewhere, before a wall of their own that lies where the other one does: a
+// false relative pose 4-5, weaker than the others, put them there. All pairs
+// were compared, and those of one wall found related.
+Scene SceneOfTwoWallsInOnePlace() {
+  Scene scene;
+  Intrinsic& intrinsic = scene.intrinsics[0];
+  intrinsic.width_px = intrinsic.height_px = 1200;
+  intrinsic.fx_px = intrinsic.fy_px = 1000;
+  intrinsic.principal_point_px = Vec2(600, 600);
+  for (std::uint32_t view = 0; view < kViews; ++view) {
+    scene.views[view].intrinsic_id = 0;
+    scene.views[view].pose_id = view;
+    scene.poses[view].center = Vec3(0.3 * view, 0, 0);
+  }
+  for (std::uint32_t n = 0; n < 800; ++n) {
+    const bool is_second = n >= 400;
+    Landmark& landmark = scene.structure[n];
+    landmark.position =
+        Vec3(n % 20, (n % 400) / 20, 0) * 0.5 + Vec3(-4, -5, 10);
+    for (std::uint32_t view = 0; view < kViews; ++view) {
+      if ((view >= 5) == is_second) {
+        landmark.observations.push_back({view, n, Vec2::Zero()});
+      }
+    }
+  }
+  for (std::uint32_t a = 0; a < kViews; ++a) {
+    for (std::uint32_t b = a + 1; b < kViews; ++b) {
+      if ((a >= 5) == (b >= 5) || (a == 4 && b == 5)) {
+        RelativePose& pose = scene.relative_poses[{a, b}];
+        pose.views = {a, b};
+        pose.log10_nfa = a == 4 && b == 5 ? -30 : -50;
+      } else {
+        scene.unrelated_pairs.push_back({a, b});
+      }
+    }
+  }
+  return scene;
+}
+
+TEST(MissingMatches, SpeakAgainstWhatJoinsTwoPlaces) {
+  const auto warnings = FindMissingMatches(SceneOfTwoWallsInOnePlace(), {});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_EQ(warnings[0].reason, WarningReason::kMissingMatches);
+  EXPECT_THAT(warnings[0].views, ElementsAre(5, 6, 7));
+  EXPECT_EQ(warnings[0].missing.size(), 14u);
+  EXPECT_EQ(warnings[0].missing.front(), (ViewPair{0, 5}));
+}
+
+TEST(MissingMatches, OfTwoLikeHalvesEitherMayBeWrong) {
+  const auto warnings =
+      FindMissingMatches(WithoutViews(SceneOfTwoWallsInOnePlace(), {0, 1}), {});
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_THAT(warnings[0].views, ElementsAre(2, 3, 4, 5, 6, 7));
+}
+
+TEST(MissingMatches, AreThoseThatWereLookedFor) {
+  Scene scene = SceneOfTwoWallsInOnePlace();
+  scene.unrelated_pairs = {{4, 6}};
+  EXPECT_THAT(FindMissingMatches(scene, {}), IsEmpty());  // one may happen
+  scene.unrelated_pairs = {{3, 6}, {4, 6}};
+  EXPECT_EQ(FindMissingMatches(scene, {}).size(), 1u);
+  scene.unrelated_pairs.clear();
+  EXPECT_THAT(FindMissingMatches(scene, {}), IsEmpty());
+}
+
+// As where a facade repeats: no relative pose of their own, but tracks.
+TEST(MissingMatches, PairsWithCommonTracksAreNoneOfThem) {
+  Scene scene = SceneOfTwoWallsInOnePlace();
+  for (std::uint32_t n = 0; n < 400; n += 7) {
+    for (const std::uint32_t view : {5u, 6u, 7u}) {
+      scene.structure.at(n).observations.push_back({view, n, Vec2::Zero()});
+    }
+  }
+  EXPECT_THAT(FindMissingMatches(scene, {}), IsEmpty());
+}
+
+TEST(MissingMatches, CountLessThanWhatIsFoundAcross) {
+  Scene scene = SceneOfTwoWallsInOnePlace();
+  for (const ViewPair views :
+       {ViewPair{2, 5}, ViewPair{2, 6}, ViewPair{3, 5}, ViewPair{3, 6},
+        ViewPair{3, 7}, ViewPair{4, 6}, ViewPair{4, 7}}) {
+    RelativePose& pose = scene.relative_poses[views];
+    pose.views = views;
+    pose.log10_nfa = -3;
+  }
+  scene.unrelated_pairs = {{0, 5}, {0, 6}, {0, 7}, {1, 5},
+                           {1, 6}, {1, 7}, {2, 7}};
+  EXPECT_THAT(FindMissingMatches(scene, {}), IsEmpty());
+  // Those that are not in use hold nothing.
+  PoseSummary summary;
+  summary.outlier_edges = {{{3, 7}, OutlierReason::kDirection, 9}};
+  EXPECT_THAT(FindMissingMatches(scene, summary), IsEmpty());
+  summary.outlier_edges.push_back({{3, 6}, OutlierReason::kDirection, 9});
+  EXPECT_EQ(FindMissingMatches(scene, summary).size(), 1u);
+}
+
+}  // namespace
+}  // namespace lowlap
