@@ -37,8 +37,9 @@ void PrintContent(const Scene& scene) {
   std::printf("views %zu, intrinsics %zu, poses %zu\n", scene.views.size(),
               scene.intrinsics.size(), scene.poses.size());
   std::printf("features: %zu points, %zu segments\n", points, segments);
-  std::printf("relative poses %zu, tracks: %zu points, %zu lines\n",
-              scene.relative_poses.size(), scene.point_tracks.size(),
+  std::printf("relative poses %zu, pairs compared in vain %zu\n",
+              scene.relative_poses.size(), scene.unrelated_pairs.size());
+  std::printf("tracks: %zu points, %zu lines\n", scene.point_tracks.size(),
               scene.line_tracks.size());
   std::printf("scale ratios %zu, meaningful %zu\n", scene.scale_ratios.size(),
               meaningful);

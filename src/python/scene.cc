@@ -177,7 +177,7 @@ void BindScene(py::module_& module) {
           [](const py::object& self) {
             return IndexArray(self.cast<const Scene&>().unrelated_pairs, self);
           },
-          "(n, 2): views that were compared and have no relative pose.")
+          "(n, 2): views that were compared in vain, without a relative pose.")
       .def_property_readonly("point_tracks", MapMember(&Scene::point_tracks),
                              "(n, 2) arrays: view, index of the point.")
       .def_property_readonly("line_tracks", MapMember(&Scene::line_tracks),

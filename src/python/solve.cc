@@ -103,6 +103,7 @@ void BindSummaries(py::module_& module) {
       .def_readonly("views", &ReliabilityWarning::views)
       .def_readonly("against", &ReliabilityWarning::against)
       .def_readonly("untold", &ReliabilityWarning::untold)
+      .def_readonly("missing", &ReliabilityWarning::missing)
       .def_readonly("ratios", &ReliabilityWarning::ratios)
       .def_readonly("share", &ReliabilityWarning::share);
 

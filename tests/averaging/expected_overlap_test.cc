@@ -80,19 +80,38 @@ TEST(ExpectedOverlap, NothingBehindACameraOrFromTheSideOrFarAway) {
   EXPECT_EQ(OverlapOf(scene).share, 1);
 }
 
-TEST(ExpectedOverlap, NothingThatIsHidden) {
-  // View 1 observes a wall at half the distance, view 0 that behind it.
+// As through a bare wall: what view 1 sees is further away, or elsewhere.
+TEST(ExpectedOverlap, NothingWhereTheOtherSeesNothingOfItsOwn) {
   Scene scene = SceneOfWall(
       0, [](std::uint32_t view, std::uint32_t) { return view == 0; });
   for (std::uint32_t n = 0; n < 400; ++n) {
     Landmark& landmark = scene.structure[400 + n];
-    landmark.position = scene.structure.at(n).position / 2;
+    landmark.position = scene.structure.at(n).position * 3;
+    landmark.observations.push_back({1, n, Vec2::Zero()});
+  }
+  EXPECT_EQ(OverlapOf(scene).share, 0);
+  // View 1 observes the left quarter of the wall only, and nothing beside it.
+  scene = SceneOfWall(0, [](std::uint32_t view, std::uint32_t column) {
+    return view == 0 || column < 5;
+  });
+  const double share = OverlapOf(scene).share;
+  EXPECT_GE(share, 0.25);
+  EXPECT_LE(share, 0.45);
+}
+
+TEST(ExpectedOverlap, NothingThatIsHidden) {
+  // View 1 observes a wall at a third of the distance, view 0 that behind it.
+  Scene scene = SceneOfWall(
+      0, [](std::uint32_t view, std::uint32_t) { return view == 0; });
+  for (std::uint32_t n = 0; n < 400; ++n) {
+    Landmark& landmark = scene.structure[400 + n];
+    landmark.position = scene.structure.at(n).position / 3;
     landmark.observations.push_back({1, n, Vec2::Zero()});
   }
   EXPECT_EQ(OverlapOf(scene).share, 0);
   // No wall can be this thin: both see the same place.
   for (std::uint32_t n = 0; n < 400; ++n) {
-    scene.structure.at(400 + n).position *= 2 * 0.9;
+    scene.structure.at(400 + n).position *= 3 * 0.9;
   }
   EXPECT_EQ(OverlapOf(scene).share, 1);
 }

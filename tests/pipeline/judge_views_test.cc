@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdint>
+#include <map>
 #include <optional>
+#include <utility>
 
 #include "lowlap/averaging/internal/view_grades.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
@@ -15,6 +18,7 @@
 namespace lowlap {
 namespace {
 
+using ::testing::Contains;
 using ::testing::ElementsAre;
 
 // Of hardly any points: relative poses are off by degrees, and state nothing
@@ -107,6 +111,57 @@ TEST(JudgeViews, WhatIsKnownTooLittleIsDoubtful) {
   EXPECT_EQ(CountFirm(result->poses), 7);
   EXPECT_THAT(GradeViews(result->poses).at(3).reasons,
               ElementsAre("imprecise"));
+}
+
+// A room of which two halves have no point in common, and one relative pose
+// joins them: the other pairs across were compared in vain.
+SyntheticScene RoomOfTwoHalves() {
+  constexpr std::uint32_t kHalf = 12;
+  SyntheticOptions options;
+  options.num_views = 2 * kHalf;
+  options.pairs = "window:2";
+  options.points_per_wall = 300;
+  options.noise_px = 0.3;
+  SyntheticScene room = *Simulate(options);
+  for (std::uint32_t a = 0; a < kHalf; ++a) {
+    for (std::uint32_t b = kHalf; b < 2 * kHalf; ++b) {
+      if (b - a == 1) continue;
+      room.scene.relative_poses.erase({a, b});
+      room.scene.unrelated_pairs.push_back({a, b});
+    }
+  }
+  std::map<PointTrackId, Track> halves;
+  std::uint32_t next = 0;
+  for (const auto& [id, track] : room.scene.point_tracks) {
+    Track first, second;
+    for (const FeatureRef& ref : track) {
+      (ref.view < ViewId(kHalf) ? first : second).push_back(ref);
+    }
+    for (const Track& half : {first, second}) {
+      if (half.size() > 1) halves[next++] = half;
+    }
+  }
+  room.scene.point_tracks = std::move(halves);
+  return room;
+}
+
+TEST(JudgeViews, MissingMatchesMakeViewsDoubtful) {
+  const auto is_missing = ::testing::Field(&ReliabilityWarning::reason,
+                                           WarningReason::kMissingMatches);
+  SolveOptions options;
+  options.adjust = false;
+  SyntheticScene room = RoomOfTwoHalves();
+  auto result = SolveScene(&room.scene, options, RunContext(), nullptr);
+  ASSERT_TRUE(result) << result.error().ToString();
+  EXPECT_EQ(result->poses.num_placed, 24);
+  EXPECT_THAT(result->poses.reliability_warnings, Contains(is_missing));
+  // Who was never asked is not missed.
+  room = RoomOfTwoHalves();
+  room.scene.unrelated_pairs.clear();
+  result = SolveScene(&room.scene, options, RunContext(), nullptr);
+  ASSERT_TRUE(result) << result.error().ToString();
+  EXPECT_THAT(result->poses.reliability_warnings,
+              ::testing::Not(Contains(is_missing)));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <utility>
 
 namespace lowlap {
@@ -15,7 +16,7 @@ const double kMinCosine = std::cos(RadFromDeg(30));
 constexpr double kMaxZoom = 2;
 constexpr int kCells = 16;  // each way
 constexpr std::size_t kNeighbors = 5;
-constexpr double kHidingDepth = 0.8;
+constexpr double kReachInCells = 2;
 
 // nullopt: behind the camera, or outside the image.
 std::optional<Vec2> PixelInImage(const Intrinsic& intrinsic, const Vec3& x) {
@@ -49,10 +50,12 @@ struct SeenDepth {
   double depth;
 };
 
-// Of each cell, the median depth of what is seen nearest to its centre.
+// Of each cell, the median depth of what is seen nearest to its centre; NaN if
+// that is far from it.
 std::vector<double> DepthsOfCells(const Intrinsic& intrinsic,
                                   std::vector<SeenDepth> seen) {
   const Vec2 cell_px = Vec2(intrinsic.width_px, intrinsic.height_px) / kCells;
+  const double reach_px = kReachInCells * cell_px.norm();
   std::vector<double> depths;
   for (int row = 0; row < kCells; ++row) {
     for (int column = 0; column < kCells; ++column) {
@@ -62,6 +65,10 @@ std::vector<double> DepthsOfCells(const Intrinsic& intrinsic,
                          return (a.pixel_px - center).squaredNorm() <
                                 (b.pixel_px - center).squaredNorm();
                        });
+      if ((seen[kNeighbors - 1].pixel_px - center).norm() > reach_px) {
+        depths.push_back(std::numeric_limits<double>::quiet_NaN());
+        continue;
+      }
       std::array<double, kNeighbors> nearest;
       for (std::size_t n = 0; n < kNeighbors; ++n) nearest[n] = seen[n].depth;
       std::sort(nearest.begin(), nearest.end());
@@ -107,8 +114,10 @@ OverlapPredictor::OverlapPredictor(const Scene& scene) {
   }
 }
 
-bool OverlapPredictor::Camera::Hides(const Vec2& pixel_px, double depth) const {
-  return depths[CellOf(*intrinsic, pixel_px)] < kHidingDepth * depth;
+bool OverlapPredictor::Camera::SeesAt(const Vec2& pixel_px,
+                                      double depth) const {
+  const double seen = depths[CellOf(*intrinsic, pixel_px)];
+  return depth <= kMaxZoom * seen && seen <= kMaxZoom * depth;
 }
 
 OverlapPredictor::Counts OverlapPredictor::Count(const Camera& from,
@@ -124,7 +133,7 @@ OverlapPredictor::Counts OverlapPredictor::Count(const Camera& from,
       continue;
     }
     const auto pixel = PixelInImage(*to.intrinsic, to.pose->rotation * ray_to);
-    if (!pixel || to.Hides(*pixel, depth)) continue;
+    if (!pixel || !to.SeesAt(*pixel, depth)) continue;
     ++expected;
     if (Observes(*point.landmark, to_view)) ++found;
   }

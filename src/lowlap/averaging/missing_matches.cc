@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/centers/internal/contests.h"
+#include "lowlap/averaging/centers/internal/evidence.h"
 #include "lowlap/averaging/centers/internal/least_cut.h"
 #include "lowlap/averaging/internal/expected_overlap.h"
 #include "lowlap/scene/view_graph.h"
@@ -17,10 +16,10 @@ namespace {
 
 constexpr double kMinShare = 0.4;
 constexpr double kHardlyFound = 0.1;
-constexpr std::size_t kMinMissing = 2;
+constexpr std::size_t kMinMissing = 3;
 
-// Of placed views.
-EvidenceOfPairs PosesInUse(const Scene& scene, const PoseSummary& summary) {
+// Of placed views; what contradicts the solution joins nothing.
+EvidenceOfPairs AgreeingPoses(const Scene& scene, const PoseSummary& summary) {
   std::set<ViewPair> left_out;
   for (const auto* edges : {&summary.outlier_edges, &summary.kept_outliers}) {
     for (const OutlierEdge& edge : *edges) left_out.insert(edge.views);
@@ -65,8 +64,8 @@ ExpectedPairs FindExpectedPairs(const Scene& scene,
   return pairs;
 }
 
-std::vector<ViewPair> Across(const std::vector<ViewPair>& pairs,
-                             const std::set<ViewId>& side) {
+std::vector<ViewPair> PairsAcross(const std::vector<ViewPair>& pairs,
+                                  const std::set<ViewId>& side) {
   std::vector<ViewPair> across;
   std::copy_if(pairs.begin(), pairs.end(), std::back_inserter(across),
                [&](const ViewPair& views) {
@@ -80,28 +79,30 @@ std::vector<ViewPair> Across(const std::vector<ViewPair>& pairs,
 std::vector<ReliabilityWarning> FindMissingMatches(const Scene& scene,
                                                    const PoseSummary& summary) {
   if (scene.unrelated_pairs.empty() || scene.structure.empty()) return {};
-  const EvidenceOfPairs in_use = PosesInUse(scene, summary);
+  const EvidenceOfPairs in_use = AgreeingPoses(scene, summary);
   const ExpectedPairs expected = FindExpectedPairs(scene, in_use);
   std::vector<ViewPair> pairs;
   for (const auto& entry : in_use) pairs.push_back(entry.first);
   const ViewGraph graph(std::move(pairs));
-  LeastCut cuts(graph, in_use);
+  WeakCuts cuts(graph, in_use);
   std::vector<ReliabilityWarning> warnings;
-  std::set<std::set<ViewId>> sides;
-  for (const auto& [first, second] : expected.missing) {
-    const auto [side, is_new] = sides.insert(
-        cuts.SideOf(first, second, std::numeric_limits<int>::max()));
-    if (side->empty() || !is_new) continue;
+  std::set<ViewPair> named;
+  for (const ViewPair& views : expected.missing) {
+    if (named.count(views) > 0) continue;
+    const std::set<ViewId> side = cuts.SideOf(views.first, views.second);
+    if (side.empty()) continue;
     ReliabilityWarning warning;
-    warning.missing = Across(expected.missing, *side);
+    warning.missing = PairsAcross(expected.missing, side);
     if (warning.missing.size() < kMinMissing ||
-        warning.missing.size() <= Across(expected.found, *side).size()) {
+        warning.missing.size() <= PairsAcross(expected.found, side).size()) {
       continue;
     }
+    named.insert(warning.missing.begin(), warning.missing.end());
     warning.reason = WarningReason::kMissingMatches;
-    warning.views = SmallerSide(graph, *side);
-    if (2 * warning.views.size() + 1 >= graph.views().size()) {
-      warning.views = graph.views();
+    warning.views = SmallerSide(graph, side);
+    std::vector<ViewId> all = ComponentOf(graph, views.first);
+    if (2 * warning.views.size() + 1 >= all.size()) {
+      warning.views = std::move(all);
     }
     warnings.push_back(std::move(warning));
   }

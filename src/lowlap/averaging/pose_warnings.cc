@@ -30,6 +30,14 @@ class Writer {
     return list;
   }
 
+  // The first of what may be many.
+  std::string SomePairs(const std::vector<ViewPair>& pairs) const {
+    constexpr std::size_t kMaxNamed = 5;
+    if (pairs.size() <= kMaxNamed) return Pairs(pairs);
+    return Pairs({pairs.begin(), pairs.begin() + kMaxNamed}) + ", and " +
+           std::to_string(pairs.size() - kMaxNamed) + " more";
+  }
+
   std::string Triplets(const std::vector<ViewTriplet>& triplets) const {
     std::string list;
     for (const ViewTriplet& views : triplets) {
@@ -60,7 +68,7 @@ class Writer {
       case WarningReason::kLostFeatures:
         return ": " + Format("%.0f", 100 * doubt.share) + " % fits";
       case WarningReason::kMissingMatches:
-        return ": " + Pairs(doubt.missing);
+        return ": " + SomePairs(doubt.missing);
       case WarningReason::kImprecise:
         return ": a standard deviation of " +
                Format("%.1f", 100 * doubt.share) + " % of the scene's size";
@@ -93,8 +101,9 @@ std::string CauseOf(WarningReason reason) {
     case WarningReason::kLostFeatures:
       return "most of what was matched in them does not fit their places";
     case WarningReason::kMissingMatches:
-      return "at their places they should see what others see, and yet they "
-             "were compared with these in vain, as where two places look alike";
+      return "at their places they, or views beside them, should see what "
+             "others see, and were compared with these in vain: two places may "
+             "look alike";
     case WarningReason::kImprecise:
       return "by their deviations they may be off by more than is promised of "
              "firm ones";

@@ -114,7 +114,7 @@ const std::vector<ContentKind>& ContentKinds() {
        }},
       {Content::kRelativePoses, "relative poses",
        [](const Scene& scene) { return scene.relative_poses.size(); }},
-      {Content::kUnrelatedPairs, "pairs without a relative pose",
+      {Content::kUnrelatedPairs, "pairs compared in vain",
        [](const Scene& scene) { return scene.unrelated_pairs.size(); }},
       {Content::kPoseEvidence, "NFAs of relative poses",
        [](const Scene& scene) {

@@ -65,9 +65,9 @@ struct UnrelatedView {
 
 /// From photographs to measurements: detects features in the images of all
 /// views (Scene::ImagePath), matches the selected pairs, and fills
-/// scene->features, relative_poses and tracks, with the intrinsics that the
-/// scene has. Features that no inlier uses are dropped, so that the scene stays
-/// small. Returns what became of every pair.
+/// scene->features, relative_poses, unrelated_pairs and tracks, with the
+/// intrinsics that the scene has. Features that no inlier uses are dropped, so
+/// that the scene stays small. Returns what became of every pair.
 ///
 /// An image that fails is left out with its pairs, with a warning; the first
 /// error is returned if fewer than two are left. The result depends neither on

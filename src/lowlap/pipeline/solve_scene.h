@@ -143,8 +143,8 @@ Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
 /// features, views without intrinsics), or the adjustment finds no solution,
 /// the poses stay as they are, with a warning in the log. The doubts about
 /// views (PoseSummary::reliability_warnings) become those in the light of the
-/// adjustment (FindReliabilityWarnings), of the structure (FindLostFeatures)
-/// and of the stated deviations (FindImpreciseViews).
+/// adjustment (FindReliabilityWarnings), of the structure (FindLostFeatures,
+/// FindMissingMatches) and of the stated deviations (FindImpreciseViews).
 Status FinishSolution(Scene* scene, const SolveOptions& options,
                       const RunContext& context, StageLog* stages,
                       SolveResult* result);

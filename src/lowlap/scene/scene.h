@@ -52,9 +52,10 @@ struct Scene {
 
   std::map<ViewId, ViewFeatures> features;
   std::map<ViewPair, RelativePose> relative_poses;  // first < second
-  /// Ascending, first < second: pairs that were compared, and of which no
-  /// matches gave a relative pose. Those that differ by a rotation only, or
-  /// whose relative pose was dropped, are none: things are seen in both.
+  /// Ascending, first < second: pairs that were compared in vain. No motion is
+  /// meaningful, or what repeats within the photographs alone bears one out.
+  /// Those that differ by a rotation only, or whose relative pose was dropped,
+  /// are none: things are seen in both.
   std::vector<ViewPair> unrelated_pairs;
   std::map<PointTrackId, Track> point_tracks;
   std::map<LineTrackId, Track> line_tracks;

@@ -9,7 +9,7 @@ namespace lowlap {
 /// (times the logarithm of the number of views):
 /// - every id refers to something: a view's intrinsic (unless kInvalidId), the
 ///   views, features and segments of relative poses, tracks, landmarks and
-///   ratios, the views of pairs without a relative pose, the relative poses of
+///   ratios, the views of unrelated pairs, the relative poses of
 ///   a ratio, the lines of a coplanar pair; every intrinsic and pose is used by
 ///   a view (OpenMVG refuses a file otherwise);
 /// - numbers are finite, rotations are rotations and directions are unit (to

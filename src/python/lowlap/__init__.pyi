@@ -255,6 +255,7 @@ class ReliabilityWarning:
     views: List[int]
     against: List[Pair]
     untold: List[Pair]
+    missing: List[Pair]
     ratios: List[Triplet]
     share: float
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <set>
 #include <utility>
 
@@ -14,7 +13,6 @@
 namespace lowlap {
 namespace {
 
-constexpr int kMaxWays = 8;
 /// Turns are the same up to this, where the solution is bent elsewhere.
 const double kSameTurnRad = RadFromDeg(6);
 constexpr double kSameTurnReach = 3;
@@ -67,17 +65,11 @@ double MostAcross(const RejectedPoses& rejected, const std::set<ViewId>& side,
 void AddPoseContests(const ViewGraph& graph, const EvidenceOfPairs& in_use,
                      const RejectedPoses& rejected,
                      std::vector<Contest>* contests) {
-  EvidenceOfPairs one_each;
-  for (const auto& entry : in_use) one_each[entry.first] = 1;
-  LeastCut ways(graph, one_each), cuts(graph, in_use);
+  WeakCuts cuts(graph, in_use);
   std::set<std::set<ViewId>> sides;
   for (const auto& entry : rejected) {
-    const auto [first, second] = entry.first;
-    // Every search finds one more way where each pair takes one.
-    if (ways.SideOf(first, second, kMaxWays + 1).empty()) continue;
-    // Evidence may flow over one link from many ways.
-    const auto [side_entry, is_new] = sides.insert(
-        cuts.SideOf(first, second, std::numeric_limits<int>::max()));
+    const auto [side_entry, is_new] =
+        sides.insert(cuts.SideOf(entry.first.first, entry.first.second));
     const std::set<ViewId>& side = *side_entry;
     // Many pairs have the same cut.
     if (side.empty() || !is_new) continue;

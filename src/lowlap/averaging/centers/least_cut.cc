@@ -3,8 +3,19 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <utility>
 
 namespace lowlap {
+namespace {
+
+constexpr int kMaxWays = 8;
+
+EvidenceOfPairs OneEach(EvidenceOfPairs in_use) {
+  for (auto& entry : in_use) entry.second = 1;
+  return in_use;
+}
+
+}  // namespace
 
 LeastCut::LeastCut(const ViewGraph& graph, const EvidenceOfPairs& in_use)
     : views_(graph.views()), arcs_(views_.size()), into_(views_.size()) {
@@ -77,18 +88,32 @@ void LeastCut::FillWay(std::size_t to) {
   }
 }
 
+WeakCuts::WeakCuts(const ViewGraph& graph, const EvidenceOfPairs& in_use)
+    : ways_(graph, OneEach(in_use)), cuts_(graph, in_use) {}
+
+std::set<ViewId> WeakCuts::SideOf(ViewId from_view, ViewId to_view) {
+  // Every search finds one more way where each pair takes one.
+  if (ways_.SideOf(from_view, to_view, kMaxWays + 1).empty()) return {};
+  // Evidence may flow over one link from many ways.
+  return cuts_.SideOf(from_view, to_view, std::numeric_limits<int>::max());
+}
+
+std::vector<ViewId> ComponentOf(const ViewGraph& graph, ViewId view) {
+  for (std::vector<ViewId>& component : ConnectedComponents(graph)) {
+    if (std::binary_search(component.begin(), component.end(), view)) {
+      return std::move(component);
+    }
+  }
+  return {};
+}
+
 std::vector<ViewId> SmallerSide(const ViewGraph& graph,
                                 const std::set<ViewId>& side) {
-  for (const std::vector<ViewId>& component : ConnectedComponents(graph)) {
-    if (!std::binary_search(component.begin(), component.end(),
-                            *side.begin())) {
-      continue;
-    }
-    std::vector<ViewId> other;
-    std::set_difference(component.begin(), component.end(), side.begin(),
-                        side.end(), std::back_inserter(other));
-    if (other.size() < side.size()) return other;
-  }
+  const std::vector<ViewId> component = ComponentOf(graph, *side.begin());
+  std::vector<ViewId> other;
+  std::set_difference(component.begin(), component.end(), side.begin(),
+                      side.end(), std::back_inserter(other));
+  if (other.size() < side.size()) return other;
   return {side.begin(), side.end()};
 }
 

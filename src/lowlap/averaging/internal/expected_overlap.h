@@ -25,10 +25,12 @@ struct ExpectedOverlap {
 ///
 /// A view should see a landmark of another one that lies in its image, from a
 /// direction that differs by 30 degrees at most and a distance by a factor of
-/// two, so that features are found again, unless something stands before it: a
-/// fifth nearer is the median of its own five landmarks nearest to that cell of
-/// the image, of 16 times 16. Of a view 256 landmarks are looked at, evenly
-/// spaced in their order; a view with fewer than twenty says nothing.
+/// two, so that features are found again, where it observes landmarks of its
+/// own as far away, to a factor of two: else a bare wall may stand before it.
+/// That is the median of the five nearest to that cell of the image, of 16
+/// times 16, if they are within two cells of it. Of a view 256 landmarks are
+/// looked at, evenly spaced in their order; a view with fewer than twenty says
+/// nothing.
 class OverlapPredictor {
  public:
   /// `scene` must outlive this.
@@ -47,9 +49,9 @@ class OverlapPredictor {
     const Pose* pose;
     const Intrinsic* intrinsic;
     std::vector<SeenPoint> points;
-    std::vector<double> depths;  // of the cells, by rows
+    std::vector<double> depths;  // of the cells, by rows; NaN: not known
 
-    bool Hides(const Vec2& pixel_px, double depth) const;
+    bool SeesAt(const Vec2& pixel_px, double depth) const;
   };
   struct Counts {
     double share = 0, found = 0;

@@ -16,16 +16,20 @@ namespace lowlap {
 /// A pair is missing if it is one of Scene::unrelated_pairs, both cameras
 /// should see two fifths of what the other does (OverlapPredictor), and of that
 /// hardly anything is found in both: less than a tenth of what the median pair
-/// with a relative pose in use finds. Across the cut of least evidence between
-/// its two views (LeastCut), the pairs are counted that should share as much:
-/// if at least two are missing, and more than are not, the smaller side is
-/// named; both, where the other is hardly larger.
+/// with a relative pose that agrees finds. Across the cut of least evidence
+/// between its two views (WeakCuts), the pairs are counted that should share as
+/// much: if at least three are missing, and more than are not, the smaller side
+/// is named; both, where the other is hardly larger.
 ///
 /// Where the cameras are right, photographs that share as much are related, by
 /// a relative pose or by tracks through others, so that few missing pairs say
 /// much. A scene that does not say what was compared, or has no structure, has
 /// no warning. Cost: the pairs compared in vain and the relative poses, times
-/// 256 points, and a cut for each that is missing.
+/// 256 points, and a cut for each that is missing and across none that is
+/// named.
+///
+/// False matches of long tracks join these over the whole of two places, whose
+/// pairs then are not missing.
 std::vector<ReliabilityWarning> FindMissingMatches(const Scene& scene,
                                                    const PoseSummary& summary);
 

@@ -16,9 +16,11 @@ namespace lowlap {
 /// firm evidence and weak ratios. What measurements hardly tell may be told by
 /// the adjusted cameras: their directions and ratios with what is left open of
 /// them, what the structure predicts (FindPredictionEvidence), and weak ratios
-/// as they are measured between them. What nothing else doubts is doubted where
-/// its stated deviations ask for it (FindImpreciseViews). `scene` holds the
-/// solution, and is as it was in the end.
+/// as they are measured between them. Features that do not fit and matches that
+/// are missing make views doubtful (FindLostFeatures, FindMissingMatches). What
+/// nothing else doubts is doubted where its stated deviations ask for it
+/// (FindImpreciseViews). `scene` holds the solution, and is as it was in the
+/// end.
 ///
 /// Errors: those of EstimateScaleRatios.
 Status JudgeViews(Scene* scene,

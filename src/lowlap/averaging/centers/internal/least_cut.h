@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-#include "lowlap/averaging/centers/internal/contests.h"
+#include "lowlap/averaging/centers/internal/evidence.h"
 #include "lowlap/core/ids.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -41,6 +41,23 @@ class LeastCut {
   std::vector<Arc*> into_;
   std::vector<Arc*> used_;
 };
+
+/// Least cuts between views that little joins. Views that more than eight ways
+/// without a common pair join hang on none of these.
+class WeakCuts {
+ public:
+  /// As LeastCut.
+  WeakCuts(const ViewGraph& graph, const EvidenceOfPairs& in_use);
+
+  /// As LeastCut::SideOf; empty if more than eight ways join the two, too.
+  std::set<ViewId> SideOf(ViewId from_view, ViewId to_view);
+
+ private:
+  LeastCut ways_, cuts_;
+};
+
+/// The views that pairs join to one of the graph, in steps.
+std::vector<ViewId> ComponentOf(const ViewGraph& graph, ViewId view);
 
 /// The smaller side of the component that `side` is a part of.
 std::vector<ViewId> SmallerSide(const ViewGraph& graph,

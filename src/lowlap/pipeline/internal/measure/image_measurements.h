@@ -29,8 +29,8 @@ Result<ImageMeasurements> MatchImages(const Scene& scene,
                                       const RunContext& context,
                                       StageLog* stages);
 
-/// Fills scene->features, relative_poses and tracks, with the intrinsics that
-/// the scene has. Features that no inlier uses are dropped
+/// Fills scene->features, relative_poses, unrelated_pairs and tracks, with the
+/// intrinsics that the scene has. Features that no inlier uses are dropped
 /// (KeepMatchedFeatures), so that the scene stays small.
 Result<std::vector<PairReport>> RelatePairs(
     const ImageMeasurements& measurements, const MeasurementOptions& options,

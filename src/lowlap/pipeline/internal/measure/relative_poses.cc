@@ -221,16 +221,17 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
       });
   if (!done) return tl::unexpected<Error>(done.error());
 
-  scene->unrelated_pairs.clear();
+  std::vector<ViewPair> unrelated;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
-    if (!estimates[n].pose && !estimates[n].no_parallax) {
-      scene->unrelated_pairs.push_back(pairs[n]);
+    if (!estimates[n].geometry && given.count(pairs[n]) == 0) {
+      unrelated.push_back(pairs[n]);
     }
   }
   LOWLAP_RETURN_IF_ERROR(EstimateAgainWithoutCopies(
       *scene, pairs, matches, measurements, options, context, &estimates));
   DropWeakPoses(&estimates);
   scene->relative_poses.clear();
+  scene->unrelated_pairs = std::move(unrelated);
   std::vector<PairReport> reports;
   MatchesOfPairs lone_matches;
   for (std::size_t n = 0; n < pairs.size(); ++n) {
