@@ -89,8 +89,26 @@ TEST_F(ColmapDatabaseFile, EveryVersionGivesTheSame) {
     EXPECT_THAT(read.matches.at({1, 2}), ElementsAre(FeatureMatch{1, 0}));
     EXPECT_THAT(read.matches.at({1, 9}), ElementsAre(FeatureMatch{0, 2}));
     EXPECT_THAT(read.relative_poses, IsEmpty());
+    EXPECT_EQ(scene.unrelated_pairs, (std::vector<ViewPair>{{2, 9}}));
     EXPECT_THAT(read.notes, IsEmpty());
   }
+}
+
+// Not those of which verification left nothing, nor what has a pose of lines.
+TEST_F(ColmapDatabaseFile, PairsWithoutAMatchWereComparedInVain) {
+  ColmapDatabase file(Path(), Version::k3_8);
+  Fill(&file);
+  file.AddMatches(1, 2, {0, 0});
+  file.AddMatches(1, 9, {});
+  file.AddMatches(2, 9, {});
+  const std::string unset = PoseSql({0, 0, 0, 0}, {0, 0, 0});
+  file.AddGeometry(1, 2, {}, 0, unset);
+  file.AddGeometry(1, 9, {}, 0, unset);
+  file.AddGeometry(2, 9, {}, 2, PoseSql(kQuarterTurn, kStep));
+  EXPECT_EQ(Read().scene.unrelated_pairs, (std::vector<ViewPair>{{1, 9}}));
+  const auto scene = ReadScene(Path());
+  ASSERT_TRUE(scene.has_value()) << scene.error().ToString();
+  EXPECT_EQ(scene->unrelated_pairs, (std::vector<ViewPair>{{1, 9}}));
 }
 
 TEST_F(ColmapDatabaseFile, StoredPosesAreReadAndOnlyThose) {

@@ -303,6 +303,10 @@ TEST(EstimateRelativePoses, SayWhatWasComparedInVain) {
   EXPECT_TRUE(reports->at(2).no_parallax);
   EXPECT_EQ(scene.relative_poses.size(), 1u);
   EXPECT_EQ(scene.unrelated_pairs, (std::vector<ViewPair>{{0, 2}}));
+  // What is not compared again was compared by others, as COLMAP.
+  matches.erase({0, 2});
+  ASSERT_THAT(EstimateRelativePoses(&scene, matches, nullptr, {}, {}), IsOk());
+  EXPECT_EQ(scene.unrelated_pairs, (std::vector<ViewPair>{{0, 2}}));
 }
 
 TEST(EstimateRelativePoses, SayWhatRepeats) {

@@ -19,8 +19,9 @@ bool IsDatabase(const std::string& path);
 
 /// What a database of COLMAP holds, of any version.
 struct Database {
-  /// Views, intrinsics, and the keypoints as the points of the views. Ids are
-  /// those of the database.
+  /// Views, intrinsics, the keypoints as the points of the views, and, as
+  /// unrelated, the pairs with a row that holds no match. Ids are those of the
+  /// database.
   Scene scene;
   /// Of every pair that has any, first < second: the matches that COLMAP's
   /// verification kept (two_view_geometries), or those before it (matches)

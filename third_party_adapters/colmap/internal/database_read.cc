@@ -37,6 +37,7 @@ class DatabaseReader {
     for (const char* table : {"inlier_matches", "two_view_geometries"}) {
       if (sqlite_.HasTable(table)) ReadGeometries(table);
     }
+    FindUnrelatedPairs();
     AddNotes();
     return std::move(database_);
   }
@@ -142,8 +143,15 @@ class DatabaseReader {
     while (row.Step()) {
       const auto views = Views(row);
       if (!views) continue;
-      auto matches = Matches(row, *views);
-      if (!matches.empty()) database_.matches[*views] = std::move(matches);
+      TakeMatches(*views, Matches(row, *views));
+    }
+  }
+
+  void TakeMatches(const ViewPair& views, std::vector<FeatureMatch> matches) {
+    if (matches.empty()) {
+      without_match_.insert(views);
+    } else {
+      database_.matches[views] = std::move(matches);
     }
   }
 
@@ -163,13 +171,24 @@ class DatabaseReader {
       if (config == kWatermark) {
         ++num_watermarks_;
         database_.matches.erase(*views);
+        without_match_.erase(*views);
         continue;
       }
       auto matches = Matches(row, *views);
       if (config == kDegenerate) continue;
       // Also one of lines alone, which has no matches here.
       ReadPose(row, *views, matches);
-      if (!matches.empty()) database_.matches[*views] = std::move(matches);
+      TakeMatches(*views, std::move(matches));
+    }
+  }
+
+  // COLMAP has a row for each pair that it compared.
+  void FindUnrelatedPairs() {
+    for (const ViewPair& views : without_match_) {
+      if (database_.matches.count(views) == 0 &&
+          database_.relative_poses.count(views) == 0) {
+        database_.scene.unrelated_pairs.push_back(views);
+      }
     }
   }
 
@@ -226,6 +245,7 @@ class DatabaseReader {
   std::map<std::uint32_t, Camera> cameras_;
   std::set<std::uint32_t> guessed_;
   std::set<std::pair<std::uint32_t, std::uint32_t>> unknown_;
+  std::set<ViewPair> without_match_;  // in one of the tables
   std::size_t num_watermarks_ = 0;
 };
 

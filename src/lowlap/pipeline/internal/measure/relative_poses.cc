@@ -222,11 +222,15 @@ Result<std::vector<PairReport>> EstimateRelativePoses(
   if (!done) return tl::unexpected<Error>(done.error());
 
   std::vector<ViewPair> unrelated;
+  for (const ViewPair& pair : scene->unrelated_pairs) {
+    if (matches.count(pair) == 0) unrelated.push_back(pair);
+  }
   for (std::size_t n = 0; n < pairs.size(); ++n) {
     if (!estimates[n].geometry && given.count(pairs[n]) == 0) {
       unrelated.push_back(pairs[n]);
     }
   }
+  std::sort(unrelated.begin(), unrelated.end());
   LOWLAP_RETURN_IF_ERROR(EstimateAgainWithoutCopies(
       *scene, pairs, matches, measurements, options, context, &estimates));
   DropWeakPoses(&estimates);

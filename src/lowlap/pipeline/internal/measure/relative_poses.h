@@ -20,11 +20,13 @@ namespace lowlap {
 /// once more without matches that those of other pairs contradict
 /// (ExamineLoops) where a pose stands on such, then tracks. A match that holds
 /// a relative pose alone (TwoViewResult) is no inlier unless a third view sees
-/// it, too. Pairs that fail get no relative pose, those without a meaningful
-/// one are unrelated; the report says why, and pairs without parallax are named
-/// in the log. `detected` as in MeasureView, for all views; null: matches are
-/// all there is. Pairs of `given` are not estimated, but taken (TakePair):
-/// cam2_from_cam1.
+/// it, too.
+///
+/// Pairs that fail get no relative pose. Those without a meaningful one are
+/// unrelated, beside what the scene lists and `matches` does not; the report
+/// says why, and pairs without parallax are named in the log. `detected` as in
+/// MeasureView, for all views; null: matches are all there is. Pairs of `given`
+/// are not estimated, but taken (TakePair): cam2_from_cam1.
 ///
 /// The result does not depend on the number of threads.
 Result<std::vector<PairReport>> EstimateRelativePoses(
