@@ -169,8 +169,8 @@ INSTANTIATE_TEST_SUITE_P(
              "\"lowlap\": {}, \"root_path\"", ErrorCode::kParse, "$.lowlap",
              "\"version\" is missing"},
         Case{"OwnVersionUnknown", "\"root_path\"",
-             "\"lowlap\": {\"version\": 8}, \"root_path\"",
-             ErrorCode::kUnsupported, "$.lowlap.version", "version 8"}),
+             "\"lowlap\": {\"version\": 9}, \"root_path\"",
+             ErrorCode::kUnsupported, "$.lowlap.version", "version 9"}),
     kCaseName);
 
 // lowlap's part, damaged in the full scene.
