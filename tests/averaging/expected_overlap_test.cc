@@ -46,14 +46,13 @@ TEST(ExpectedOverlap, IsWhatLiesInTheOtherImage) {
   const ExpectedOverlap same = OverlapOf(SceneOfWall(0, SeesAll));
   EXPECT_EQ(same.share, 1);
   EXPECT_EQ(same.found, 1);
-  // View 1 would see columns beyond the wall, if there were any: it observes
-  // the left one, and the right half of it.
-  const ExpectedOverlap half =
+  // The left quarter of the wall is not in the image of view 1.
+  const ExpectedOverlap shifted =
       OverlapOf(SceneOfWall(3, [](std::uint32_t view, std::uint32_t column) {
         return view == 0 || column >= 5;
       }));
-  EXPECT_NEAR(half.share, 0.75, 0.02);
-  EXPECT_EQ(half.found, 1);
+  EXPECT_NEAR(shifted.share, 0.75, 0.02);
+  EXPECT_EQ(shifted.found, 1);
 }
 
 TEST(ExpectedOverlap, WhatIsNotFoundIsNoLessExpected) {

@@ -1,11 +1,12 @@
 #include "lowlap/averaging/internal/expected_overlap.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
+
+#include "lowlap/core/internal/median.h"
 
 namespace lowlap {
 namespace {
@@ -69,10 +70,11 @@ std::vector<double> DepthsOfCells(const Intrinsic& intrinsic,
         depths.push_back(std::numeric_limits<double>::quiet_NaN());
         continue;
       }
-      std::array<double, kNeighbors> nearest;
-      for (std::size_t n = 0; n < kNeighbors; ++n) nearest[n] = seen[n].depth;
-      std::sort(nearest.begin(), nearest.end());
-      depths.push_back(nearest[kNeighbors / 2]);
+      std::vector<double> nearest;
+      for (std::size_t n = 0; n < kNeighbors; ++n) {
+        nearest.push_back(seen[n].depth);
+      }
+      depths.push_back(Median(std::move(nearest)));
     }
   }
   return depths;

@@ -9,6 +9,7 @@
 #include "lowlap/averaging/centers/internal/evidence.h"
 #include "lowlap/averaging/centers/internal/least_cut.h"
 #include "lowlap/averaging/internal/expected_overlap.h"
+#include "lowlap/core/internal/median.h"
 #include "lowlap/scene/view_graph.h"
 
 namespace lowlap {
@@ -18,20 +19,12 @@ constexpr double kMinShare = 0.4;
 constexpr double kHardlyFound = 0.1;
 constexpr std::size_t kMinMissing = 3;
 
-// Of placed views; what contradicts the solution joins nothing.
-EvidenceOfPairs AgreeingPoses(const Scene& scene, const PoseSummary& summary) {
-  std::set<ViewPair> left_out;
-  for (const auto* edges : {&summary.outlier_edges, &summary.kept_outliers}) {
-    for (const OutlierEdge& edge : *edges) left_out.insert(edge.views);
-  }
-  EvidenceOfPairs in_use;
-  for (const auto& [views, pose] : scene.relative_poses) {
-    if (left_out.count(views) == 0 && scene.FindPose(views.first) != nullptr &&
-        scene.FindPose(views.second) != nullptr) {
-      in_use[views] = EvidenceOfNfa(pose.log10_nfa);
-    }
-  }
-  return in_use;
+// Placed views, and the relative poses that agree with their places.
+ViewGraph AgreeingPoses(const Scene& scene, const PoseSummary& summary) {
+  return ViewGraph(scene)
+      .WithoutPairs(PairsOf(summary.outlier_edges))
+      .WithoutPairs(PairsOf(summary.kept_outliers))
+      .WithoutViews(summary.unplaced);
 }
 
 // Pairs that should see the same things.
@@ -39,27 +32,27 @@ struct ExpectedPairs {
   std::vector<ViewPair> found, missing;
 };
 
-ExpectedPairs FindExpectedPairs(const Scene& scene,
-                                const EvidenceOfPairs& in_use) {
+ExpectedPairs FindExpectedPairs(const Scene& scene, const ViewGraph& agreeing) {
   const OverlapPredictor predictor(scene);
+  const auto overlap_of = [&](const ViewPair& views) {
+    auto overlap = predictor.Between(views.first, views.second);
+    if (overlap && overlap->share < kMinShare) overlap.reset();
+    return overlap;
+  };
   ExpectedPairs pairs;
-  std::vector<double> usual;
-  for (const auto& entry : in_use) {
-    const ViewPair& views = entry.first;
-    const auto overlap = predictor.Between(views.first, views.second);
-    if (!overlap || overlap->share < kMinShare) continue;
-    pairs.found.push_back(views);
-    usual.push_back(overlap->found);
+  std::vector<double> found;
+  for (const ViewPair& views : agreeing.pairs()) {
+    if (const auto overlap = overlap_of(views)) {
+      pairs.found.push_back(views);
+      found.push_back(overlap->found);
+    }
   }
-  if (usual.empty()) return pairs;
-  const auto median =
-      usual.begin() + static_cast<std::ptrdiff_t>(usual.size() / 2);
-  std::nth_element(usual.begin(), median, usual.end());
+  const double usual = Median(std::move(found));
   for (const ViewPair& views : scene.unrelated_pairs) {
-    const auto overlap = predictor.Between(views.first, views.second);
-    if (!overlap || overlap->share < kMinShare) continue;
-    (overlap->found < kHardlyFound * *median ? pairs.missing : pairs.found)
-        .push_back(views);
+    if (const auto overlap = overlap_of(views)) {
+      (overlap->found < kHardlyFound * usual ? pairs.missing : pairs.found)
+          .push_back(views);
+    }
   }
   return pairs;
 }
@@ -79,11 +72,12 @@ std::vector<ViewPair> PairsAcross(const std::vector<ViewPair>& pairs,
 std::vector<ReliabilityWarning> FindMissingMatches(const Scene& scene,
                                                    const PoseSummary& summary) {
   if (scene.unrelated_pairs.empty() || scene.structure.empty()) return {};
-  const EvidenceOfPairs in_use = AgreeingPoses(scene, summary);
-  const ExpectedPairs expected = FindExpectedPairs(scene, in_use);
-  std::vector<ViewPair> pairs;
-  for (const auto& entry : in_use) pairs.push_back(entry.first);
-  const ViewGraph graph(std::move(pairs));
+  const ViewGraph graph = AgreeingPoses(scene, summary);
+  const ExpectedPairs expected = FindExpectedPairs(scene, graph);
+  EvidenceOfPairs in_use;
+  for (const ViewPair& views : graph.pairs()) {
+    in_use[views] = EvidenceOfNfa(scene.relative_poses.at(views).log10_nfa);
+  }
   WeakCuts cuts(graph, in_use);
   std::vector<ReliabilityWarning> warnings;
   std::set<ViewPair> named;

@@ -28,8 +28,8 @@ namespace lowlap {
 /// 256 points, and a cut for each that is missing and across none that is
 /// named.
 ///
-/// False matches of long tracks join these over the whole of two places, whose
-/// pairs then are not missing.
+/// Enough false matches between long tracks join these over the whole of two
+/// places: their pairs then are not missing.
 std::vector<ReliabilityWarning> FindMissingMatches(const Scene& scene,
                                                    const PoseSummary& summary);
 
