@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "lowlap/averaging/reliability_warning.h"
 #include "lowlap/averaging/scene_poses.h"
 #include "lowlap/scene/scene.h"
 

@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "lowlap/averaging/scene_poses.h"
+#include "lowlap/averaging/reliability_warning.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {

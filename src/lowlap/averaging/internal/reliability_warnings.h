@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "lowlap/averaging/internal/solution_agreement.h"
+#include "lowlap/averaging/reliability_warning.h"
 #include "lowlap/averaging/scene_poses.h"
 #include "lowlap/core/ids.h"
 #include "lowlap/scene/scene.h"
