@@ -93,6 +93,35 @@ bool HasImagesInSubfolders(const std::string& folder) {
   return false;
 }
 
+// The images of the folder that are not excluded, two at least.
+Result<std::vector<std::string>> ListTaken(
+    const std::string& folder, const std::vector<std::string>& excluded,
+    std::vector<std::string>* notes) {
+  LOWLAP_ASSIGN_OR_RETURN(auto names, ListImages(folder));
+  for (const std::string& name : excluded) {
+    const auto kept = std::remove_if(
+        names.begin(), names.end(),
+        [&](const auto& filename) { return NameFits(name, filename); });
+    if (kept == names.end()) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       "no image '" + name + "' to exclude", folder);
+    }
+    names.erase(kept, names.end());
+  }
+  const std::string left_out = HasImagesInSubfolders(folder)
+                                   ? "photographs in subfolders are not taken"
+                                   : "";
+  if (names.size() < 2) {
+    return MakeError(ErrorCode::kInsufficientData,
+                     "at least two images are needed, found " +
+                         std::to_string(names.size()) +
+                         (left_out.empty() ? "" : "; " + left_out),
+                     folder);
+  }
+  if (!left_out.empty()) notes->push_back(left_out);
+  return names;
+}
+
 Intrinsic WithFocal(double focal_px, const ImageSize& size) {
   Intrinsic intrinsic;
   intrinsic.width_px = size.width_px;
@@ -126,19 +155,49 @@ int CommonNames(const fs::path& a, const fs::path& b) {
   return static_cast<int>(ends.first - in_a.rbegin());
 }
 
-// The ids of the intrinsics in a scene that images are to have.
+// What an image is to have, before it is fitted to it.
+struct GivenIntrinsic {
+  Intrinsic intrinsic;
+  IntrinsicId id = kInvalidId;  // in IntrinsicSource::scene
+};
+
 class IntrinsicsOfImages {
  public:
-  explicit IntrinsicsOfImages(const Scene& scene) : scene_(scene) {
-    for (const auto& [id, view] : scene.views) {
-      if (scene.FindIntrinsic(id) != nullptr) {
+  // `common`: CommonIntrinsic.
+  IntrinsicsOfImages(const IntrinsicSource& source,
+                     const std::optional<Intrinsic>& common)
+      : source_(source), common_(common) {
+    if (!source.scene) return;
+    for (const auto& [id, view] : source.scene->views) {
+      if (source.scene->FindIntrinsic(id) != nullptr) {
         views_[fs::path(view.filename).filename().string()].push_back(&view);
       }
     }
   }
 
+  Result<GivenIntrinsic> Find(const std::string& path, const ImageSize& size) {
+    GivenIntrinsic given;
+    if (source_.scene) {
+      LOWLAP_ASSIGN_OR_RETURN(given.id, IdInScene(path));
+      given.intrinsic = source_.scene->intrinsics.at(given.id);
+    } else if (common_) {
+      const bool stands = (size.height_px > size.width_px) !=
+                          (common_->height_px > common_->width_px);
+      given.intrinsic = source_.focal_px && stands
+                            ? *Turned(*common_, QuarterTurn::kClockwise)
+                            : *common_;
+    } else {
+      LOWLAP_ASSIGN_OR_RETURN(given.intrinsic, FromExif(path, size));
+    }
+    return given;
+  }
+
+  // Images that the scene does not list, and that have its only intrinsic.
+  int num_unlisted() const { return num_unlisted_; }
+
+ private:
   // Of views of one file name those count whose folders fit best.
-  Result<IntrinsicId> Find(const std::string& path) {
+  Result<IntrinsicId> IdInScene(const std::string& path) {
     const auto named = views_.find(fs::path(path).filename().string());
     if (named == views_.end()) return TheOnlyOne(path);
     const View* best = nullptr;
@@ -160,20 +219,18 @@ class IntrinsicsOfImages {
     return best->intrinsic_id;
   }
 
-  // Images that the scene does not list, and that have its only intrinsic.
-  int num_unlisted() const { return num_unlisted_; }
-
- private:
   Result<IntrinsicId> TheOnlyOne(const std::string& path) {
-    if (scene_.intrinsics.size() != 1) {
+    const auto& intrinsics = source_.scene->intrinsics;
+    if (intrinsics.size() != 1) {
       return MakeError(ErrorCode::kInvalidArgument,
                        "the given scene has no intrinsic for this image", path);
     }
     ++num_unlisted_;
-    return scene_.intrinsics.begin()->first;
+    return intrinsics.begin()->first;
   }
 
-  const Scene& scene_;
+  const IntrinsicSource& source_;
+  const std::optional<Intrinsic>& common_;
   std::map<std::string, std::vector<const View*>> views_;  // by file name
   int num_unlisted_ = 0;
 };
@@ -233,31 +290,9 @@ Result<Scene> SceneFromImages(const std::string& folder,
                      "give one of a calibration matrix, a focal length, and a "
                      "scene with intrinsics");
   }
-  LOWLAP_ASSIGN_OR_RETURN(auto names, ListImages(folder));
-  for (const std::string& name : excluded) {
-    const auto kept = std::remove_if(
-        names.begin(), names.end(),
-        [&](const auto& filename) { return NameFits(name, filename); });
-    if (kept == names.end()) {
-      return MakeError(ErrorCode::kInvalidArgument,
-                       "no image '" + name + "' to exclude", folder);
-    }
-    names.erase(kept, names.end());
-  }
   std::vector<std::string> unused;
   if (notes == nullptr) notes = &unused;
-  const std::string left_out = HasImagesInSubfolders(folder)
-                                   ? "photographs in subfolders are not taken"
-                                   : "";
-  if (names.size() < 2) {
-    return MakeError(ErrorCode::kInsufficientData,
-                     "at least two images are needed, found " +
-                         std::to_string(names.size()) +
-                         (left_out.empty() ? "" : "; " + left_out),
-                     folder);
-  }
-  if (!left_out.empty()) notes->push_back(left_out);
-
+  LOWLAP_ASSIGN_OR_RETURN(const auto names, ListTaken(folder, excluded, notes));
   std::vector<std::string> paths;
   std::vector<ImageSize> sizes;
   for (const std::string& name : names) {
@@ -268,48 +303,32 @@ Result<Scene> SceneFromImages(const std::string& folder,
   LOWLAP_ASSIGN_OR_RETURN(const auto common,
                           CommonIntrinsic(intrinsics, paths, sizes, notes));
 
-  std::optional<IntrinsicsOfImages> given_for;
-  if (intrinsics.scene) given_for.emplace(*intrinsics.scene);
+  IntrinsicsOfImages of_images(intrinsics, common);
   Scene scene;
   scene.root_path = folder;
   for (std::size_t n = 0; n < names.size(); ++n) {
-    const std::string& name = names[n];
-    Result<Intrinsic> given;
-    IntrinsicId wanted = kInvalidId;
-    if (intrinsics.scene) {
-      LOWLAP_ASSIGN_OR_RETURN(const auto id, given_for->Find(paths[n]));
-      wanted = id;
-      given = intrinsics.scene->intrinsics.at(id);
-    } else if (common) {
-      given = *common;
-      const bool stands = (sizes[n].height_px > sizes[n].width_px) !=
-                          (given->height_px > given->width_px);
-      if (intrinsics.focal_px && stands) {
-        given = *Turned(*given, QuarterTurn::kClockwise);
-      }
-    } else {
-      given = FromExif(paths[n], sizes[n]);
-    }
-    if (!given) return tl::unexpected<Error>(given.error());
-    LOWLAP_ASSIGN_OR_RETURN(const auto fitted,
-                            FitToPhotograph(*given, paths[n], sizes[n]));
+    LOWLAP_ASSIGN_OR_RETURN(const auto given,
+                            of_images.Find(paths[n], sizes[n]));
+    LOWLAP_ASSIGN_OR_RETURN(
+        const auto fitted,
+        FitToPhotograph(given.intrinsic, paths[n], sizes[n]));
     if (const Status valid = fitted.intrinsic.Validate(); !valid) {
       return MakeError(valid.error().code, valid.error().message, paths[n]);
     }
     if (!fitted.change.empty()) {
-      notes->push_back(name + ": the calibration was " + fitted.change);
+      notes->push_back(names[n] + ": the calibration was " + fitted.change);
     }
     View view;
-    view.filename = name;
+    view.filename = names[n];
     view.width_px = sizes[n].width_px;
     view.height_px = sizes[n].height_px;
-    view.intrinsic_id = Add(fitted.intrinsic, wanted, &scene);
+    view.intrinsic_id = Add(fitted.intrinsic, given.id, &scene);
     view.pose_id = static_cast<PoseId>(n);
     scene.views[static_cast<ViewId>(n)] = view;
   }
-  if (given_for && given_for->num_unlisted() > 0) {
+  if (of_images.num_unlisted() > 0) {
     notes->push_back("the given scene does not list " +
-                     std::to_string(given_for->num_unlisted()) +
+                     std::to_string(of_images.num_unlisted()) +
                      " of the photographs: they have its only intrinsic");
   }
   if (auto note = ImplausibleFocals(scene)) notes->push_back(std::move(*note));

@@ -16,9 +16,7 @@
 #include "lowlap/two_view/internal/evidence/repeat_evidence.h"
 #include "lowlap/two_view/internal/evidence/translation_evidence.h"
 #include "lowlap/two_view/internal/other_copies.h"
-#include "lowlap/two_view/internal/planes/motion_lead.h"
-#include "lowlap/two_view/internal/planes/parallax_evidence.h"
-#include "lowlap/two_view/internal/planes/planar_motion.h"
+#include "lowlap/two_view/internal/planes/planar_decision.h"
 #include "lowlap/two_view/internal/search/pose_from_search.h"
 #include "lowlap/two_view/internal/search/pose_search.h"
 #include "lowlap/two_view/internal/search/refine_relative_pose.h"
@@ -28,9 +26,6 @@
 namespace lowlap {
 namespace {
 
-/// A plane that holds this share of the inliers may be all that speaks for the
-/// motion, and is worth a second one.
-constexpr double kPlaneShare = 0.5;
 /// In which matches of other copies are left out.
 constexpr int kMaxRounds = 3;
 /// What does not repeat corrects a motion that explains most of it, and that
@@ -74,30 +69,6 @@ Status ValidateInput(const TwoViewInput& input) {
     }
   }
   return {};
-}
-
-std::optional<ScenePlane> DominantPlaneOf(const PoseCandidate& candidate,
-                                          const PointPairs& pairs,
-                                          Random& random) {
-  return DominantPlane(candidate.pose, pairs, candidate.inliers,
-                       candidate.support.threshold, random);
-}
-
-bool HoldsMost(const ScenePlane& plane, const PoseCandidate& candidate) {
-  return static_cast<double>(plane.inliers.size()) >=
-         kPlaneShare * static_cast<double>(candidate.inliers.size());
-}
-
-/// The other explanation of a scene whose points lie mostly on `plane`.
-std::optional<PoseCandidate> PlanarAlternative(const PoseSearch& search,
-                                               const PointPairs& pairs,
-                                               const PoseCandidate& candidate,
-                                               const ScenePlane& plane) {
-  if (!HoldsMost(plane, candidate)) return std::nullopt;
-  const std::optional<RigidTransform> motion = OtherPlanarMotion(
-      candidate.pose, plane.normal, pairs.x1[plane.inliers.front()]);
-  if (!motion) return std::nullopt;
-  return search.Finish(*motion);
 }
 
 // The other candidates that are meaningful.
@@ -167,6 +138,21 @@ std::vector<int> TheRest(const std::vector<int>& indices, int count) {
   return rest;
 }
 
+// An error unless chance does not explain the best candidate.
+Status ValidateBest(const std::vector<PoseCandidate>& candidates,
+                    const PointPairs& pairs) {
+  if (!candidates.empty() && candidates.front().IsMeaningful()) return {};
+  return MakeError(
+      ErrorCode::kInsufficientData,
+      "relative pose: no motion explains the " + std::to_string(pairs.size()) +
+          " points and crossings of lines better than chance" +
+          (candidates.empty()
+               ? ""
+               : " (log10 NFA " +
+                     Format("%.1f", candidates.front().support.log10_nfa) +
+                     ")"));
+}
+
 // Of the matches as they are.
 Result<TwoViewResult> EstimateFrom(const TwoViewInput& input,
                                    const ShuffledMatches& matches,
@@ -181,66 +167,27 @@ Result<TwoViewResult> EstimateFrom(const TwoViewInput& input,
   }
   TwoViewResult result;
   result.num_matches = pairs.size();
-  PoseSearch search(
-      pairs, CommonDirections(input, static_cast<int>(matches.pairs.size())),
-      SampsonLaw(input), options);
+  PoseSearch search(pairs, CommonDirections(input, pairs.size()),
+                    SampsonLaw(input), options);
   const std::vector<PoseCandidate> candidates =
       search.Search(random, result.num_samples);
-  std::optional<PoseCandidate> best;
-  if (!candidates.empty()) best = candidates.front();
-  if (!best || !best->IsMeaningful()) {
-    return MakeError(
-        ErrorCode::kInsufficientData,
-        "relative pose: no motion explains the " +
-            std::to_string(pairs.size()) +
-            " points and crossings of lines better than chance" +
-            (best ? " (log10 NFA " + Format("%.1f", best->support.log10_nfa) +
-                        ")"
-                  : ""));
-  }
-  std::optional<ScenePlane> plane = DominantPlaneOf(*best, pairs, random);
-  std::optional<PoseCandidate> other;
-  if (plane) other = PlanarAlternative(search, pairs, *best, *plane);
-  if (other) {
-    // Few matches may leave the other motion none in front of the cameras.
-    bool is_decided = true;
-    if (other->IsMeaningful()) {
-      std::optional<ScenePlane> plane_of_other =
-          DominantPlaneOf(*other, pairs, random);
-      const MotionLead lead =
-          CompareMotions(search, pairs, *best, *plane, *other,
-                         plane_of_other ? &*plane_of_other : nullptr);
-      is_decided = lead.IsDecisive();
-      if (lead.IsBehind()) {
-        std::swap(*best, *other);
-        std::swap(plane, plane_of_other);
-      }
-    }
-    // Where both are one motion, the better optimum of it is kept.
-    if (!SamePose(best->pose, other->pose)) {
-      result.geometry = is_decided ? TwoViewGeometry::kPlanar
-                                   : TwoViewGeometry::kAmbiguousPlane;
-    }
-  }
-  if (plane) {
-    result.num_plane_inliers = static_cast<int>(plane->inliers.size());
-  }
+  LOWLAP_RETURN_IF_ERROR(ValidateBest(candidates, pairs));
+  auto [best, plane, other, geometry] =
+      DecidePlanarMotion(search, pairs, candidates.front(), random);
   const TranslationEvidence translation =
-      TestTranslation(pairs, best->pose, best->inliers, best->support.threshold,
+      TestTranslation(pairs, best.pose, best.inliers, best.support.threshold,
                       PoseSearch::kMinThresholdPx);
   result.num_rotation_inliers = translation.num_rotation_inliers;
-  if (!translation.IsSeen()) {
-    result.geometry = TwoViewGeometry::kRotationOnly;
-  }
-  if (plane && HoldsMost(*plane, *best) &&
-      !(ParallaxEvidence(best->pose, *plane, pairs, best->support.threshold) <
-        0)) {
-    result.is_of_one_plane = true;
-    search.TieToPlane(*plane, &*best);
+  result.geometry =
+      translation.IsSeen() ? geometry : TwoViewGeometry::kRotationOnly;
+  if (plane) {
+    result.num_plane_inliers = static_cast<int>(plane->inliers.size());
+    result.is_of_one_plane = IsOfOnePlane(best, *plane, pairs);
+    if (result.is_of_one_plane) search.TieToPlane(*plane, &best);
   }
   result.pose =
-      PoseFromSearch(input, matches, search, *best, &result.lone_matches);
-  result.rivals = RivalsOf(*best, candidates);
+      PoseFromSearch(input, matches, search, best, &result.lone_matches);
+  result.rivals = RivalsOf(best, candidates);
   if (result.geometry == TwoViewGeometry::kAmbiguousPlane) {
     // What triplets and cycles may decide for does not widen this motion.
     RemoveSamePose(other->pose, &result.rivals);

@@ -79,85 +79,121 @@ void LogReconsidered(const ReconsideredPose& pose, const Scene& scene,
                          pose.rotation_deg));
 }
 
-}  // namespace
-
-Result<std::vector<ReconsideredPose>> ReconsiderPoses(
-    Scene* scene, const PoseOptions& options, const RunContext& context) {
-  const std::vector<ViewPair> pairs = PairsToAsk(*scene);
-  std::vector<ReconsideredPose> reconsidered;
-  if (pairs.empty()) return reconsidered;
-  PairInputs inputs(*scene);
-  LOWLAP_RETURN_IF_ERROR(inputs.FindDirections(pairs, context));
-  RotationPaths paths(
-      *scene, RadFromDeg(options.least_false_deg) / options.outlier_reach);
-  std::vector<Candidate> candidates;
-  candidates.reserve(pairs.size());
-  for (const ViewPair& views : pairs) {
-    candidates.push_back({views, std::nullopt, {}});
-  }
-  std::map<ViewPair, RelativePose> before;
-  for (bool changed = true; changed;) {
-    const Status done =
-        ParallelFor(context, "loops", candidates.size(), [&](std::size_t n) {
-          const auto prior = paths.Find(candidates[n].views);
-          if (SameRotation(prior, candidates[n].prior)) return;
-          candidates[n].prior = prior;
-          candidates[n].informed = {};
-          if (!prior) return;
-          const RelativePose& pose =
-              scene->relative_poses.at(candidates[n].views);
-          const auto input = inputs.Of(pose);
-          if (!input ||
-              PriorPenalty(prior->rotation, pose.rotation) < kLeastGainDigits) {
-            return;
-          }
-          InformedPose informed =
-              InformPose(*input, pose, prior->rotation,
-                         PairSeed(context.seed, candidates[n].views));
-          if (std::min(informed.gained_digits, informed.prior_digits) >=
-                  kLeastGainDigits &&
-              Agrees(informed.pose.rotation, paths.VarianceOf(informed.pose),
-                     prior->rotation)) {
-            candidates[n].informed = std::move(informed);
-          }
-        });
-    if (!done) {
-      for (auto& [views, pose] : before) {
-        scene->relative_poses.at(views) = std::move(pose);
-      }
-      return tl::unexpected<Error>(done.error());
+// The rounds in which pairs are asked and take another motion.
+class Reconsideration {
+ public:
+  Reconsideration(const std::vector<ViewPair>& pairs, const PairInputs& inputs,
+                  Scene* scene, const PoseOptions& options,
+                  const RunContext& context)
+      : inputs_(inputs),
+        scene_(*scene),
+        context_(context),
+        paths_(*scene,
+               RadFromDeg(options.least_false_deg) / options.outlier_reach) {
+    candidates_.reserve(pairs.size());
+    for (const ViewPair& views : pairs) {
+      candidates_.push_back({views, std::nullopt, {}});
     }
-    std::stable_sort(candidates.begin(), candidates.end(), GainsMore);
-    changed = false;
+  }
+
+  Result<std::vector<ReconsideredPose>> Run() {
+    do {
+      const Status asked =
+          ParallelFor(context_, "loops", candidates_.size(),
+                      [&](std::size_t n) { Ask(&candidates_[n]); });
+      if (!asked) {
+        TakeAllBack();
+        return tl::unexpected<Error>(asked.error());
+      }
+    } while (TakeThoseThatGain());
+    std::sort(taken_.begin(), taken_.end(),
+              [](const ReconsideredPose& a, const ReconsideredPose& b) {
+                return a.views < b.views;
+              });
+    return taken_;
+  }
+
+ private:
+  // What the pair gains by its prior, unless that is the one it had before.
+  void Ask(Candidate* candidate) const {
+    const auto prior = paths_.Find(candidate->views);
+    if (SameRotation(prior, candidate->prior)) return;
+    candidate->prior = prior;
+    candidate->informed = {};
+    if (!prior) return;
+    const RelativePose& pose = scene_.relative_poses.at(candidate->views);
+    const auto input = inputs_.Of(pose);
+    if (!input ||
+        PriorPenalty(prior->rotation, pose.rotation) < kLeastGainDigits) {
+      return;
+    }
+    InformedPose informed =
+        InformPose(*input, pose, prior->rotation,
+                   PairSeed(context_.seed, candidate->views));
+    if (std::min(informed.gained_digits, informed.prior_digits) >=
+            kLeastGainDigits &&
+        Agrees(informed.pose.rotation, paths_.VarianceOf(informed.pose),
+               prior->rotation)) {
+      candidate->informed = std::move(informed);
+    }
+  }
+
+  // Whether there were any. Of those on one another's paths only the one that
+  // gains most is taken.
+  bool TakeThoseThatGain() {
+    std::stable_sort(candidates_.begin(), candidates_.end(), GainsMore);
     std::set<ViewPair> involved;  // replaced, or on the path of what was
     std::vector<Candidate> left;
-    for (Candidate& candidate : candidates) {
+    for (Candidate& candidate : candidates_) {
       if (candidate.informed.gained_digits == 0 ||
           IsInvolved(candidate, involved)) {
         left.push_back(std::move(candidate));
         continue;
       }
-      changed = true;
       involved.insert(candidate.views);
       involved.insert(candidate.prior->path.begin(),
                       candidate.prior->path.end());
-      RelativePose& pose = scene->relative_poses.at(candidate.views);
-      const double turn_rad =
-          RotationAngleBetween(pose.rotation, candidate.informed.pose.rotation);
-      reconsidered.push_back({candidate.views, DegFromRad(turn_rad),
-                              candidate.informed.gained_digits});
-      LogReconsidered(reconsidered.back(), *scene, context);
-      paths.Replace(candidate.informed.pose);
-      before.emplace(candidate.views, std::move(pose));
-      pose = std::move(candidate.informed.pose);
+      Take(candidate.views, std::move(candidate.informed));
     }
-    candidates = std::move(left);
+    candidates_ = std::move(left);
+    return !involved.empty();
   }
-  std::sort(reconsidered.begin(), reconsidered.end(),
-            [](const ReconsideredPose& a, const ReconsideredPose& b) {
-              return a.views < b.views;
-            });
-  return reconsidered;
+
+  void Take(const ViewPair& views, InformedPose informed) {
+    RelativePose& pose = scene_.relative_poses.at(views);
+    const double turn_rad =
+        RotationAngleBetween(pose.rotation, informed.pose.rotation);
+    taken_.push_back({views, DegFromRad(turn_rad), informed.gained_digits});
+    LogReconsidered(taken_.back(), scene_, context_);
+    paths_.Replace(informed.pose);
+    before_.emplace(views, std::move(pose));
+    pose = std::move(informed.pose);
+  }
+
+  void TakeAllBack() {
+    for (auto& [views, pose] : before_) {
+      scene_.relative_poses.at(views) = std::move(pose);
+    }
+  }
+
+  const PairInputs& inputs_;
+  Scene& scene_;
+  const RunContext& context_;
+  RotationPaths paths_;
+  std::vector<Candidate> candidates_;  // that have taken nothing yet
+  std::vector<ReconsideredPose> taken_;
+  std::map<ViewPair, RelativePose> before_;
+};
+
+}  // namespace
+
+Result<std::vector<ReconsideredPose>> ReconsiderPoses(
+    Scene* scene, const PoseOptions& options, const RunContext& context) {
+  const std::vector<ViewPair> pairs = PairsToAsk(*scene);
+  if (pairs.empty()) return std::vector<ReconsideredPose>();
+  PairInputs inputs(*scene);
+  LOWLAP_RETURN_IF_ERROR(inputs.FindDirections(pairs, context));
+  return Reconsideration(pairs, inputs, scene, options, context).Run();
 }
 
 }  // namespace lowlap
