@@ -14,6 +14,16 @@ const char* PoseWeaknessName(PoseWeakness weakness) {
   return "";
 }
 
+RelativePose RelativePose::WithMotion(const AlternativeMotion& motion) const {
+  RelativePose result = *this;
+  result.rotation = motion.rotation;
+  result.direction = motion.direction;
+  result.log10_nfa = motion.log10_nfa;
+  result.covariance = motion.covariance;
+  result.alternatives.clear();
+  return result;
+}
+
 bool operator==(const RelativePose& a, const RelativePose& b) {
   return a.views == b.views && a.rotation == b.rotation &&
          a.direction == b.direction && a.point_inliers == b.point_inliers &&

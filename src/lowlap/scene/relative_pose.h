@@ -60,6 +60,13 @@ struct RelativePose {
   /// At unit baseline.
   RigidTransform Cam2FromCam1() const { return {rotation, direction}; }
 
+  /// Its own motion, as an alternative to another one.
+  AlternativeMotion AsAlternative() const {
+    return {rotation, direction, log10_nfa, covariance};
+  }
+  /// The pose with another motion and no alternatives.
+  RelativePose WithMotion(const AlternativeMotion& motion) const;
+
   friend bool operator==(const RelativePose& a, const RelativePose& b);
 };
 

@@ -165,15 +165,8 @@ std::size_t NumHypotheses(const RelativePose& pose) {
 }
 
 RelativePose WithHypothesis(const RelativePose& pose, std::size_t n) {
-  RelativePose result = pose;
-  result.alternatives.clear();
-  if (n == 0) return result;
-  const AlternativeMotion& motion = pose.alternatives[n - 1];
-  result.rotation = motion.rotation;
-  result.direction = motion.direction;
-  result.log10_nfa = motion.log10_nfa;
-  result.covariance = motion.covariance;
-  return result;
+  return pose.WithMotion(n == 0 ? pose.AsAlternative()
+                                : pose.alternatives[n - 1]);
 }
 
 double MotionSpread(const RelativePose& pose) {

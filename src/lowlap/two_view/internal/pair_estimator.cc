@@ -37,21 +37,6 @@ void AddMatches(const std::vector<FeatureMatch>& extra,
   std::sort(matches->begin(), matches->end());
 }
 
-AlternativeMotion MotionOf(const RelativePose& pose) {
-  return {pose.rotation, pose.direction, pose.log10_nfa, pose.covariance};
-}
-
-RelativePose WithHypothesis(const RelativePose& pose,
-                            const AlternativeMotion& other) {
-  RelativePose result = pose;
-  result.rotation = other.rotation;
-  result.direction = other.direction;
-  result.log10_nfa = other.log10_nfa;
-  result.covariance = other.covariance;
-  result.alternatives.clear();
-  return result;
-}
-
 // One motion refined; whether it is of one plane may be unknown.
 RelativePose ImproveMotion(const TwoViewInput& input, const RelativePose& pose,
                            std::optional<bool> is_of_one_plane,
@@ -77,11 +62,11 @@ RelativePose Improve(const TwoViewInput& input, const RelativePose& pose,
   };
   std::vector<AlternativeMotion> alternatives;
   for (const AlternativeMotion& other : pose.alternatives) {
-    const RelativePose before = WithHypothesis(pose, other);
+    const RelativePose before = pose.WithMotion(other);
     const RelativePose after =
         ImproveMotion(input, before, is_of_one_plane, options, nullptr);
     if (differs(after)) {
-      alternatives.push_back(MotionOf(after));
+      alternatives.push_back(after.AsAlternative());
     } else if (differs(before)) {
       alternatives.push_back(other);
     }
@@ -245,7 +230,7 @@ PairEstimate EstimatePair(const ViewPair& views, const ViewMeasurements& first,
   }
   RelativePose& pose = result->pose;
   for (const RelativePose& other : result->alternatives) {
-    pose.alternatives.push_back(MotionOf(other));
+    pose.alternatives.push_back(other.AsAlternative());
   }
   estimate.geometry = result->geometry;
   estimate.log10_nfa = pose.log10_nfa;

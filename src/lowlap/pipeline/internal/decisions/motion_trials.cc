@@ -16,10 +16,7 @@ namespace {
 RelativePose WithMotionFirst(const RelativePose& pose, std::size_t n) {
   RelativePose result = WithHypothesis(pose, n);
   result.alternatives = pose.alternatives;
-  if (n > 0) {
-    result.alternatives[n - 1] = {pose.rotation, pose.direction, pose.log10_nfa,
-                                  pose.covariance};
-  }
+  if (n > 0) result.alternatives[n - 1] = pose.AsAlternative();
   return result;
 }
 
