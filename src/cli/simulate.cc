@@ -32,8 +32,8 @@ Status CheckOptionsOfKind(const SyntheticOptions& options) {
     std::vector<Kind> kinds;
   };
   const std::vector<Kind> with_walls = {
-      Kind::kRoom,      Kind::kCorridor,     Kind::kRing, Kind::kPlanar,
-      Kind::kCollinear, Kind::kPureRotation, Kind::kTwins};
+      Kind::kRoom,   Kind::kCorridor,  Kind::kRing,         Kind::kHouse,
+      Kind::kPlanar, Kind::kCollinear, Kind::kPureRotation, Kind::kTwins};
   for (const auto& [option, is_given, kinds] : std::vector<OfKinds>{
            {"--off-line", options.off_line_m > 0, {Kind::kCollinear}},
            {"--twin-baseline", options.twin_baseline_m > 0, {Kind::kTwins}},
@@ -59,8 +59,8 @@ Result<int> RunSimulation(const SimulateFlags& flags) {
   if (!kind) {
     return MakeError(ErrorCode::kInvalidArgument,
                      "unknown kind of scene '" + flags.kind +
-                         "'; known: room, corridor, ring, cloud, planar, "
-                         "collinear, pure_rotation, twins");
+                         "'; known: room, corridor, ring, house, cloud, "
+                         "planar, collinear, pure_rotation, twins");
   }
   SyntheticOptions options = flags.options;
   options.kind = *kind;
@@ -102,8 +102,8 @@ void AddSimulate(CLI::App* program, Action* action) {
                                  "Make a synthetic scene whose truth is known");
   ShowDefaultsFromHereOn(command);
   AddOption(command, "--kind", flags->kind,
-            "room, corridor, ring, cloud; degenerate: planar, collinear, "
-            "pure_rotation, twins");
+            "room, corridor, ring, house, cloud; degenerate: planar, "
+            "collinear, pure_rotation, twins");
   AddOption(command, "-o,--output", flags->output, "Scene file to write")
       .Required();
   AddOption(command, "--truth", flags->truth,

@@ -117,8 +117,9 @@ TEST_P(EveryKind, WithoutNoiseEverythingIsExact) {
 INSTANTIATE_TEST_SUITE_P(
     All, EveryKind,
     ::testing::Values(SyntheticKind::kRoom, SyntheticKind::kCorridor,
-                      SyntheticKind::kRing, SyntheticKind::kCloud,
-                      SyntheticKind::kPlanar, SyntheticKind::kCollinear),
+                      SyntheticKind::kRing, SyntheticKind::kHouse,
+                      SyntheticKind::kCloud, SyntheticKind::kPlanar,
+                      SyntheticKind::kCollinear),
     [](const auto& kind) { return SyntheticKindName(kind.param); });
 
 TEST(Simulate, BaselinesAndRatiosAreThoseOfTheCentres) {

@@ -74,7 +74,7 @@ TEST(SyntheticOptions, EveryBadValueIsNamed) {
 TEST(SyntheticKind, NamesComeBack) {
   for (const SyntheticKind kind :
        {SyntheticKind::kRoom, SyntheticKind::kCorridor, SyntheticKind::kRing,
-        SyntheticKind::kCloud, SyntheticKind::kPlanar,
+        SyntheticKind::kHouse, SyntheticKind::kCloud, SyntheticKind::kPlanar,
         SyntheticKind::kCollinear, SyntheticKind::kPureRotation,
         SyntheticKind::kTwins}) {
     EXPECT_EQ(SyntheticKindFromName(SyntheticKindName(kind)), kind);

@@ -221,6 +221,45 @@ void AddRing(const SyntheticOptions& options, Random* random, World* world) {
   }
 }
 
+// Four sides on a parallelogram, which is the half turn of itself; the third
+// and the fourth are as the first and the second.
+void AddHouse(Random* random, World* world) {
+  const auto half_turned = [](const Vec3& p) {
+    return Vec3(-p.x(), p.y(), -p.z());
+  };
+  std::array<Vec3, 4> corner = {Vec3(-4, 1.4, -3), Vec3(4, 1.4, -3)};
+  for (int i = 0; i < 2; ++i) {
+    corner[i].x() += random->Uniform(-0.3, 0.3);
+    corner[i].z() += random->Uniform(-0.3, 0.3);
+    corner[i + 2] = half_turned(corner[i]);
+  }
+  const Vec3 up(0, -4, 0);
+  std::array<int, 4> side;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 along = corner[(i + 1) % 4] - corner[i];
+    const Vec3 middle = corner[i] + 0.5 * along;
+    side[i] = world->AddWall(corner[i], along, up, 2 * middle, 0.6);
+    if (i >= 2) world->walls[side[i]].alike_wall = side[i - 2];
+  }
+  for (int i = 0; i < 4; ++i) {
+    AddEdge(corner[i], corner[i] + up, side[i], side[(i + 3) % 4], world);
+  }
+}
+
+void AddHouseCameras(const SyntheticOptions& options, Random* random,
+                     World* world) {
+  const int n = options.num_views;
+  for (int i = 0; i < n; ++i) {
+    const double angle = LoopStep(n) * (i + random->Uniform(-0.15, 0.15));
+    const double size = random->Uniform(0.9, 1.1);
+    const Vec3 center(10 * size * std::cos(angle), random->Uniform(-0.4, 0.4),
+                      8.5 * size * std::sin(angle));
+    const Vec3 aim{random->Uniform(-1, 1), random->Uniform(-1, 0),
+                   random->Uniform(-1, 1)};
+    world->poses.push_back(LookAt(center, aim, Roll(random)));
+  }
+}
+
 void AddBoxes(double offset_m, World* world) {
   const std::size_t num_planes = world->planes.size();
   for (std::size_t n = 0; n < num_planes; ++n) {
@@ -311,6 +350,10 @@ World BuildLayout(const SyntheticOptions& options) {
       break;
     case SyntheticKind::kRing:
       AddRing(options, &random, &world);
+      break;
+    case SyntheticKind::kHouse:
+      AddHouse(&random, &world);
+      AddHouseCameras(options, &random, &world);
       break;
     case SyntheticKind::kPlanar:
       AddPlanar(options, &random, &world);

@@ -65,6 +65,22 @@ Track AddMatches(const std::map<ViewId, std::vector<FeatureIndex>>& features,
   return track;
 }
 
+// The tracks of features that look the same, which `tracks` has by feature.
+template <class Feature, class Id>
+std::vector<std::pair<Id, Id>> AlikeTracks(
+    const std::vector<Feature>& features,
+    const std::vector<std::vector<Id>>& tracks) {
+  std::vector<std::pair<Id, Id>> alike;
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    const int copy = features[i].alike;
+    if (copy <= static_cast<int>(i)) continue;
+    for (const Id first : tracks[i]) {
+      for (const Id second : tracks[copy]) alike.emplace_back(first, second);
+    }
+  }
+  return alike;
+}
+
 Vec2 Noisy(const Vec2& pixel, double noise_px, Random* random) {
   const double x = random->Gaussian(noise_px);
   const double y = random->Gaussian(noise_px);
@@ -107,6 +123,7 @@ void ObservePoints(const SyntheticOptions& options, const World& world,
                    SyntheticScene* synthetic) {
   Scene& scene = synthetic->scene;
   PointTrackId id = 0;
+  std::vector<std::vector<PointTrackId>> tracks(world.points.size());
   for (std::size_t i = 0; i < world.points.size(); ++i) {
     const Vec3& point = world.points[i].position;
     Random random(options.seed, kPointStream + i);
@@ -127,9 +144,11 @@ void ObservePoints(const SyntheticOptions& options, const World& world,
       scene.point_tracks[id] = AddMatches(features, sightings.matches,
                                           &RelativePose::point_inliers, &scene);
       if (!wrong) synthetic->true_points[id] = point;
+      tracks[i].push_back(id);
       ++id;
     }
   }
+  synthetic->alike_points = AlikeTracks(world.points, tracks);
 }
 
 void ObserveLines(const SyntheticOptions& options, const World& world,
@@ -138,6 +157,7 @@ void ObserveLines(const SyntheticOptions& options, const World& world,
                   SyntheticScene* synthetic) {
   Scene& scene = synthetic->scene;
   LineTrackId id = 0;
+  std::vector<std::vector<LineTrackId>> tracks(world.lines.size());
   for (std::size_t i = 0; i < world.lines.size(); ++i) {
     const WorldLine& line = world.lines[i];
     const Segment3 shape = {line.start, line.end};
@@ -162,9 +182,11 @@ void ObserveLines(const SyntheticOptions& options, const World& world,
       if (!wrong) {
         synthetic->true_lines[id] = {line.start, line.end, line.planes};
       }
+      tracks[i].push_back(id);
       ++id;
     }
   }
+  synthetic->alike_lines = AlikeTracks(world.lines, tracks);
 }
 
 }  // namespace lowlap

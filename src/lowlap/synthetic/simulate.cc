@@ -125,6 +125,7 @@ std::map<ViewPair, int> CountSeenTogether(
 SyntheticScene Build(const SyntheticOptions& options, double off_wall) {
   World world = BuildLayout(options);
   FillWalls(options, off_wall, &world);
+  if (options.alike_share > 0) MakeWallsAlike(options.alike_share, &world);
   const std::vector<Camera> cameras = BuildCameras(options, world);
   const auto views_of_points = ViewsOfPoints(world, cameras);
   const auto views_of_lines = ViewsOfLines(world, cameras);

@@ -9,10 +9,11 @@
 namespace lowlap {
 namespace {
 
-constexpr std::array<std::pair<SyntheticKind, const char*>, 8> kNames = {{
+constexpr std::array<std::pair<SyntheticKind, const char*>, 9> kNames = {{
     {SyntheticKind::kRoom, "room"},
     {SyntheticKind::kCorridor, "corridor"},
     {SyntheticKind::kRing, "ring"},
+    {SyntheticKind::kHouse, "house"},
     {SyntheticKind::kCloud, "cloud"},
     {SyntheticKind::kPlanar, "planar"},
     {SyntheticKind::kCollinear, "collinear"},
@@ -71,7 +72,8 @@ Status SyntheticOptions::Validate() const {
       {"wrong_line_share", wrong_line_share},
       {"wrong_direction_share", wrong_direction_share},
       {"wrong_pose_share", wrong_pose_share},
-      {"wrong_candidate_share", wrong_candidate_share}};
+      {"wrong_candidate_share", wrong_candidate_share},
+      {"alike_share", alike_share}};
   for (const auto& [name, value] : shares) {
     if (!(value >= 0 && value <= 1)) {
       return Invalid(std::string(name) + " must be in [0, 1]");

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lowlap/core/result.h"
@@ -17,6 +18,7 @@ enum class SyntheticKind {
   kRoom,      // a crooked box of 6 x 4.5 x 2.7 m, cameras on a loop inside it
   kCorridor,  // 5 m of walls per section; cameras walk along it and turn
   kRing,      // cameras on a circle look at boxes in its middle
+  kHouse,  // cameras walk around a house of 8 x 6 x 4 m, without surroundings
   kCloud,  // the room without walls: all is strewn over the space before them
   // Degenerate worlds:
   kPlanar,        // one wall and nothing else
@@ -25,15 +27,15 @@ enum class SyntheticKind {
   kTwins,         // the room, every odd view next to the one before it
 };
 
-/// "room", "corridor", "ring", "cloud", "planar", "collinear",
+/// "room", "corridor", "ring", "house", "cloud", "planar", "collinear",
 /// "pure_rotation", "twins".
 const char* SyntheticKindName(SyntheticKind kind);
 std::optional<SyntheticKind> SyntheticKindFromName(const std::string& name);
 
 struct SyntheticOptions {
   SyntheticKind kind = SyntheticKind::kRoom;
-  /// Views of a room or a ring are spread over its loop, but at most 30 degrees
-  /// apart: with less than 12 the loop stays open.
+  /// Views of a room, ring or house are spread over its loop, but at most 30
+  /// degrees apart: with less than 12 the loop stays open.
   int num_views = 12;
   /// Pairs of views with a relative pose: "chain", "cycle", "window:N" (at most
   /// N views apart), "loop:N" (the same, and the last views are next to the
@@ -50,6 +52,9 @@ struct SyntheticOptions {
   double off_line_m = 0.0;
   /// kTwins: distance of an odd view from the one before it, in metres.
   double twin_baseline_m = 0.0;
+  /// kHouse: the part of every side, from its left end, that looks the same as
+  /// that of the opposite side.
+  double alike_share = 0.0;
 
   /// How far the middle of every wall bows out: part of a cylinder, whose only
   /// lines are its rulings (upright ones on upright walls).
@@ -125,6 +130,10 @@ struct SyntheticScene {
   /// By track; a wrong track has no entry.
   std::map<PointTrackId, Vec3> true_points;
   std::map<LineTrackId, SyntheticLine> true_lines;
+  /// Tracks of two places that look the same (alike_share), which no match
+  /// joins: a half turn about the world's y axis carries one to the other.
+  std::vector<std::pair<PointTrackId, PointTrackId>> alike_points;
+  std::vector<std::pair<LineTrackId, LineTrackId>> alike_lines;
   /// n . X + d = 0 with |n| = 1, by plane id.
   std::vector<Vec4> planes;
 

@@ -20,6 +20,7 @@ struct Wall {
   double bulge = 0;             // SyntheticOptions::wall_bulge_m
   double box_offset = 0;        // SyntheticOptions::box_offset_m
   int box_plane = -1;           // of the box's front
+  int alike_wall = -1;          // of the same shape, what is there is here too
 
   Vec3 At(double a, double b) const { return origin + a * u + b * v; }
   /// The box covers the middle three fifths in both directions.
@@ -37,6 +38,7 @@ struct Wall {
 struct WorldPoint {
   Vec3 position = Vec3::Zero();
   int wall = 0;
+  int alike = -1;  // index of the point that looks the same
 };
 
 struct WorldLine {
@@ -44,6 +46,7 @@ struct WorldLine {
   Vec3 end = Vec3::Zero();
   int wall = 0;             // decides which cameras face it
   std::vector<int> planes;  // as SyntheticLine::planes
+  int alike = -1;           // index of the line that looks the same
 };
 
 /// What there is to see, and from where.
@@ -68,5 +71,9 @@ World BuildLayout(const SyntheticOptions& options);
 /// of the lines is moved off towards the cameras; for one seed, a greater share
 /// moves the same lines and more.
 void FillWalls(const SyntheticOptions& options, double off_wall, World* world);
+
+/// Replaces what is on the part `share` of the walls that have an `alike_wall`,
+/// from their origin along u, by what is there on that one.
+void MakeWallsAlike(double share, World* world);
 
 }  // namespace lowlap
