@@ -5,12 +5,19 @@
 
 #include <cstdint>
 #include <set>
+#include <vector>
 
 namespace lowlap {
 namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+
+std::vector<ReliabilityWarning> FindMissing(const Scene& scene,
+                                            const PoseSummary& summary) {
+  return FindMissingMatches(scene, summary,
+                            PredictOverlaps(scene, RunContext()).value());
+}
 
 constexpr std::uint32_t kViews = 8;
 
@@ -59,7 +66,7 @@ Scene SceneOfTwoWallsInOnePlace(const std::set<std::uint32_t>& elsewhere = {5,
 }
 
 TEST(MissingMatches, SpeakAgainstWhatJoinsTwoPlaces) {
-  const auto warnings = FindMissingMatches(SceneOfTwoWallsInOnePlace(), {});
+  const auto warnings = FindMissing(SceneOfTwoWallsInOnePlace(), {});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_EQ(warnings[0].reason, WarningReason::kMissingMatches);
   EXPECT_THAT(warnings[0].views, ElementsAre(5, 6, 7));
@@ -69,7 +76,7 @@ TEST(MissingMatches, SpeakAgainstWhatJoinsTwoPlaces) {
 
 TEST(MissingMatches, AreSaidOnceWhateverTheIds) {
   const auto warnings =
-      FindMissingMatches(SceneOfTwoWallsInOnePlace({1, 3, 5}, {4, 5}), {});
+      FindMissing(SceneOfTwoWallsInOnePlace({1, 3, 5}, {4, 5}), {});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_THAT(warnings[0].views, ElementsAre(1, 3, 5));
   EXPECT_EQ(warnings[0].missing.size(), 14u);
@@ -77,7 +84,7 @@ TEST(MissingMatches, AreSaidOnceWhateverTheIds) {
 
 TEST(MissingMatches, OfTwoLikeHalvesEitherMayBeWrong) {
   const auto warnings =
-      FindMissingMatches(WithoutViews(SceneOfTwoWallsInOnePlace(), {0, 1}), {});
+      FindMissing(WithoutViews(SceneOfTwoWallsInOnePlace(), {0, 1}), {});
   ASSERT_EQ(warnings.size(), 1u);
   EXPECT_THAT(warnings[0].views, ElementsAre(2, 3, 4, 5, 6, 7));
 }
@@ -85,11 +92,11 @@ TEST(MissingMatches, OfTwoLikeHalvesEitherMayBeWrong) {
 TEST(MissingMatches, AreThoseThatWereLookedFor) {
   Scene scene = SceneOfTwoWallsInOnePlace();
   scene.unrelated_pairs = {{3, 6}, {4, 6}};
-  EXPECT_THAT(FindMissingMatches(scene, {}), IsEmpty());  // a few may happen
+  EXPECT_THAT(FindMissing(scene, {}), IsEmpty());  // a few may happen
   scene.unrelated_pairs = {{3, 6}, {4, 6}, {4, 7}};
-  EXPECT_EQ(FindMissingMatches(scene, {}).size(), 1u);
+  EXPECT_EQ(FindMissing(scene, {}).size(), 1u);
   scene.unrelated_pairs.clear();
-  EXPECT_THAT(FindMissingMatches(scene, {}), IsEmpty());
+  EXPECT_THAT(FindMissing(scene, {}), IsEmpty());
 }
 
 // As where a facade repeats: no relative pose of their own, but tracks.
@@ -100,7 +107,7 @@ TEST(MissingMatches, PairsWithCommonTracksAreNoneOfThem) {
       scene.structure.at(n).observations.push_back({view, n, Vec2::Zero()});
     }
   }
-  EXPECT_THAT(FindMissingMatches(scene, {}), IsEmpty());
+  EXPECT_THAT(FindMissing(scene, {}), IsEmpty());
 }
 
 TEST(MissingMatches, CountLessThanWhatIsFoundAcross) {
@@ -114,13 +121,13 @@ TEST(MissingMatches, CountLessThanWhatIsFoundAcross) {
   }
   scene.unrelated_pairs = {{0, 5}, {0, 6}, {0, 7}, {1, 5},
                            {1, 6}, {1, 7}, {2, 7}};
-  EXPECT_THAT(FindMissingMatches(scene, {}), IsEmpty());
+  EXPECT_THAT(FindMissing(scene, {}), IsEmpty());
   // Those that are not in use hold nothing.
   PoseSummary summary;
   summary.outlier_edges = {{{3, 7}, OutlierReason::kDirection, 9}};
-  EXPECT_THAT(FindMissingMatches(scene, summary), IsEmpty());
+  EXPECT_THAT(FindMissing(scene, summary), IsEmpty());
   summary.outlier_edges.push_back({{3, 6}, OutlierReason::kDirection, 9});
-  EXPECT_EQ(FindMissingMatches(scene, summary).size(), 1u);
+  EXPECT_EQ(FindMissing(scene, summary).size(), 1u);
 }
 
 }  // namespace

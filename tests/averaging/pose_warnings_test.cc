@@ -113,8 +113,11 @@ TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
   missing.views = {0};
   for (std::uint32_t n = 0; n < 7; ++n) missing.missing.push_back({0, 4});
   missing.missing[0] = {0, 3};
-  summary.reliability_warnings = {contradicted, weak,    ratios,
-                                  lost,         missing, imprecise};
+  ReliabilityWarning alike = missing;
+  alike.reason = WarningReason::kLookAlikes;
+  alike.views = {3};
+  summary.reliability_warnings = {contradicted, weak,  ratios,   lost,
+                                  missing,      alike, imprecise};
   EXPECT_THAT(
       Warnings(summary),
       ElementsAre(
@@ -130,6 +133,8 @@ TEST(PoseWarnings, GiveTheReasonOfEveryReliabilityWarning) {
           AllOf(HasSubstr("Doubtful: a.jpg: at their places they, or views"),
                 HasSubstr(": a.jpg - d.jpg, a.jpg - e.jpg, "),
                 HasSubstr("a.jpg - e.jpg, and 2 more.")),
+          AllOf(HasSubstr("Doubtful: d.jpg: what they or views beside them"),
+                HasSubstr(": a.jpg - d.jpg, a.jpg - e.jpg, ")),
           AllOf(HasSubstr("Doubtful: c.jpg: by their deviations"),
                 HasSubstr(
                     ": a standard deviation of 4.2 % of the scene's size."))));
@@ -150,6 +155,7 @@ TEST(PoseWarnings, ListWhatWasLeftOutByReason) {
                            {{1, 2}, OutlierReason::kDirection, 7},
                            {{1, 4}, OutlierReason::kContradicted, 6},
                            {{3, 4}, OutlierReason::kOutweighed, 0},
+                           {{0, 4}, OutlierReason::kLookAlike, 0},
                            // Its loop says so already.
                            {{2, 3}, OutlierReason::kOpenLoop, 5}};
   EXPECT_THAT(
@@ -159,7 +165,8 @@ TEST(PoseWarnings, ListWhatWasLeftOutByReason) {
           AllOf(HasSubstr("directions contradict"),
                 HasSubstr("(2): a.jpg - b.jpg, b.jpg - c.jpg.")),
           AllOf(HasSubstr("no cycle confirms"), HasSubstr("(1): b.jpg - e")),
-          AllOf(HasSubstr("third views"), HasSubstr("(1): d.jpg - e"))));
+          AllOf(HasSubstr("third views"), HasSubstr("(1): d.jpg - e")),
+          AllOf(HasSubstr("look alike"), HasSubstr("(1): a.jpg - e"))));
 }
 
 TEST(PoseWarnings, InShortThereIsOneForEveryCause) {

@@ -4,15 +4,18 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "lowlap/core/internal/median.h"
+#include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
 
 constexpr std::size_t kMinPoints = 20;
-constexpr std::size_t kMaxPoints = 256;
+constexpr std::size_t kMaxPoints = 512;
 const double kMinCosine = std::cos(RadFromDeg(30));
 constexpr double kMaxZoom = 2;
 constexpr int kCells = 16;  // each way
@@ -125,7 +128,7 @@ bool OverlapPredictor::Camera::SeesAt(const Vec2& pixel_px,
 OverlapPredictor::Counts OverlapPredictor::Count(const Camera& from,
                                                  const Camera& to,
                                                  ViewId to_view) {
-  std::size_t expected = 0, found = 0;
+  std::vector<ExpectedSighting> expected;
   for (const SeenPoint& point : from.points) {
     const Vec3 ray_from = point.position - from.pose->center;
     const Vec3 ray_to = point.position - to.pose->center;
@@ -136,14 +139,18 @@ OverlapPredictor::Counts OverlapPredictor::Count(const Camera& from,
     }
     const auto pixel = PixelInImage(*to.intrinsic, to.pose->rotation * ray_to);
     if (!pixel || !to.SeesAt(*pixel, depth)) continue;
-    ++expected;
-    if (Observes(*point.landmark, to_view)) ++found;
+    expected.push_back({*pixel, Observes(*point.landmark, to_view)});
   }
-  if (expected == 0) return {};
-  const auto share = [](std::size_t part, std::size_t whole) {
-    return static_cast<double>(part) / static_cast<double>(whole);
-  };
-  return {share(expected, from.points.size()), share(found, expected)};
+  if (expected.empty()) return {};
+  const auto found =
+      std::count_if(expected.begin(), expected.end(),
+                    [](const ExpectedSighting& seen) { return seen.is_found; });
+  const auto num_expected = static_cast<double>(expected.size());
+  Counts counts;
+  counts.share = num_expected / static_cast<double>(from.points.size());
+  counts.found = static_cast<double>(found) / num_expected;
+  counts.regions = DivideOverlap(std::move(expected));
+  return counts;
 }
 
 std::optional<ExpectedOverlap> OverlapPredictor::Between(ViewId a,
@@ -152,8 +159,32 @@ std::optional<ExpectedOverlap> OverlapPredictor::Between(ViewId a,
   if (first == cameras_.end() || second == cameras_.end()) return std::nullopt;
   const Counts forth = Count(first->second, second->second, b);
   const Counts back = Count(second->second, first->second, a);
-  return ExpectedOverlap{std::min(forth.share, back.share),
-                         std::max(forth.found, back.found)};
+  ExpectedOverlap overlap;
+  overlap.share = std::min(forth.share, back.share);
+  overlap.found = std::max(forth.found, back.found);
+  overlap.regions = forth.regions;
+  overlap.regions += back.regions;
+  return overlap;
+}
+
+Result<ExpectedOverlaps> PredictOverlaps(const Scene& scene,
+                                         const RunContext& context) {
+  if (scene.structure.empty()) return ExpectedOverlaps();
+  std::set<ViewPair> asked(scene.unrelated_pairs.begin(),
+                           scene.unrelated_pairs.end());
+  for (const auto& entry : scene.relative_poses) asked.insert(entry.first);
+  const std::vector<ViewPair> pairs(asked.begin(), asked.end());
+  const OverlapPredictor predictor(scene);
+  std::vector<std::optional<ExpectedOverlap>> found(pairs.size());
+  LOWLAP_RETURN_IF_ERROR(
+      ParallelFor(context, "overlaps", pairs.size(), [&](std::size_t n) {
+        found[n] = predictor.Between(pairs[n].first, pairs[n].second);
+      }));
+  ExpectedOverlaps overlaps;
+  for (std::size_t n = 0; n < pairs.size(); ++n) {
+    if (found[n]) overlaps.emplace_hint(overlaps.end(), pairs[n], *found[n]);
+  }
+  return overlaps;
 }
 
 }  // namespace lowlap

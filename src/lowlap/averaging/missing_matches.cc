@@ -8,7 +8,7 @@
 
 #include "lowlap/averaging/centers/internal/evidence.h"
 #include "lowlap/averaging/centers/internal/least_cut.h"
-#include "lowlap/averaging/internal/expected_overlap.h"
+#include "lowlap/averaging/internal/agreeing_poses.h"
 #include "lowlap/core/internal/median.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -19,37 +19,30 @@ constexpr double kMinShare = 0.4;
 constexpr double kHardlyFound = 0.1;
 constexpr std::size_t kMinMissing = 3;
 
-// Placed views, and the relative poses that agree with their places.
-ViewGraph AgreeingPoses(const Scene& scene, const PoseSummary& summary) {
-  return ViewGraph(scene)
-      .WithoutPairs(PairsOf(summary.outlier_edges))
-      .WithoutPairs(PairsOf(summary.kept_outliers))
-      .WithoutViews(summary.unplaced);
-}
-
 // Pairs that should see the same things.
 struct ExpectedPairs {
   std::vector<ViewPair> found, missing;
 };
 
-ExpectedPairs FindExpectedPairs(const Scene& scene, const ViewGraph& agreeing) {
-  const OverlapPredictor predictor(scene);
+ExpectedPairs FindExpectedPairs(const Scene& scene, const ViewGraph& agreeing,
+                                const ExpectedOverlaps& overlaps) {
   const auto overlap_of = [&](const ViewPair& views) {
-    auto overlap = predictor.Between(views.first, views.second);
-    if (overlap && overlap->share < kMinShare) overlap.reset();
-    return overlap;
+    const auto overlap = overlaps.find(views);
+    return overlap == overlaps.end() || overlap->second.share < kMinShare
+               ? nullptr
+               : &overlap->second;
   };
   ExpectedPairs pairs;
   std::vector<double> found;
   for (const ViewPair& views : agreeing.pairs()) {
-    if (const auto overlap = overlap_of(views)) {
+    if (const auto* overlap = overlap_of(views)) {
       pairs.found.push_back(views);
       found.push_back(overlap->found);
     }
   }
   const double usual = Median(std::move(found));
   for (const ViewPair& views : scene.unrelated_pairs) {
-    if (const auto overlap = overlap_of(views)) {
+    if (const auto* overlap = overlap_of(views)) {
       (overlap->found < kHardlyFound * usual ? pairs.missing : pairs.found)
           .push_back(views);
     }
@@ -69,11 +62,12 @@ std::vector<ViewPair> PairsAcross(const std::vector<ViewPair>& pairs,
 
 }  // namespace
 
-std::vector<ReliabilityWarning> FindMissingMatches(const Scene& scene,
-                                                   const PoseSummary& summary) {
-  if (scene.unrelated_pairs.empty() || scene.structure.empty()) return {};
+std::vector<ReliabilityWarning> FindMissingMatches(
+    const Scene& scene, const PoseSummary& summary,
+    const ExpectedOverlaps& overlaps) {
+  if (scene.unrelated_pairs.empty()) return {};
   const ViewGraph graph = AgreeingPoses(scene, summary);
-  const ExpectedPairs expected = FindExpectedPairs(scene, graph);
+  const ExpectedPairs expected = FindExpectedPairs(scene, graph, overlaps);
   EvidenceOfPairs in_use;
   for (const ViewPair& views : graph.pairs()) {
     in_use[views] = EvidenceOfNfa(scene.relative_poses.at(views).log10_nfa);

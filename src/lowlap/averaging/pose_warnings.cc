@@ -68,6 +68,7 @@ class Writer {
       case WarningReason::kLostFeatures:
         return ": " + Format("%.0f", 100 * doubt.share) + " % fits";
       case WarningReason::kMissingMatches:
+      case WarningReason::kLookAlikes:
         return ": " + SomePairs(doubt.missing);
       case WarningReason::kImprecise:
         return ": a standard deviation of " +
@@ -104,6 +105,9 @@ std::string CauseOf(WarningReason reason) {
       return "at their places they, or views beside them, should see what "
              "others see, and were compared with these in vain: two places may "
              "look alike";
+    case WarningReason::kLookAlikes:
+      return "what they or views beside them see at their places is found by "
+             "others there in a part only: two places may look alike";
     case WarningReason::kImprecise:
       return "by their deviations they may be off by more than is promised of "
              "firm ones";
@@ -213,6 +217,9 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
   left_out(OutlierReason::kMatches, "their own matches contradict them");
   left_out(OutlierReason::kOutweighed,
            "third views bear out what contradicts them, and hardly them");
+  left_out(OutlierReason::kLookAlike,
+           "they join places that look alike: beside the matches, what both "
+           "views should see is missing");
   return warnings;
 }
 

@@ -20,6 +20,8 @@ const char* WarningReasonName(WarningReason reason) {
       return "lost_features";
     case WarningReason::kMissingMatches:
       return "missing_matches";
+    case WarningReason::kLookAlikes:
+      return "look_alikes";
     case WarningReason::kImprecise:
       return "imprecise";
   }

@@ -30,6 +30,9 @@ enum class WarningReason {
   /// At their places, views should see what others see that they were compared
   /// with in vain.
   kMissingMatches,
+  /// Places that look alike may have been taken for one: beside what the views
+  /// have in common, they see other things than views at the same place.
+  kLookAlikes,
   /// By their stated deviations, the views may be further off than is promised
   /// of firm ones.
   kImprecise,
@@ -37,7 +40,7 @@ enum class WarningReason {
 
 /// "contradicted_poses", "weak_scale", "contradicted_ratios", "untold_poses",
 /// "unheld", "doubtful_neighbors", "lost_features", "missing_matches",
-/// "imprecise".
+/// "look_alikes", "imprecise".
 const char* WarningReasonName(WarningReason reason);
 
 /// Placed views whose place is doubtful, and why.
@@ -49,7 +52,7 @@ struct ReliabilityWarning {
   /// kUntoldPoses: the relative poses of these views, in use, that nothing
   /// bears out.
   std::vector<ViewPair> untold;
-  /// kMissingMatches: the pairs that should see the same things.
+  /// kMissingMatches, kLookAlikes: the pairs that should see the same things.
   std::vector<ViewPair> missing;
   /// kWeakScale: the ratios in use. kContradictedRatios: those rejected.
   std::vector<ViewTriplet> ratios;

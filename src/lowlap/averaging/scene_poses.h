@@ -56,6 +56,9 @@ struct FirmEvidence {
 /// What of the measurements agrees with the centres before any adjustment.
 struct SolutionAgreement;
 
+/// What the structure says of relative poses that join places that look alike.
+struct LookAlikes;
+
 /// What became of the views and edges on the way to absolute poses.
 struct PoseSummary {
   int num_views = 0;
@@ -78,6 +81,8 @@ struct PoseSummary {
   std::vector<Contest> contests;  // of placed views
   std::shared_ptr<const SolutionAgreement> agreement;
   FirmEvidence firm_evidence;
+  /// nullptr before FinishSolution; empty without structure.
+  std::shared_ptr<const LookAlikes> look_alikes;
   /// Triplets whose ratio chance explains as well, used since nothing else
   /// joins one of their views.
   std::vector<ViewTriplet> weak_ratios;

@@ -13,8 +13,8 @@
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/believed_evidence.h"
 #include "lowlap/pipeline/internal/decisions/check_directions.h"
-#include "lowlap/pipeline/internal/decisions/decide_by_structure.h"
 #include "lowlap/pipeline/internal/decisions/decide_hypotheses.h"
+#include "lowlap/pipeline/internal/decisions/finish_without_look_alikes.h"
 #include "lowlap/pipeline/internal/decisions/reconsider_poses.h"
 #include "lowlap/pipeline/internal/decisions/settle_contests.h"
 #include "lowlap/pipeline/internal/judge_views.h"
@@ -309,16 +309,8 @@ Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
   LOWLAP_RETURN_IF_ERROR(options.Validate());
   LOWLAP_ASSIGN_OR_RETURN(auto composed,
                           ComposeSolution(scene, options, context, stages));
-  SolveResult result;
-  result.motions = std::move(composed.start.motions);
-  result.reconsidered = std::move(composed.start.reconsidered);
-  result.ratios = composed.ratios;
-  result.poses = std::move(composed.poses);
-  LOWLAP_RETURN_IF_ERROR(DecideHypothesesByStructure(
-      composed.start.rotations, options, context, stages, scene, &result));
-  LOWLAP_RETURN_IF_ERROR(
-      FinishSolution(scene, options, context, stages, &result));
-  return result;
+  return FinishWithoutLookAlikes(std::move(composed), options, context, stages,
+                                 scene);
 }
 
 }  // namespace lowlap

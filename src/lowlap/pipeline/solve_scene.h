@@ -144,7 +144,8 @@ Result<Refinement> RefineSolution(Scene* scene, const SolveOptions& options,
 /// the poses stay as they are, with a warning in the log. The doubts about
 /// views (PoseSummary::reliability_warnings) become those in the light of the
 /// adjustment (FindReliabilityWarnings), of the structure (FindLostFeatures,
-/// FindMissingMatches) and of the stated deviations (FindImpreciseViews).
+/// FindMissingMatches, FindLookAlikes) and of the stated deviations
+/// (FindImpreciseViews).
 Status FinishSolution(Scene* scene, const SolveOptions& options,
                       const RunContext& context, StageLog* stages,
                       SolveResult* result);
@@ -153,9 +154,11 @@ Status FinishSolution(Scene* scene, const SolveOptions& options,
 /// rotations and the choice of relative poses, ratios of the triplets of those
 /// believed, absolute poses (ComposeSolution), the motions that only the whole
 /// scene tells apart (DecideHypothesesByStructure), structure, bundle
-/// adjustment (FinishSolution). Reads intrinsics, features, relative poses and
-/// tracks; settles alternatives and replaces scale ratios, poses and structure.
-/// Errors leave the scene in an intermediate state: keep a copy if you need it.
+/// adjustment (FinishSolution); once more without relative poses that join
+/// places that look alike (FinishWithoutLookAlikes). Reads intrinsics,
+/// features, relative poses and tracks; settles alternatives and replaces scale
+/// ratios, poses and structure. Errors leave the scene in an intermediate
+/// state: keep a copy if you need it.
 Result<SolveResult> SolveScene(Scene* scene, const SolveOptions& options,
                                const RunContext& context, StageLog* stages);
 

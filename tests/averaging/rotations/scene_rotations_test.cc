@@ -246,6 +246,7 @@ TEST(OutlierEdge, IsFalseByMoreThanADegreeOrThree) {
   EXPECT_TRUE(is_false(OutlierReason::kOpenLoop, 0));
   EXPECT_FALSE(is_false(OutlierReason::kMatches, 0));
   EXPECT_TRUE(is_false(OutlierReason::kOutweighed, 0));
+  EXPECT_TRUE(is_false(OutlierReason::kLookAlike, 0));
 }
 
 }  // namespace

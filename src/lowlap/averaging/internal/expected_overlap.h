@@ -4,7 +4,10 @@
 #include <optional>
 #include <vector>
 
+#include "lowlap/averaging/internal/bare_regions.h"
 #include "lowlap/core/ids.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
 #include "lowlap/geometry/types.h"
 #include "lowlap/scene/scene.h"
 
@@ -19,6 +22,8 @@ struct ExpectedOverlap {
   /// Of those, the points that the other does observe; of the two views, the
   /// larger share.
   double found = 0;
+  /// Of the images of both, where they should show points of the other.
+  OverlapRegions regions;
 };
 
 /// Predicts what views of a solved scene should see of one another's landmarks.
@@ -28,7 +33,7 @@ struct ExpectedOverlap {
 /// two, so that features are found again, where it observes landmarks of its
 /// own as far away, to a factor of two: else a bare wall may stand before it.
 /// That is the median of the five nearest to that cell of the image, of 16
-/// times 16, if they are within two cells of it. Of a view 256 landmarks are
+/// times 16, if they are within two cells of it. Of a view 512 landmarks are
 /// looked at, evenly spaced in their order; a view with fewer than twenty says
 /// nothing.
 class OverlapPredictor {
@@ -55,11 +60,21 @@ class OverlapPredictor {
   };
   struct Counts {
     double share = 0, found = 0;
+    OverlapRegions regions;
   };
 
   static Counts Count(const Camera& from, const Camera& to, ViewId to_view);
 
   std::map<ViewId, Camera> cameras_;
 };
+
+using ExpectedOverlaps = std::map<ViewPair, ExpectedOverlap>;
+
+/// Of the pairs with a relative pose, and of those compared in vain, if
+/// OverlapPredictor says something of them; none without structure. Cost: the
+/// pairs times 1,024 points. The same for any number of threads. Error:
+/// kCancelled.
+Result<ExpectedOverlaps> PredictOverlaps(const Scene& scene,
+                                         const RunContext& context);
 
 }  // namespace lowlap

@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "lowlap/averaging/internal/expected_overlap.h"
 #include "lowlap/averaging/reliability_warning.h"
 #include "lowlap/averaging/scene_poses.h"
 #include "lowlap/scene/scene.h"
@@ -26,12 +27,13 @@ namespace lowlap {
 /// a relative pose or by tracks through others, so that few missing pairs say
 /// much. A scene that does not say what was compared, or has no structure, has
 /// no warning. Cost: the pairs compared in vain and the relative poses, times
-/// 256 points, and a cut for each that is missing and across none that is
+/// 512 points, and a cut for each that is missing and across none that is
 /// named.
 ///
 /// Enough false matches between long tracks join these over the whole of two
 /// places: their pairs then are not missing.
-std::vector<ReliabilityWarning> FindMissingMatches(const Scene& scene,
-                                                   const PoseSummary& summary);
+std::vector<ReliabilityWarning> FindMissingMatches(
+    const Scene& scene, const PoseSummary& summary,
+    const ExpectedOverlaps& overlaps);
 
 }  // namespace lowlap

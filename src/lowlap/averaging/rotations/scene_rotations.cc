@@ -266,6 +266,8 @@ const char* OutlierReasonName(OutlierReason reason) {
       return "matches";
     case OutlierReason::kOutweighed:
       return "outweighed";
+    case OutlierReason::kLookAlike:
+      return "look_alike";
   }
   return "";
 }
@@ -279,6 +281,7 @@ bool OutlierEdge::IsFalse() const {
     case OutlierReason::kContradicted:
     case OutlierReason::kOpenLoop:
     case OutlierReason::kOutweighed:
+    case OutlierReason::kLookAlike:
       return true;
     case OutlierReason::kMatches:
       break;

@@ -31,10 +31,11 @@ enum class OutlierReason {
   kOpenLoop,      // the least evidence in a loop that does not close at all
   kMatches,       // its own matches contradict its direction
   kOutweighed,    // third views bear out what contradicts it, and hardly it
+  kLookAlike,     // beside its matches, what both views should see is missing
 };
 
 /// "rotation", "direction", "contradicted", "open_loop", "matches",
-/// "outweighed".
+/// "outweighed", "look_alike".
 const char* OutlierReasonName(OutlierReason reason);
 
 /// What a rotation and a direction may be off without being called false.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <set>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "lowlap/averaging/centers/internal/scene_contests.h"
 #include "lowlap/averaging/internal/hanging_views.h"
 #include "lowlap/averaging/internal/imprecise_views.h"
+#include "lowlap/averaging/internal/look_alikes.h"
 #include "lowlap/averaging/internal/lost_features.h"
 #include "lowlap/averaging/internal/missing_matches.h"
 #include "lowlap/averaging/internal/reliability_warnings.h"
@@ -131,9 +133,22 @@ Status JudgeViews(Scene* scene,
   for (ReliabilityWarning& doubt : FindLostFeatures(*scene)) {
     poses->reliability_warnings.push_back(std::move(doubt));
   }
-  for (ReliabilityWarning& doubt : FindMissingMatches(*scene, *poses)) {
+  LOWLAP_ASSIGN_OR_RETURN(const auto overlaps,
+                          PredictOverlaps(*scene, context));
+  for (ReliabilityWarning& doubt :
+       FindMissingMatches(*scene, *poses, overlaps)) {
     poses->reliability_warnings.push_back(std::move(doubt));
   }
+  auto look_alikes =
+      std::make_shared<LookAlikes>(FindLookAlikes(*scene, *poses, overlaps));
+  if (!look_alikes->doubtful.empty()) {
+    ReliabilityWarning doubt;
+    doubt.reason = WarningReason::kLookAlikes;
+    doubt.views = look_alikes->doubtful;
+    doubt.missing = look_alikes->different;
+    poses->reliability_warnings.push_back(std::move(doubt));
+  }
+  poses->look_alikes = std::move(look_alikes);
   WarnOfHangingViews(poses);
   // Last: what hangs on a view that is known to a little less states so itself.
   for (ReliabilityWarning& doubt : FindImpreciseViews(*scene, *poses)) {

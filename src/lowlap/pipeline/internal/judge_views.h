@@ -17,10 +17,11 @@ namespace lowlap {
 /// the adjusted cameras: their directions and ratios with what is left open of
 /// them, what the structure predicts (FindPredictionEvidence), and weak ratios
 /// as they are measured between them. Features that do not fit and matches that
-/// are missing make views doubtful (FindLostFeatures, FindMissingMatches). What
-/// nothing else doubts is doubted where its stated deviations ask for it
-/// (FindImpreciseViews). `scene` holds the solution, and is as it was in the
-/// end.
+/// are missing make views doubtful (FindLostFeatures, FindMissingMatches), and
+/// so do look-alikes that are in use (FindLookAlikes,
+/// PoseSummary::look_alikes). What nothing else doubts is doubted where its
+/// stated deviations ask for it (FindImpreciseViews). `scene` holds the
+/// solution, and is as it was in the end.
 ///
 /// Errors: those of EstimateScaleRatios.
 Status JudgeViews(Scene* scene,

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "lowlap/averaging/centers/internal/contests.h"
+#include "lowlap/averaging/internal/agreeing_poses.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/core/internal/propagate.h"
+#include "lowlap/pipeline/internal/decisions/compose_again.h"
 #include "lowlap/scale/scale_ratios.h"
 #include "lowlap/scene/view_graph.h"
 
@@ -22,10 +24,7 @@ class ThirdViews {
     for (const ScaleRatio& ratio : scene.scale_ratios) {
       known_.emplace(ratio.views, &ratio);
     }
-    std::vector<ViewPair> out = PairsOf(poses.outlier_edges);
-    const std::vector<ViewPair> kept = PairsOf(poses.kept_outliers);
-    out.insert(out.end(), kept.begin(), kept.end());
-    in_use_ = ViewGraph(scene).WithoutPairs(out).WithoutViews(poses.unplaced);
+    in_use_ = AgreeingPoses(scene, poses);
   }
 
   // Those whose ratio bears the pair out if it is meaningful: with a relative
@@ -219,27 +218,6 @@ ThirdViewVerdicts WithOutweighed(ThirdViewVerdicts verdicts,
   return verdicts;
 }
 
-// Ratios that the scene has are those of its relative poses.
-Result<ComposedSolution> Compose(const MatchVerdicts& matches,
-                                 ThirdViewVerdicts verdicts,
-                                 SolveOptions options,
-                                 const RunContext& context, StageLog* stages,
-                                 Scene* scene) {
-  options.reuse_ratios = true;
-  ComposedSolution result;
-  LOWLAP_ASSIGN_OR_RETURN(result.start.rotations,
-                          AverageSceneRotations(*scene, options.poses, context,
-                                                std::move(verdicts)));
-  AddMatchVerdicts(matches, &result.start.rotations);
-  LOWLAP_ASSIGN_OR_RETURN(
-      result.ratios,
-      EstimateBelievedRatios(scene, result.start, options, context, stages));
-  LOWLAP_ASSIGN_OR_RETURN(
-      result.poses, ComposePoses(scene, result.start.rotations, options.poses,
-                                 context, stages));
-  return result;
-}
-
 }  // namespace
 
 Status SettleContests(const SolveOptions& options, const RunContext& context,
@@ -260,16 +238,17 @@ Status SettleContests(const SolveOptions& options, const RunContext& context,
     const ThirdViewVerdicts verdicts =
         WithEvidence(rotations.third_views, answer);
     const std::vector<ScaleRatio> known = scene->scale_ratios;
-    auto again =
-        Compose(rotations.matches, WithOutweighed(verdicts, answer.outweighed),
-                options, context, stages, scene);
+    auto again = ComposeAgain(rotations.matches,
+                              WithOutweighed(verdicts, answer.outweighed),
+                              options, context, stages, scene);
     if (!again && again.error().code == ErrorCode::kCancelled) {
       return tl::unexpected<Error>(again.error());
     }
     if (!again || again->poses.num_placed < composed->poses.num_placed) {
       scene->scale_ratios = known;
-      LOWLAP_ASSIGN_OR_RETURN(again, Compose(rotations.matches, verdicts,
-                                             options, context, stages, scene));
+      LOWLAP_ASSIGN_OR_RETURN(
+          again, ComposeAgain(rotations.matches, verdicts, options, context,
+                              stages, scene));
     }
     rotations = std::move(again->start.rotations);
     asked.insert(rotations.third_views.outweighed.begin(),

@@ -66,6 +66,9 @@ std::string OutlierNote(OutlierReason reason) {
       return "its own matches contradict it";
     case OutlierReason::kOutweighed:
       return "third views bear out what contradicts it, and hardly it";
+    case OutlierReason::kLookAlike:
+      return "joins places that look alike: beside its matches, what both "
+             "views should see is missing";
   }
   return "";
 }
