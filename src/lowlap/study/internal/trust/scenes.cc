@@ -2,6 +2,7 @@
 
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
+#include "lowlap/study/internal/trust/appearance.h"
 #include "lowlap/study/internal/trust/spoil.h"
 
 namespace lowlap {
@@ -76,6 +77,25 @@ TrustScene DrawNoise(Random* random) {
   return scene;
 }
 
+TrustScene DrawAlikeSides(Random* random) {
+  TrustScene scene;
+  SyntheticOptions& o = scene.options;
+  o.kind = SyntheticKind::kHouse;
+  o.pairs = "all";
+  o.num_views = OneOf<int>({10, 12, 14, 16}, random);
+  o.points_per_wall = OneOf<int>({120, 240, 480}, random);
+  o.lines_per_wall = OneOf<int>({20, 50}, random);
+  o.noise_px = OneOf<double>({0.5, 1}, random);
+  o.box_offset_m = OneOf<double>({0.3, 0.8}, random);
+  o.alike_share = OneOf<double>({0, 0.15, 0.3, 0.5}, random);
+  scene.found_share = OneOf<double>({0.5, 0.8}, random);
+  for (int n = OneOf<int>({0, 2, 4}, random); n > 0; --n) {
+    scene.left_out.emplace_back(
+        random->Index(static_cast<std::uint32_t>(o.num_views)));
+  }
+  return scene;
+}
+
 }  // namespace
 
 const char* TrustFamilyName(TrustFamily family) {
@@ -86,13 +106,16 @@ const char* TrustFamilyName(TrustFamily family) {
       return "mixed";
     case TrustFamily::kNoise:
       return "noise";
+    case TrustFamily::kAlikeSides:
+      return "alike_sides";
   }
   return "";
 }
 
 const std::vector<TrustFamily>& AllTrustFamilies() {
   static const std::vector<TrustFamily> families = {
-      TrustFamily::kWrongDirections, TrustFamily::kMixed, TrustFamily::kNoise};
+      TrustFamily::kWrongDirections, TrustFamily::kMixed,
+      TrustFamily::kAlikeSides, TrustFamily::kNoise};
   return families;
 }
 
@@ -108,6 +131,8 @@ std::vector<std::string> TrustScene::Labels() const {
   add_if(options.wrong_pose_share > 0, "wrong relative poses");
   add_if(options.wrong_point_share > 0, "wrong matches");
   add_if(has_look_alikes, "look-alikes");
+  add_if(options.alike_share > 0, "alike sides");
+  add_if(!left_out.empty(), "missing views");
   add_if(focal_factor != 1, "wrong focal length");
   add_if(features == Features::kShuffled, "shuffled features");
   add_if(features == Features::kDrawn, "unrelated views");
@@ -118,10 +143,20 @@ std::vector<std::string> TrustScene::Labels() const {
 
 TrustScene DrawTrustScene(TrustFamily family, std::uint64_t seed) {
   Random random(seed, static_cast<std::uint64_t>(family));
-  TrustScene scene = family == TrustFamily::kWrongDirections
-                         ? DrawWrongDirections(&random)
-                     : family == TrustFamily::kMixed ? DrawMixed(&random)
-                                                     : DrawNoise(&random);
+  const auto draw = [&] {
+    switch (family) {
+      case TrustFamily::kWrongDirections:
+        return DrawWrongDirections(&random);
+      case TrustFamily::kMixed:
+        return DrawMixed(&random);
+      case TrustFamily::kNoise:
+        return DrawNoise(&random);
+      case TrustFamily::kAlikeSides:
+        return DrawAlikeSides(&random);
+    }
+    return TrustScene();
+  };
+  TrustScene scene = draw();
   scene.options.seed = seed;
   return scene;
 }
@@ -145,7 +180,12 @@ Result<SyntheticScene> MakeTrustScene(const TrustScene& drawn,
     entry.second.fx_px *= drawn.focal_factor;
     entry.second.fy_px *= drawn.focal_factor;
   }
-  if (drawn.estimates_poses) {
+  if (drawn.found_share < 1) {
+    const auto detected =
+        DescribeFeatures(made, drawn.found_share, drawn.options.seed);
+    made.scene = WithoutViews(made.scene, drawn.left_out);
+    LOWLAP_RETURN_IF_ERROR(MatchAnew(detected, context, &made.scene));
+  } else if (drawn.estimates_poses) {
     LOWLAP_RETURN_IF_ERROR(EstimatePosesAnew(context, &made.scene));
   }
   return made;

@@ -19,9 +19,12 @@ enum class TrustFamily {
   kMixed,
   /// Scenes without truth: features that have nothing to do with each other.
   kNoise,
+  /// Walks around a house whose opposite sides are alike in part, some views
+  /// missing; all pairs are matched by what looks the same.
+  kAlikeSides,
 };
 
-/// "wrong_directions", "mixed", "noise".
+/// "wrong_directions", "mixed", "noise", "alike_sides".
 const char* TrustFamilyName(TrustFamily family);
 const std::vector<TrustFamily>& AllTrustFamilies();
 
@@ -30,6 +33,9 @@ struct TrustScene {
   SyntheticOptions options;
   enum class Features { kKept, kShuffled, kDrawn } features = Features::kKept;
   bool has_look_alikes = false;
+  /// Of the features (DescribeFeatures); 1: they are matched as simulated.
+  double found_share = 1;
+  std::vector<ViewId> left_out;
   /// Of the given to the true focal length.
   double focal_factor = 1;
   /// Relative poses are estimated from the matches, as those of photographs.

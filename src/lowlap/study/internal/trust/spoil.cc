@@ -4,7 +4,10 @@
 #include <iterator>
 #include <map>
 #include <utility>
+#include <vector>
 
+#include "lowlap/core/internal/propagate.h"
+#include "lowlap/matching/internal/matching.h"
 #include "lowlap/pipeline/internal/measure/relative_poses.h"
 #include "lowlap/synthetic/internal/pose_evidence.h"
 
@@ -99,6 +102,22 @@ void AddLookAlikes(int num_points, double noise_px, Random* random,
                                                   {second, match.second}};
   }
   pose.log10_nfa = PointEvidence(*scene, pose);
+}
+
+Status MatchAnew(const std::map<ViewId, DetectedFeatures>& detected,
+                 const RunContext& context, Scene* scene) {
+  std::vector<ViewPair> pairs;
+  for (auto i = scene->views.begin(); i != scene->views.end(); ++i) {
+    for (auto j = std::next(i); j != scene->views.end(); ++j) {
+      pairs.push_back({i->first, j->first});
+    }
+  }
+  LOWLAP_ASSIGN_OR_RETURN(
+      const auto matches,
+      MatchFeatures(detected, pairs, MatchOptions(), context));
+  const auto reports = EstimateRelativePoses(scene, matches, &detected,
+                                             RelativePoseOptions(), context);
+  return reports ? Status() : tl::unexpected<Error>(reports.error());
 }
 
 Status EstimatePosesAnew(const RunContext& context, Scene* scene) {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 
 #include "lowlap/core/internal/random.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
+#include "lowlap/features/internal/features.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -31,5 +33,11 @@ void AddLookAlikes(int num_points, double noise_px, Random* random,
 /// Pairs whose matches give none are gone. Errors: those of
 /// EstimateRelativePoses.
 Status EstimatePosesAnew(const RunContext& context, Scene* scene);
+
+/// All pairs of views matched anew, as photographs are: by what looks the same
+/// in `detected`, which has the features of all views. Relative poses and
+/// tracks are those of the matches. Errors: those of EstimateRelativePoses.
+Status MatchAnew(const std::map<ViewId, DetectedFeatures>& detected,
+                 const RunContext& context, Scene* scene);
 
 }  // namespace lowlap

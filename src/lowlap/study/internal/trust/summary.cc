@@ -16,7 +16,8 @@ namespace {
 
 const std::vector<TrustFamily>& FamiliesWithTruth() {
   static const std::vector<TrustFamily> families = {
-      TrustFamily::kWrongDirections, TrustFamily::kMixed};
+      TrustFamily::kWrongDirections, TrustFamily::kMixed,
+      TrustFamily::kAlikeSides};
   return families;
 }
 

@@ -38,8 +38,11 @@ Result<TrustTrial> RunTrustTrial(TrustFamily family, std::uint64_t seed,
   TrustTrial trial;
   trial.labels = drawn.Labels();
   for (int n = 0; n < drawn.options.num_views; ++n) {
+    const ViewId view(static_cast<std::uint32_t>(n));
+    const auto& left_out = drawn.left_out;
+    if (std::count(left_out.begin(), left_out.end(), view) > 0) continue;
     JudgedView judged;
-    judged.view = ViewId(static_cast<std::uint32_t>(n));
+    judged.view = view;
     judged.graded.grade = ViewGrade::kUnplaced;
     judged.error = HUGE_VAL;
     trial.views.push_back(std::move(judged));

@@ -1,0 +1,137 @@
+#include "lowlap/study/internal/trust/appearance.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "lowlap/core/internal/random.h"
+
+namespace lowlap {
+namespace {
+
+constexpr std::uint64_t kPointStream = 101'000'000'000;
+constexpr std::uint64_t kLineStream = 102'000'000'000;
+constexpr double kValueNoise = 0.2;
+// A blob of 1 cm a metre away, in pixels: a hundredth of the focal length.
+constexpr double kBlob_m = 0.01;
+
+constexpr std::size_t kNumValues = 256;
+using Values = std::array<double, kNumValues>;
+
+class Appearance {
+ public:
+  explicit Appearance(Random* random) {
+    const double change = random->Uniform(0.2, 1.5);
+    for (std::size_t n = 0; n < kNumValues; ++n) {
+      base_[n] = random->Gaussian();
+      for (double& component : gradient_[n]) {
+        component = random->Gaussian(change);
+      }
+    }
+  }
+
+  Values SeenFrom(const Vec3& direction, Random* random) const {
+    Values values;
+    for (std::size_t n = 0; n < kNumValues; ++n) {
+      values[n] = base_[n] + gradient_[n].dot(direction) +
+                  random->Gaussian(kValueNoise);
+    }
+    return values;
+  }
+
+ private:
+  std::array<double, kNumValues> base_;
+  std::array<Vec3, kNumValues> gradient_;
+};
+
+PointDescriptor PointDescriptorOf(const Values& values) {
+  PointDescriptor descriptor;
+  const Eigen::Map<const Eigen::Matrix<double, descriptor.size(), 1>> sizes(
+      values.data());
+  const double unit = 512 / sizes.norm();
+  for (std::size_t n = 0; n < descriptor.size(); ++n) {
+    descriptor[n] = static_cast<std::uint8_t>(
+        std::min(255.0, std::round(unit * std::abs(values[n]))));
+  }
+  return descriptor;
+}
+
+LineDescriptor LineDescriptorOf(const Values& values) {
+  LineDescriptor descriptor = {};
+  for (std::size_t n = 0; n < kNumValues; ++n) {
+    if (values[n] > 0) descriptor[n / 8] |= 1 << (n % 8);
+  }
+  return descriptor;
+}
+
+Vec3 PlaceOf(const Vec3& point) { return point; }
+Vec3 PlaceOf(const SyntheticLine& line) {
+  return 0.5 * (line.start + line.end);
+}
+
+// Calls describe(ref, ray, values) for all features of the tracks, with the
+// vector from the camera.
+template <class Id, class Shape, class Describe>
+void DescribeTracks(const std::map<ViewId, Pose>& cameras,
+                    const std::map<Id, Track>& tracks,
+                    const std::map<Id, Shape>& shapes,
+                    const std::vector<std::pair<Id, Id>>& alike,
+                    double found_share, std::uint64_t seed,
+                    std::uint64_t stream, const Describe& describe) {
+  std::map<Id, Id> original_of;
+  for (const auto& [first, second] : alike) original_of[second] = first;
+  for (const auto& [id, shape] : shapes) {
+    const auto original = original_of.find(id);
+    const bool is_copy = original != original_of.end();
+    Random places(seed, stream + (is_copy ? original->second : id).value());
+    const Appearance appearance(&places);
+    Random random(seed, 2 * stream + id.value());
+    for (const FeatureRef& ref : tracks.at(id)) {
+      const Vec3 ray = PlaceOf(shape) - cameras.at(ref.view).center;
+      Vec3 direction = ray.normalized();
+      if (is_copy) direction = {-direction.x(), direction.y(), -direction.z()};
+      const bool is_found = random.Uniform() < found_share;
+      const Appearance& seen = is_found ? appearance : Appearance(&random);
+      describe(ref, ray, seen.SeenFrom(direction, &random));
+    }
+  }
+}
+
+}  // namespace
+
+std::map<ViewId, DetectedFeatures> DescribeFeatures(
+    const SyntheticScene& synthetic, double found_share, std::uint64_t seed) {
+  const Scene& scene = synthetic.scene;
+  std::map<ViewId, DetectedFeatures> detected;
+  for (const auto& [view, features] : scene.features) {
+    DetectedFeatures& of_view = detected[view];
+    of_view.features = features;
+    for (const Vec2& point_px : features.points_px) {
+      of_view.keypoints.emplace_back().position_px = point_px;
+    }
+    of_view.point_descriptors.resize(features.points_px.size());
+    of_view.line_descriptors.resize(features.segments.size());
+  }
+  DescribeTracks(
+      synthetic.true_poses, scene.point_tracks, synthetic.true_points,
+      synthetic.alike_points, found_share, seed, kPointStream,
+      [&](const FeatureRef& ref, const Vec3& ray, const Values& values) {
+        DetectedFeatures& of_view = detected[ref.view];
+        of_view.keypoints[ref.feature].scale_px =
+            kBlob_m * scene.FindIntrinsic(ref.view)->MeanFocalPx() / ray.norm();
+        of_view.point_descriptors[ref.feature] = PointDescriptorOf(values);
+      });
+  DescribeTracks(
+      synthetic.true_poses, scene.line_tracks, synthetic.true_lines,
+      synthetic.alike_lines, found_share, seed, kLineStream,
+      [&](const FeatureRef& ref, const Vec3& /*ray*/, const Values& values) {
+        detected[ref.view].line_descriptors[ref.feature] =
+            LineDescriptorOf(values);
+      });
+  return detected;
+}
+
+}  // namespace lowlap

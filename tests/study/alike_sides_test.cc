@@ -1,0 +1,74 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "lowlap/averaging/internal/look_alikes.h"
+#include "lowlap/pipeline/solve_scene.h"
+#include "lowlap/study/internal/trust/scenes.h"
+#include "lowlap/study/internal/trust/trial.h"
+
+namespace lowlap {
+namespace {
+
+using ::testing::Contains;
+using ::testing::Field;
+
+RunContext Seeded(std::uint64_t seed) {
+  RunContext context;
+  context.seed = seed;
+  context.num_threads = 1;
+  return context;
+}
+
+TEST(AlikeSides, AHouseIsNotFolded) {
+  // All views see a side that has its copy; no view is missing.
+  constexpr std::uint64_t kSeed = 108;
+  const TrustScene drawn = DrawTrustScene(TrustFamily::kAlikeSides, kSeed);
+  ASSERT_GT(drawn.options.alike_share, 0);
+  ASSERT_TRUE(drawn.left_out.empty());
+  const auto trial =
+      RunTrustTrial(TrustFamily::kAlikeSides, kSeed, Seeded(kSeed));
+  ASSERT_TRUE(trial);
+  EXPECT_EQ(static_cast<int>(trial->views.size()), drawn.options.num_views);
+  for (const JudgedView& judged : trial->views) {
+    EXPECT_LT(judged.error, 0.01) << judged.view;
+    EXPECT_TRUE(judged.IsFirm()) << judged.view;
+  }
+
+  auto made = MakeTrustScene(drawn, Seeded(kSeed));
+  ASSERT_TRUE(made);
+  const Scene measured = made->scene;
+  const auto result =
+      SolveScene(&made->scene, SolveOptions(), Seeded(kSeed), nullptr);
+  ASSERT_TRUE(result);
+  EXPECT_THAT(result->poses.outlier_edges,
+              Contains(Field(&OutlierEdge::reason, OutlierReason::kLookAlike)));
+  EXPECT_TRUE(result->poses.look_alikes->false_poses.empty());
+  // What was left out is still there.
+  EXPECT_EQ(made->scene.relative_poses.size(), measured.relative_poses.size());
+  EXPECT_EQ(made->scene.unrelated_pairs, measured.unrelated_pairs);
+  EXPECT_EQ(made->scene.point_tracks, measured.point_tracks);
+  EXPECT_EQ(made->scene.line_tracks, measured.line_tracks);
+}
+
+TEST(AlikeSides, ViewsThatAreLeftOutAreNotJudged) {
+  std::uint64_t seed = 0;
+  while (DrawTrustScene(TrustFamily::kAlikeSides, seed).left_out.empty()) {
+    ++seed;
+  }
+  const TrustScene drawn = DrawTrustScene(TrustFamily::kAlikeSides, seed);
+  const auto trial =
+      RunTrustTrial(TrustFamily::kAlikeSides, seed, Seeded(seed));
+  ASSERT_TRUE(trial);
+  for (const JudgedView& judged : trial->views) {
+    EXPECT_EQ(
+        std::count(drawn.left_out.begin(), drawn.left_out.end(), judged.view),
+        0);
+  }
+  EXPECT_LT(static_cast<int>(trial->views.size()), drawn.options.num_views);
+}
+
+}  // namespace
+}  // namespace lowlap
