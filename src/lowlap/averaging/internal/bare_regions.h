@@ -31,7 +31,7 @@ struct OverlapRegions {
 /// bare it grows, and the regions become smaller, up to four times. None if
 /// fewer than three are found.
 ///
-/// Where both views see one place, few regions are bare (of 2 in 100 on
+/// Where both views see one place, few regions are bare (2 in 100 on
 /// photographs), however small p is; where two places look alike in part, all
 /// are beside that part. What missing correspondences tell: Zach, Irschara,
 /// Bischof, CVPR 2008.
