@@ -115,6 +115,31 @@ TEST(ExpectedOverlap, NothingThatIsHidden) {
   EXPECT_EQ(OverlapOf(scene).share, 1);
 }
 
+// Of view 1 what is before the right part of the wall, `nearer` times as near,
+// is all that it sees there.
+Scene SceneOfACorner(double nearer) {
+  Scene scene = SceneOfWall(0, [](std::uint32_t view, std::uint32_t column) {
+    return view == 0 || column < 8;
+  });
+  for (std::uint32_t n = 0; n < 400; ++n) {
+    if (n % 20 < 8) continue;
+    Landmark& landmark = scene.structure[400 + n];
+    landmark.position = scene.structure.at(n).position / nearer;
+    landmark.observations.push_back({1, n, Vec2::Zero()});
+  }
+  return scene;
+}
+
+TEST(ExpectedOverlap, WhatLiesBehindACornerLeavesNoRegionBare) {
+  const ExpectedOverlap corner = OverlapOf(SceneOfACorner(1.5));
+  EXPECT_GE(corner.share, 0.9);
+  EXPECT_GE(corner.regions.num, 5);
+  EXPECT_LE(corner.regions.num_bare, 0.1 * corner.regions.num);
+  const ExpectedOverlap other_wall = OverlapOf(SceneOfACorner(1.1));
+  EXPECT_GE(other_wall.share, 0.9);
+  EXPECT_GE(other_wall.regions.num_bare, 0.4 * other_wall.regions.num);
+}
+
 TEST(ExpectedOverlap, OfAViewWithFewPointsIsNotKnown) {
   const auto with_columns = [](std::uint32_t count) {
     return SceneOfWall(0, [=](std::uint32_t view, std::uint32_t column) {

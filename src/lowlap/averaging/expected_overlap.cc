@@ -18,6 +18,7 @@ constexpr std::size_t kMinPoints = 20;
 constexpr std::size_t kMaxPoints = 512;
 const double kMinCosine = std::cos(RadFromDeg(30));
 constexpr double kMaxZoom = 2;
+constexpr double kSameSurface = 1.2;
 constexpr int kCells = 16;  // each way
 constexpr std::size_t kNeighbors = 5;
 constexpr double kReachInCells = 2;
@@ -119,16 +120,17 @@ OverlapPredictor::OverlapPredictor(const Scene& scene) {
   }
 }
 
-bool OverlapPredictor::Camera::SeesAt(const Vec2& pixel_px,
-                                      double depth) const {
+bool OverlapPredictor::Camera::SeesAt(const Vec2& pixel_px, double depth,
+                                      double factor) const {
   const double seen = depths[CellOf(*intrinsic, pixel_px)];
-  return depth <= kMaxZoom * seen && seen <= kMaxZoom * depth;
+  return depth <= factor * seen && seen <= factor * depth;
 }
 
 OverlapPredictor::Counts OverlapPredictor::Count(const Camera& from,
                                                  const Camera& to,
                                                  ViewId to_view) {
-  std::vector<ExpectedSighting> expected;
+  double num_expected = 0, num_found = 0;
+  std::vector<ExpectedSighting> on_surface;
   for (const SeenPoint& point : from.points) {
     const Vec3 ray_from = point.position - from.pose->center;
     const Vec3 ray_to = point.position - to.pose->center;
@@ -138,18 +140,19 @@ OverlapPredictor::Counts OverlapPredictor::Count(const Camera& from,
       continue;
     }
     const auto pixel = PixelInImage(*to.intrinsic, to.pose->rotation * ray_to);
-    if (!pixel || !to.SeesAt(*pixel, depth)) continue;
-    expected.push_back({*pixel, Observes(*point.landmark, to_view)});
+    if (!pixel || !to.SeesAt(*pixel, depth, kMaxZoom)) continue;
+    const bool is_found = Observes(*point.landmark, to_view);
+    ++num_expected;
+    num_found += is_found ? 1 : 0;
+    if (to.SeesAt(*pixel, depth, kSameSurface)) {
+      on_surface.push_back({*pixel, is_found});
+    }
   }
-  if (expected.empty()) return {};
-  const auto found =
-      std::count_if(expected.begin(), expected.end(),
-                    [](const ExpectedSighting& seen) { return seen.is_found; });
-  const auto num_expected = static_cast<double>(expected.size());
+  if (num_expected == 0) return {};
   Counts counts;
   counts.share = num_expected / static_cast<double>(from.points.size());
-  counts.found = static_cast<double>(found) / num_expected;
-  counts.regions = DivideOverlap(std::move(expected));
+  counts.found = num_found / num_expected;
+  counts.regions = DivideOverlap(std::move(on_surface));
   return counts;
 }
 

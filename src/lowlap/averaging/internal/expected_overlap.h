@@ -22,7 +22,9 @@ struct ExpectedOverlap {
   /// Of those, the points that the other does observe; of the two views, the
   /// larger share.
   double found = 0;
-  /// Of the images of both, where they should show points of the other.
+  /// Of the images of both, where they should show points of the other, which
+  /// lie where they see a surface to a fifth of its distance: what lies behind
+  /// a corner would leave them bare.
   OverlapRegions regions;
 };
 
@@ -56,7 +58,8 @@ class OverlapPredictor {
     std::vector<SeenPoint> points;
     std::vector<double> depths;  // of the cells, by rows; NaN: not known
 
-    bool SeesAt(const Vec2& pixel_px, double depth) const;
+    // To that factor.
+    bool SeesAt(const Vec2& pixel_px, double depth, double factor) const;
   };
   struct Counts {
     double share = 0, found = 0;
