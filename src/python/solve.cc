@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
-#include "lowlap/averaging/internal/pose_warnings.h"
+#include "lowlap/averaging/reliability/internal/pose_warnings.h"
 #include "lowlap/pipeline/image_collection.h"
 #include "lowlap/pipeline/internal/measure/measure_and_refine.h"
 #include "lowlap/pipeline/internal/output/run_output.h"

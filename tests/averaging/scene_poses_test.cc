@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "averaging/true_ratios.h"
-#include "lowlap/averaging/internal/pose_warnings.h"
+#include "lowlap/averaging/reliability/internal/pose_warnings.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/geometry/internal/rotation.h"
 

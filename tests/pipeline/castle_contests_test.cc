@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/averaging/reliability/internal/view_grades.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/scene/scene.h"
 #include "support/data_folder.h"

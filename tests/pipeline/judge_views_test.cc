@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-#include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/averaging/reliability/internal/view_grades.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/pipeline/solve_scene.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "lowlap/averaging/internal/look_alikes.h"
+#include "lowlap/averaging/reliability/internal/look_alikes.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/study/internal/trust/scenes.h"
 #include "lowlap/study/internal/trust/trial.h"

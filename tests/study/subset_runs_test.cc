@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/averaging/reliability/internal/view_grades.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/study/internal/subset_table.h"
 #include "lowlap/synthetic/synthetic_scene.h"

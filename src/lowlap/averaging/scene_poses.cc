@@ -6,8 +6,8 @@
 
 #include "lowlap/averaging/centers/internal/weighed_centers.h"
 #include "lowlap/averaging/internal/error_limits.h"
-#include "lowlap/averaging/internal/hanging_views.h"
-#include "lowlap/averaging/internal/reliability_warnings.h"
+#include "lowlap/averaging/reliability/internal/find_reliability_warnings.h"
+#include "lowlap/averaging/reliability/internal/hanging_views.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "lowlap/averaging/internal/pose_warnings.h"
+#include "lowlap/averaging/reliability/internal/pose_warnings.h"
 #include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/geometry/internal/rotation.h"

@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/internal/solution_agreement.h"
+#include "lowlap/averaging/reliability/internal/solution_agreement.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/decisions/decide_hypotheses.h"
 #include "lowlap/scene/view_graph.h"

@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/averaging/reliability/internal/view_grades.h"
 #include "lowlap/core/internal/parallel.h"
 #include "lowlap/core/internal/random.h"
 #include "lowlap/evaluation/pose_errors.h"

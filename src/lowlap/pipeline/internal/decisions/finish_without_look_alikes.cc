@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "lowlap/averaging/internal/look_alikes.h"
+#include "lowlap/averaging/reliability/internal/look_alikes.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/believed_evidence.h"
 #include "lowlap/pipeline/internal/decisions/compose_again.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lowlap/averaging/centers/internal/contests.h"
-#include "lowlap/averaging/internal/agreeing_poses.h"
+#include "lowlap/averaging/reliability/internal/agreeing_poses.h"
 #include "lowlap/averaging/rigidity/internal/diagnosis.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/decisions/compose_again.h"

@@ -6,7 +6,7 @@
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
 #include "lowlap/adjustment/internal/uncertainty/rival_optima.h"
-#include "lowlap/averaging/internal/pose_warnings.h"
+#include "lowlap/averaging/reliability/internal/pose_warnings.h"
 #include "lowlap/core/internal/format.h"
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/pipeline/internal/output/page_photographs.h"

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "lowlap/adjustment/internal/intrinsic_refinement.h"
-#include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/averaging/reliability/internal/view_grades.h"
 #include "lowlap/core/internal/view_json.h"
 #include "lowlap/scene/internal/center_stddev.h"
 

@@ -2,7 +2,7 @@
 
 #include <map>
 
-#include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/averaging/reliability/internal/view_grades.h"
 #include "lowlap/evaluation/pose_errors.h"
 #include "lowlap/scene/scene.h"
 

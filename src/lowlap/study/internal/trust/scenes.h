@@ -48,8 +48,8 @@ struct TrustScene {
 /// The same family and seed give the same scene on every machine.
 TrustScene DrawTrustScene(TrustFamily family, std::uint64_t seed);
 
-/// What is to be solved, and its truth. Errors: those of Simulate and
-/// EstimateRelativePoses.
+/// What is to be solved, and its truth. Errors: those of Simulate, MatchAnew
+/// and EstimatePosesAnew.
 Result<SyntheticScene> MakeTrustScene(const TrustScene& drawn,
                                       const RunContext& context);
 

@@ -36,7 +36,8 @@ Status EstimatePosesAnew(const RunContext& context, Scene* scene);
 
 /// All pairs of views matched anew, as photographs are: by what looks the same
 /// in `detected`, which has the features of all views. Relative poses and
-/// tracks are those of the matches. Errors: those of EstimateRelativePoses.
+/// tracks are those of the matches. Errors: those of MatchFeatures and
+/// EstimateRelativePoses.
 Status MatchAnew(const std::map<ViewId, DetectedFeatures>& detected,
                  const RunContext& context, Scene* scene);
 

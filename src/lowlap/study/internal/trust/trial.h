@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lowlap/averaging/internal/view_grades.h"
+#include "lowlap/averaging/reliability/internal/view_grades.h"
 #include "lowlap/core/ids.h"
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
