@@ -123,13 +123,15 @@ Scene SceneOfACorner(double nearer) {
 }
 
 TEST(ExpectedOverlap, WhatLiesBehindACornerLeavesNoRegionBare) {
-  const ExpectedOverlap corner = OverlapOf(SceneOfACorner(1.5));
-  EXPECT_GE(corner.share, 0.9);
-  EXPECT_GE(corner.regions.num, 5);
-  EXPECT_LE(corner.regions.num_bare, 0.1 * corner.regions.num);
-  const ExpectedOverlap other_wall = OverlapOf(SceneOfACorner(1.1));
-  EXPECT_GE(other_wall.share, 0.9);
-  EXPECT_GE(other_wall.regions.num_bare, 0.4 * other_wall.regions.num);
+  const Scene corner = SceneOfACorner(1.5);
+  EXPECT_GE(OverlapOf(corner).share, 0.9);
+  OverlapRegions regions = OverlapPredictor(corner).RegionsOf(0, 1, 0.1);
+  EXPECT_GE(regions.num, 5);
+  EXPECT_LE(regions.num_bare, 0.1 * regions.num);
+  const Scene other_wall = SceneOfACorner(1.1);
+  EXPECT_GE(OverlapOf(other_wall).share, 0.9);
+  regions = OverlapPredictor(other_wall).RegionsOf(0, 1, 0.1);
+  EXPECT_GE(regions.num_bare, 0.4 * regions.num);
 }
 
 TEST(ExpectedOverlap, OfAViewWithFewPointsIsNotKnown) {
@@ -141,6 +143,7 @@ TEST(ExpectedOverlap, OfAViewWithFewPointsIsNotKnown) {
   EXPECT_TRUE(OverlapPredictor(with_columns(1)).Between(0, 1));
   EXPECT_FALSE(OverlapPredictor(with_columns(0)).Between(0, 1));
   EXPECT_FALSE(OverlapPredictor(with_columns(1)).Between(0, 2));
+  EXPECT_EQ(OverlapPredictor(with_columns(0)).RegionsOf(0, 1, 0.1).num, 0);
   Scene scene = with_columns(20);
   scene.poses.erase(1);
   EXPECT_FALSE(OverlapPredictor(scene).Between(0, 1));

@@ -51,19 +51,21 @@ void Divide(Iterator begin, Iterator end, double size, Division* division) {
 
 }  // namespace
 
-OverlapRegions DivideOverlap(std::vector<ExpectedSighting> expected) {
+OverlapRegions DivideOverlap(std::vector<ExpectedSighting> expected,
+                             double min_rate) {
   const auto num_found =
       std::count_if(expected.begin(), expected.end(),
                     [](const ExpectedSighting& seen) { return seen.is_found; });
   if (num_found < kFoundPerRegion) return {};
-  double rate =
-      static_cast<double>(num_found) / static_cast<double>(expected.size());
   Division division;
+  division.num_found = static_cast<double>(num_found);
+  division.num_expected = static_cast<double>(expected.size());
   for (int round = 0; round < kMaxDivisions; ++round) {
+    const double rate =
+        std::max(min_rate, division.num_found / division.num_expected);
     division = {};
     Divide(expected.begin(), expected.end(), kFoundPerRegion / rate, &division);
     if (division.regions.num_bare == 0) break;
-    rate = division.num_found / division.num_expected;
   }
   return division.regions;
 }

@@ -126,11 +126,9 @@ bool OverlapPredictor::Camera::SeesAt(const Vec2& pixel_px, double depth,
   return depth <= factor * seen && seen <= factor * depth;
 }
 
-OverlapPredictor::Counts OverlapPredictor::Count(const Camera& from,
-                                                 const Camera& to,
-                                                 ViewId to_view) {
-  double num_expected = 0, num_found = 0;
-  std::vector<ExpectedSighting> on_surface;
+std::vector<OverlapPredictor::Expected> OverlapPredictor::ExpectedPoints(
+    const Camera& from, const Camera& to, ViewId to_view) {
+  std::vector<Expected> expected;
   for (const SeenPoint& point : from.points) {
     const Vec3 ray_from = point.position - from.pose->center;
     const Vec3 ray_to = point.position - to.pose->center;
@@ -141,33 +139,49 @@ OverlapPredictor::Counts OverlapPredictor::Count(const Camera& from,
     }
     const auto pixel = PixelInImage(*to.intrinsic, to.pose->rotation * ray_to);
     if (!pixel || !to.SeesAt(*pixel, depth, kMaxZoom)) continue;
-    const bool is_found = Observes(*point.landmark, to_view);
-    ++num_expected;
-    num_found += is_found ? 1 : 0;
-    if (to.SeesAt(*pixel, depth, kSameSurface)) {
-      on_surface.push_back({*pixel, is_found});
-    }
+    expected.push_back({{*pixel, Observes(*point.landmark, to_view)},
+                        to.SeesAt(*pixel, depth, kSameSurface)});
   }
-  if (num_expected == 0) return {};
-  Counts counts;
-  counts.share = num_expected / static_cast<double>(from.points.size());
-  counts.found = num_found / num_expected;
-  counts.regions = DivideOverlap(std::move(on_surface));
-  return counts;
+  return expected;
+}
+
+ExpectedOverlap OverlapPredictor::Count(const Camera& from, const Camera& to,
+                                        ViewId to_view) {
+  const std::vector<Expected> expected = ExpectedPoints(from, to, to_view);
+  if (expected.empty()) return {};
+  const auto num_found =
+      std::count_if(expected.begin(), expected.end(),
+                    [](const Expected& e) { return e.seen.is_found; });
+  const auto num = static_cast<double>(expected.size());
+  return {num / static_cast<double>(from.points.size()),
+          static_cast<double>(num_found) / num};
 }
 
 std::optional<ExpectedOverlap> OverlapPredictor::Between(ViewId a,
                                                          ViewId b) const {
   const auto first = cameras_.find(a), second = cameras_.find(b);
   if (first == cameras_.end() || second == cameras_.end()) return std::nullopt;
-  const Counts forth = Count(first->second, second->second, b);
-  const Counts back = Count(second->second, first->second, a);
-  ExpectedOverlap overlap;
-  overlap.share = std::min(forth.share, back.share);
-  overlap.found = std::max(forth.found, back.found);
-  overlap.regions = forth.regions;
-  overlap.regions += back.regions;
-  return overlap;
+  const ExpectedOverlap forth = Count(first->second, second->second, b);
+  const ExpectedOverlap back = Count(second->second, first->second, a);
+  return ExpectedOverlap{std::min(forth.share, back.share),
+                         std::max(forth.found, back.found)};
+}
+
+OverlapRegions OverlapPredictor::RegionsOf(ViewId a, ViewId b,
+                                           double min_rate) const {
+  const auto first = cameras_.find(a), second = cameras_.find(b);
+  if (first == cameras_.end() || second == cameras_.end()) return {};
+  const auto regions_in = [&](const Camera& to, ViewId to_view,
+                              const Camera& from) {
+    std::vector<ExpectedSighting> on_surface;
+    for (const Expected& expected : ExpectedPoints(from, to, to_view)) {
+      if (expected.is_on_surface) on_surface.push_back(expected.seen);
+    }
+    return DivideOverlap(std::move(on_surface), min_rate);
+  };
+  OverlapRegions regions = regions_in(second->second, b, first->second);
+  regions += regions_in(first->second, a, second->second);
+  return regions;
 }
 
 Result<ExpectedOverlaps> PredictOverlaps(const Scene& scene,

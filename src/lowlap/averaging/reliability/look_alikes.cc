@@ -1,83 +1,89 @@
 #include "lowlap/averaging/reliability/internal/look_alikes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <map>
-#include <type_traits>
-#include <utility>
 
 #include "lowlap/averaging/centers/internal/evidence.h"
 #include "lowlap/averaging/reliability/internal/agreeing_poses.h"
+#include "lowlap/core/internal/parallel.h"
+#include "lowlap/core/internal/propagate.h"
 
 namespace lowlap {
 namespace {
 
 constexpr double kMinShareOfAlike = 0.2;
+constexpr double kShareOfRate = 0.75;
 constexpr double kMaxLog10Nfa = -2;
 // Regions of pairs of the same views tell the same thing several times.
 constexpr double kMinShareOfBare = 0.2;
 
-// Of views, or of groups of them.
-using RegionsOfPairs = std::map<ViewPair, OverlapRegions>;
-
-RegionsOfPairs RegionsOf(const ExpectedOverlaps& overlaps) {
-  RegionsOfPairs regions;
+// That should share enough to be told apart.
+std::vector<ViewPair> SharingPairs(const ExpectedOverlaps& overlaps) {
+  std::vector<ViewPair> pairs;
   for (const auto& [views, overlap] : overlaps) {
-    if (overlap.share >= kMinShareOfAlike) {
-      regions.emplace(views, overlap.regions);
-    }
+    if (overlap.share >= kMinShareOfAlike) pairs.push_back(views);
   }
-  return regions;
+  return pairs;
 }
 
-// Views that grow together by the evidence between them.
+// Of what is expected, the part that the best quarter of the pairs find.
+double UsualRate(const std::vector<ViewPair>& pairs,
+                 const ExpectedOverlaps& overlaps, const ViewGraph& agreeing) {
+  std::vector<double> found;
+  for (const ViewPair& views : pairs) {
+    if (agreeing.FindPair(views.first, views.second))
+      found.push_back(overlaps.at(views).found);
+  }
+  if (found.empty()) return 0;
+  const auto quarter = found.begin() + static_cast<std::ptrdiff_t>(
+                                           found.size() - 1 - found.size() / 4);
+  std::nth_element(found.begin(), quarter, found.end());
+  return *quarter;
+}
+
+// Views that grow together along links.
 class Groups {
  public:
-  Groups(const Scene& scene, const std::vector<ViewPair>& links,
-         RegionsOfPairs regions)
-      : regions_(std::move(regions)),
-        log10_num_(std::log10(static_cast<double>(regions_.size()))) {
-    for (const ViewPair& views : links) {
-      const RelativePose& pose = scene.relative_poses.at(views);
-      evidence_[views] = EvidenceOfNfa(pose.weakness ? 0 : pose.log10_nfa);
+  explicit Groups(const ViewGraph& links) {
+    for (const ViewPair& views : links.pairs()) {
       for (const ViewId view : {views.first, views.second}) {
         group_of_.emplace(view, view);
       }
     }
   }
 
-  bool AreDifferent(const ViewPair& groups) const {
-    const auto regions = regions_.find(groups);
-    return regions != regions_.end() &&
-           regions->second.num_bare >= kMinShareOfBare * regions->second.num &&
-           log10_num_ + Log10ChanceOfBare(regions->second) <= kMaxLog10Nfa;
+  void AddRegions(const ViewPair& views, const OverlapRegions& regions) {
+    ++num_pairs_;
+    regions_[views.first][views.second] = regions;
+    regions_[views.second][views.first] = regions;
   }
 
-  std::vector<ViewPair> FindDifferent() const {
-    std::vector<ViewPair> different;
-    for (const auto& entry : regions_) {
-      if (AreDifferent(entry.first)) different.push_back(entry.first);
-    }
-    return different;
-  }
-
-  void Grow() {
+  // The strongest link of groups that are not different, again and again.
+  // `links`: the strongest first.
+  void Grow(std::vector<ViewPair> links) {
+    const auto is_joint = [&](const ViewPair& link) {
+      return group_of_.at(link.first) == group_of_.at(link.second);
+    };
     for (;;) {
-      const ViewPair* best = nullptr;
-      double most = 0;
-      for (const auto& [groups, evidence] : evidence_) {
-        if (evidence > most && !AreDifferent(groups)) {
-          best = &groups;
-          most = evidence;
-        }
-      }
-      if (best == nullptr) return;
-      Join(*best);
+      links.erase(std::remove_if(links.begin(), links.end(), is_joint),
+                  links.end());
+      const auto next =
+          std::find_if(links.begin(), links.end(),
+                       [&](const ViewPair& link) { return !AreApart(link); });
+      if (next == links.end()) return;
+      Join(group_of_.at(next->first), group_of_.at(next->second));
     }
   }
 
+  // In different groups.
   bool AreApart(const ViewPair& views) const {
-    return group_of_.at(views.first) != group_of_.at(views.second);
+    const auto first = group_of_.find(views.first);
+    const auto second = group_of_.find(views.second);
+    return first != group_of_.end() && second != group_of_.end() &&
+           AreDifferent(first->second, second->second);
   }
 
   // All but the largest group; all if that has no majority.
@@ -96,44 +102,80 @@ class Groups {
   }
 
  private:
+  bool AreDifferent(ViewId a, ViewId b) const {
+    const auto of_a = regions_.find(a);
+    if (of_a == regions_.end()) return false;
+    const auto found = of_a->second.find(b);
+    if (found == of_a->second.end()) return false;
+    const OverlapRegions& regions = found->second;
+    return regions.num_bare > 0 &&
+           regions.num_bare >= kMinShareOfBare * regions.num &&
+           std::log10(num_pairs_) + Log10ChanceOfBare(regions) <= kMaxLog10Nfa;
+  }
+
   // The second group becomes a part of the first.
-  void Join(const ViewPair& groups) {
-    const auto [first, second] = groups;
+  void Join(ViewId first, ViewId second) {
     for (auto& entry : group_of_) {
       if (entry.second == second) entry.second = first;
     }
-    const auto join_pairs = [&](auto* of_pairs) {
-      std::remove_reference_t<decltype(*of_pairs)> joined;
-      for (const auto& [pair, value] : *of_pairs) {
-        const ViewId a = pair.first == second ? first : pair.first;
-        const ViewId b = pair.second == second ? first : pair.second;
-        if (a != b) joined[OrderedPair(a, b)] += value;
-      }
-      *of_pairs = std::move(joined);
-    };
-    join_pairs(&evidence_);
-    join_pairs(&regions_);
+    for (const auto& [other, regions] : regions_[second]) {
+      regions_[other].erase(second);
+      if (other == first) continue;
+      regions_[first][other] += regions;
+      regions_[other][first] += regions;
+    }
+    regions_.erase(second);
   }
 
   std::map<ViewId, ViewId> group_of_;  // named by one of its views
-  EvidenceOfPairs evidence_;           // between groups
-  RegionsOfPairs regions_;             // the same
-  double log10_num_ = 0;               // of pairs of views
+  // Between two groups, by either.
+  std::map<ViewId, std::map<ViewId, OverlapRegions>> regions_;
+  double num_pairs_ = 0;
 };
+
+// The strongest first.
+std::vector<ViewPair> ByEvidence(const Scene& scene, const ViewGraph& links) {
+  std::map<ViewPair, double> evidence;
+  for (const ViewPair& views : links.pairs()) {
+    const RelativePose& pose = scene.relative_poses.at(views);
+    evidence[views] = EvidenceOfNfa(pose.weakness ? 0 : pose.log10_nfa);
+  }
+  std::vector<ViewPair> sorted = links.pairs();
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](const ViewPair& a, const ViewPair& b) {
+                     return evidence.at(a) > evidence.at(b);
+                   });
+  return sorted;
+}
 
 }  // namespace
 
-LookAlikes FindLookAlikes(const Scene& scene, const PoseSummary& summary,
-                          const ExpectedOverlaps& overlaps) {
+Result<LookAlikes> FindLookAlikes(const Scene& scene,
+                                  const PoseSummary& summary,
+                                  const ExpectedOverlaps& overlaps,
+                                  const RunContext& context) {
   LookAlikes found;
+  const std::vector<ViewPair> sharing = SharingPairs(overlaps);
+  if (sharing.empty()) return found;
   const ViewGraph agreeing = AgreeingPoses(scene, summary);
-  Groups groups(scene, agreeing.pairs(), RegionsOf(overlaps));
-  found.different = groups.FindDifferent();
-  if (found.different.empty()) return found;
-  groups.Grow();
-  for (const ViewPair& views : agreeing.pairs()) {
-    if (groups.AreApart(views)) found.false_poses.push_back(views);
+  const double min_rate = kShareOfRate * UsualRate(sharing, overlaps, agreeing);
+  const OverlapPredictor predictor(scene);
+  std::vector<OverlapRegions> regions(sharing.size());
+  LOWLAP_RETURN_IF_ERROR(
+      ParallelFor(context, "bare regions", sharing.size(), [&](std::size_t n) {
+        regions[n] =
+            predictor.RegionsOf(sharing[n].first, sharing[n].second, min_rate);
+      }));
+  Groups groups(agreeing);
+  for (std::size_t n = 0; n < sharing.size(); ++n) {
+    groups.AddRegions(sharing[n], regions[n]);
   }
+  groups.Grow(ByEvidence(scene, agreeing));
+  const auto are_apart = [&](const ViewPair& v) { return groups.AreApart(v); };
+  std::copy_if(sharing.begin(), sharing.end(),
+               std::back_inserter(found.different), are_apart);
+  std::copy_if(agreeing.pairs().begin(), agreeing.pairs().end(),
+               std::back_inserter(found.false_poses), are_apart);
   if (!found.false_poses.empty()) found.doubtful = groups.ViewsOfOthers();
   return found;
 }

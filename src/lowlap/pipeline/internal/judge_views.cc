@@ -139,8 +139,9 @@ Status JudgeViews(Scene* scene,
        FindMissingMatches(*scene, *poses, overlaps)) {
     poses->reliability_warnings.push_back(std::move(doubt));
   }
-  auto look_alikes =
-      std::make_shared<LookAlikes>(FindLookAlikes(*scene, *poses, overlaps));
+  LOWLAP_ASSIGN_OR_RETURN(auto found,
+                          FindLookAlikes(*scene, *poses, overlaps, context));
+  auto look_alikes = std::make_shared<LookAlikes>(std::move(found));
   if (!look_alikes->doubtful.empty()) {
     ReliabilityWarning doubt;
     doubt.reason = WarningReason::kLookAlikes;

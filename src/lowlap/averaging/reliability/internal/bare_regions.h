@@ -28,14 +28,16 @@ struct OverlapRegions {
 /// are found in each, at the rate p at which they are found in those that are
 /// not bare: halves, across the longer side of their box, down to less than
 /// 2 x 3 / p landmarks. p is that of all at first; with the regions that are
-/// bare it grows, and the regions become smaller, up to four times. None if
-/// fewer than three are found.
+/// bare it grows, and the regions become smaller, up to four times. But p is
+/// `min_rate` at least, of (0, 1]: what other views find tells more where few
+/// landmarks are expected. None if fewer than three are found.
 ///
 /// Where both views see one place, few regions are bare (2 in 100 on
 /// photographs), however small p is; where two places look alike in part, all
 /// are beside that part. What missing correspondences tell: Zach, Irschara,
 /// Bischof, CVPR 2008.
-OverlapRegions DivideOverlap(std::vector<ExpectedSighting> expected);
+OverlapRegions DivideOverlap(std::vector<ExpectedSighting> expected,
+                             double min_rate);
 
 /// log10 of the chance that as many of the regions are bare where the views see
 /// one place: the binomial tail for a chance of 1/10 each, twice that of

@@ -22,10 +22,6 @@ struct ExpectedOverlap {
   /// Of those, the points that the other does observe; of the two views, the
   /// larger share.
   double found = 0;
-  /// Of the images of both, where they should show points of the other, which
-  /// lie where they see a surface to a fifth of its distance: what lies behind
-  /// a corner would leave them bare.
-  OverlapRegions regions;
 };
 
 /// Predicts what views of a solved scene should see of one another's landmarks.
@@ -46,6 +42,12 @@ class OverlapPredictor {
   /// nullopt: a view has no pose, no intrinsic or too few landmarks.
   std::optional<ExpectedOverlap> Between(ViewId a, ViewId b) const;
 
+  /// Of the images of both, where they should show points of the other
+  /// (DivideOverlap), which lie where they see a surface to a fifth of its
+  /// distance: what lies behind a corner would leave them bare. None where
+  /// Between is nullopt.
+  OverlapRegions RegionsOf(ViewId a, ViewId b, double min_rate) const;
+
  private:
   struct SeenPoint {
     Vec3 position;  // in world
@@ -61,12 +63,16 @@ class OverlapPredictor {
     // To that factor.
     bool SeesAt(const Vec2& pixel_px, double depth, double factor) const;
   };
-  struct Counts {
-    double share = 0, found = 0;
-    OverlapRegions regions;
+  // A point of one camera that another one should see.
+  struct Expected {
+    ExpectedSighting seen;
+    bool is_on_surface;
   };
 
-  static Counts Count(const Camera& from, const Camera& to, ViewId to_view);
+  static std::vector<Expected> ExpectedPoints(const Camera& from,
+                                              const Camera& to, ViewId to_view);
+  static ExpectedOverlap Count(const Camera& from, const Camera& to,
+                               ViewId to_view);
 
   std::map<ViewId, Camera> cameras_;
 };

@@ -4,6 +4,8 @@
 
 #include "lowlap/averaging/reliability/internal/expected_overlap.h"
 #include "lowlap/averaging/scene_poses.h"
+#include "lowlap/core/result.h"
+#include "lowlap/core/run_context.h"
 #include "lowlap/scene/scene.h"
 
 namespace lowlap {
@@ -15,15 +17,17 @@ namespace lowlap {
 /// But they put views before the same place that see different things there:
 /// what one of them sees should be found in the other one all over what they
 /// have in common, and is in the part that is alike only.
+///
+/// Groups of views grow along the relative poses that agree, those of most
+/// evidence first, unless the groups that one joins are different: of the
+/// regions of all that they should both see (of pairs that should share a
+/// fifth, OverlapPredictor::RegionsOf), a fifth are bare, as many as by chance
+/// in one of a hundred scenes at most (Log10ChanceOfBare, times the pairs).
 struct LookAlikes {
-  /// Pairs of views that cannot both be right: they should share a fifth of
-  /// what they see (OverlapPredictor), and of the regions of that a fifth are
-  /// bare, as many as by chance in one of a hundred scenes at most
-  /// (Log10ChanceOfBare, times the pairs).
+  /// Pairs of views of different groups that should share a fifth of what they
+  /// see.
   std::vector<ViewPair> different;
-  /// Relative poses that agree, between groups of views. The groups grow by
-  /// evidence: those that the most evidence joins become one, unless all that
-  /// they have in common, together, is as bare as that.
+  /// Relative poses that agree, between different groups.
   std::vector<ViewPair> false_poses;
   /// If there are any, the views of all groups but the largest, or of all if
   /// that has no majority.
@@ -31,9 +35,13 @@ struct LookAlikes {
 };
 
 /// Of the pairs with a relative pose, and those compared in vain, as `overlaps`
-/// has them. Cost: the pairs; where views are different, the views times the
-/// pairs.
-LookAlikes FindLookAlikes(const Scene& scene, const PoseSummary& summary,
-                          const ExpectedOverlaps& overlaps);
+/// has them. Regions are as large as for three quarters of the rate at which
+/// the best quarter of the relative poses that agree find what they should, at
+/// most. Cost: pairs times 1,024 points; the same for any number of threads.
+/// Error: kCancelled.
+Result<LookAlikes> FindLookAlikes(const Scene& scene,
+                                  const PoseSummary& summary,
+                                  const ExpectedOverlaps& overlaps,
+                                  const RunContext& context);
 
 }  // namespace lowlap
