@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "lowlap/averaging/reliability/internal/look_alikes.h"
+#include "lowlap/pipeline/internal/decisions/decide_by_structure.h"
 #include "lowlap/pipeline/solve_scene.h"
 #include "lowlap/study/internal/trust/scenes.h"
 #include "lowlap/study/internal/trust/trial.h"
@@ -12,8 +15,10 @@
 namespace lowlap {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::Field;
+using ::testing::StartsWith;
 
 RunContext Seeded(std::uint64_t seed) {
   RunContext context;
@@ -51,6 +56,47 @@ TEST(AlikeSides, AHouseIsNotFolded) {
   EXPECT_EQ(made->scene.unrelated_pairs, measured.unrelated_pairs);
   EXPECT_EQ(made->scene.point_tracks, measured.point_tracks);
   EXPECT_EQ(made->scene.line_tracks, measured.line_tracks);
+}
+
+TEST(AlikeSides, ASolutionThatIsNoBetterLeavesTheFirst) {
+  // Few points: what is left without the look-alikes does not hold the views.
+  constexpr std::uint64_t kSeed = 103;
+  const auto made = MakeTrustScene(
+      DrawTrustScene(TrustFamily::kAlikeSides, kSeed), Seeded(kSeed));
+  ASSERT_TRUE(made);
+  RunContext context = Seeded(kSeed);
+  std::vector<std::string> messages;
+  context.log = [&](LogLevel, const std::string& message) {
+    messages.push_back(message);
+  };
+  Scene solved = made->scene;
+  const auto result = SolveScene(&solved, SolveOptions(), context, nullptr);
+  ASSERT_TRUE(result);
+  ASSERT_THAT(messages, Contains(StartsWith("no better without")));
+
+  Scene first = made->scene;
+  auto composed =
+      ComposeSolution(&first, SolveOptions(), Seeded(kSeed), nullptr);
+  ASSERT_TRUE(composed);
+  SolveResult expected;
+  expected.motions = composed->start.motions;
+  expected.ratios = composed->ratios;
+  expected.poses = composed->poses;
+  ASSERT_TRUE(DecideHypothesesByStructure(composed->start.rotations,
+                                          SolveOptions(), Seeded(kSeed),
+                                          nullptr, &first, &expected));
+  ASSERT_TRUE(FinishSolution(&first, SolveOptions(), Seeded(kSeed), nullptr,
+                             &expected));
+  EXPECT_EQ(solved, first);
+  EXPECT_EQ(result->poses.unplaced, expected.poses.unplaced);
+  const LookAlikes& found = *result->poses.look_alikes;
+  EXPECT_FALSE(found.false_poses.empty());
+  EXPECT_THAT(
+      result->poses.reliability_warnings,
+      Contains(
+          AllOf(Field(&ReliabilityWarning::reason, WarningReason::kLookAlikes),
+                Field(&ReliabilityWarning::views, found.doubtful),
+                Field(&ReliabilityWarning::missing, found.different))));
 }
 
 TEST(AlikeSides, ViewsThatAreLeftOutAreNotJudged) {
