@@ -108,8 +108,7 @@ class Groups {
     const auto found = of_a->second.find(b);
     if (found == of_a->second.end()) return false;
     const OverlapRegions& regions = found->second;
-    return regions.num_bare > 0 &&
-           regions.num_bare >= kMinShareOfBare * regions.num &&
+    return regions.num_bare >= kMinShareOfBare * regions.num &&
            std::log10(num_pairs_) + Log10ChanceOfBare(regions) <= kMaxLog10Nfa;
   }
 

@@ -29,7 +29,7 @@ struct OverlapRegions {
 /// not bare: halves, across the longer side of their box, down to less than
 /// 2 x 3 / p landmarks. p is that of all at first; with the regions that are
 /// bare it grows, and the regions become smaller, up to four times. But p is
-/// `min_rate` at least, of (0, 1]: what other views find tells more where few
+/// `min_rate` at least, of [0, 1]: what other views find tells more where few
 /// landmarks are expected. None if fewer than three are found.
 ///
 /// Where both views see one place, few regions are bare (2 in 100 on
