@@ -59,7 +59,6 @@ TEST(AlikeSides, AHouseIsNotFolded) {
 }
 
 TEST(AlikeSides, ASolutionThatIsNoBetterLeavesTheFirst) {
-  // Few points: what is left without the look-alikes does not hold the views.
   constexpr std::uint64_t kSeed = 103;
   const auto made = MakeTrustScene(
       DrawTrustScene(TrustFamily::kAlikeSides, kSeed), Seeded(kSeed));

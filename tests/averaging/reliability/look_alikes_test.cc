@@ -104,9 +104,49 @@ TEST(FindLookAlikes, OnePairIsNotBelievedAgainstAllOthers) {
       seen.erase(std::find_if(seen.begin(), seen.end(), is_of(7)));
     }
   }
+  EXPECT_LT(Log10ChanceOfBare(OverlapPredictor(scene).RegionsOf(4, 7, 0)), -3);
   const auto found = Find(scene, {});
   EXPECT_THAT(found.different, IsEmpty());
   EXPECT_THAT(found.false_poses, IsEmpty());
+}
+
+// Two halves of the views hardly find each other's points, all over the wall.
+TEST(FindLookAlikes, OneWallOfWhichLittleIsFoundIsNoLookAlike) {
+  Scene scene = SceneOfTwoWalls(kNumCameras, 20);
+  Random random(2);
+  for (auto& [id, landmark] : scene.structure) {
+    const bool by_both = random.Uniform() < 0.6;
+    const bool by_first = random.Uniform() < 0.5;
+    auto& seen = landmark.observations;
+    seen.erase(std::remove_if(seen.begin(), seen.end(),
+                              [&](const PointObservation& o) {
+                                return !by_both &&
+                                       (o.view.value() < 4) != by_first;
+                              }),
+               seen.end());
+  }
+  EXPECT_THAT(Find(scene, {}).false_poses, IsEmpty());
+}
+
+// Hardly anything of the other wall is found: that says something by what other
+// views find only.
+TEST(FindLookAlikes, FewLandmarksAreEnough) {
+  for (const std::uint32_t alike : {2, 4}) {
+    Scene scene = SceneOfTwoWalls(5, alike);
+    for (std::uint32_t n = 0; n < 800; ++n) {
+      if (n % 5 > 0) scene.structure.erase(n);
+    }
+    EXPECT_EQ(Find(scene, {}).false_poses.size(), 5u * 3) << alike;
+  }
+}
+
+// A strong false one between others that are right.
+TEST(FindLookAlikes, TheStrongestRelativePoseMayBeFalse) {
+  Scene scene = SceneOfTwoWalls(5, 8);
+  scene.relative_poses.at({2, 6}).log10_nfa = -500;
+  EXPECT_EQ(Find(scene, {}).false_poses.size(), 5u * 3);
+  scene.relative_poses.at({2, 6}).weakness = PoseWeakness::kRepeats;
+  EXPECT_EQ(Find(scene, {}).false_poses.size(), 5u * 3);
 }
 
 TEST(FindLookAlikes, OnlyWhatIsInUseIsFalse) {

@@ -2,8 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <cmath>
-#include <cstddef>
 
 #include "lowlap/robust/internal/log_combinatorics.h"
 

@@ -29,13 +29,14 @@ std::vector<ViewPair> SharingPairs(const ExpectedOverlaps& overlaps) {
   return pairs;
 }
 
-// Of what is expected, the part that the best quarter of the pairs find.
+// The part of what is expected that a quarter of the relative poses exceed.
 double UsualRate(const std::vector<ViewPair>& pairs,
                  const ExpectedOverlaps& overlaps, const ViewGraph& agreeing) {
   std::vector<double> found;
   for (const ViewPair& views : pairs) {
-    if (agreeing.FindPair(views.first, views.second))
+    if (agreeing.FindPair(views.first, views.second)) {
       found.push_back(overlaps.at(views).found);
+    }
   }
   if (found.empty()) return 0;
   const auto quarter = found.begin() + static_cast<std::ptrdiff_t>(
@@ -44,21 +45,27 @@ double UsualRate(const std::vector<ViewPair>& pairs,
   return *quarter;
 }
 
+// What two groups should both see.
+struct Common {
+  OverlapRegions regions;
+  bool is_different = false;
+};
+
 // Views that grow together along links.
 class Groups {
  public:
-  explicit Groups(const ViewGraph& links) {
+  // `regions`: of `pairs`.
+  Groups(const ViewGraph& links, const std::vector<ViewPair>& pairs,
+         const std::vector<OverlapRegions>& regions)
+      : log10_num_pairs_(std::log10(static_cast<double>(pairs.size()))) {
     for (const ViewPair& views : links.pairs()) {
       for (const ViewId view : {views.first, views.second}) {
         group_of_.emplace(view, view);
       }
     }
-  }
-
-  void AddRegions(const ViewPair& views, const OverlapRegions& regions) {
-    ++num_pairs_;
-    regions_[views.first][views.second] = regions;
-    regions_[views.second][views.first] = regions;
+    for (std::size_t n = 0; n < pairs.size(); ++n) {
+      Add(pairs[n].first, pairs[n].second, regions[n]);
+    }
   }
 
   // The strongest link of groups that are not different, again and again.
@@ -78,7 +85,7 @@ class Groups {
     }
   }
 
-  // In different groups.
+  // In groups that are different.
   bool AreApart(const ViewPair& views) const {
     const auto first = group_of_.find(views.first);
     const auto second = group_of_.find(views.second);
@@ -103,13 +110,20 @@ class Groups {
 
  private:
   bool AreDifferent(ViewId a, ViewId b) const {
-    const auto of_a = regions_.find(a);
-    if (of_a == regions_.end()) return false;
+    const auto of_a = common_.find(a);
+    if (of_a == common_.end()) return false;
     const auto found = of_a->second.find(b);
-    if (found == of_a->second.end()) return false;
-    const OverlapRegions& regions = found->second;
-    return regions.num_bare >= kMinShareOfBare * regions.num &&
-           std::log10(num_pairs_) + Log10ChanceOfBare(regions) <= kMaxLog10Nfa;
+    return found != of_a->second.end() && found->second.is_different;
+  }
+
+  void Add(ViewId a, ViewId b, const OverlapRegions& regions) {
+    Common& common = common_[a][b];
+    common.regions += regions;
+    const OverlapRegions& all = common.regions;
+    common.is_different =
+        all.num_bare >= kMinShareOfBare * all.num &&
+        log10_num_pairs_ + Log10ChanceOfBare(all) <= kMaxLog10Nfa;
+    common_[b][a] = common;
   }
 
   // The second group becomes a part of the first.
@@ -117,24 +131,22 @@ class Groups {
     for (auto& entry : group_of_) {
       if (entry.second == second) entry.second = first;
     }
-    for (const auto& [other, regions] : regions_[second]) {
-      regions_[other].erase(second);
-      if (other == first) continue;
-      regions_[first][other] += regions;
-      regions_[other][first] += regions;
+    for (const auto& [other, common] : common_[second]) {
+      common_[other].erase(second);
+      if (other != first) Add(first, other, common.regions);
     }
-    regions_.erase(second);
+    common_.erase(second);
   }
 
   std::map<ViewId, ViewId> group_of_;  // named by one of its views
-  // Between two groups, by either.
-  std::map<ViewId, std::map<ViewId, OverlapRegions>> regions_;
-  double num_pairs_ = 0;
+  // Of two groups, by either.
+  std::map<ViewId, std::map<ViewId, Common>> common_;
+  double log10_num_pairs_;
 };
 
 // The strongest first.
 std::vector<ViewPair> ByEvidence(const Scene& scene, const ViewGraph& links) {
-  std::map<ViewPair, double> evidence;
+  EvidenceOfPairs evidence;
   for (const ViewPair& views : links.pairs()) {
     const RelativePose& pose = scene.relative_poses.at(views);
     evidence[views] = EvidenceOfNfa(pose.weakness ? 0 : pose.log10_nfa);
@@ -165,10 +177,7 @@ Result<LookAlikes> FindLookAlikes(const Scene& scene,
         regions[n] =
             predictor.RegionsOf(sharing[n].first, sharing[n].second, min_rate);
       }));
-  Groups groups(agreeing);
-  for (std::size_t n = 0; n < sharing.size(); ++n) {
-    groups.AddRegions(sharing[n], regions[n]);
-  }
+  Groups groups(agreeing, sharing, regions);
   groups.Grow(ByEvidence(scene, agreeing));
   const auto are_apart = [&](const ViewPair& v) { return groups.AreApart(v); };
   std::copy_if(sharing.begin(), sharing.end(),

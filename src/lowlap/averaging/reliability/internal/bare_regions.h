@@ -33,15 +33,17 @@ struct OverlapRegions {
 /// landmarks are expected. None if fewer than three are found.
 ///
 /// Where both views see one place, few regions are bare (2 in 100 on
-/// photographs), however small p is; where two places look alike in part, all
-/// are beside that part. What missing correspondences tell: Zach, Irschara,
+/// photographs), however small p is, as long as it decides; a quarter may be
+/// where a third of `min_rate` is found. Where two places look alike in part,
+/// all are beside that part. What missing correspondences tell: Zach, Irschara,
 /// Bischof, CVPR 2008.
 OverlapRegions DivideOverlap(std::vector<ExpectedSighting> expected,
                              double min_rate);
 
 /// log10 of the chance that as many of the regions are bare where the views see
-/// one place: the binomial tail for a chance of 1/10 each, twice that of
-/// landmarks that are found or not independently of each other (e^-3).
+/// one place, and find there what the regions are made for: the binomial tail
+/// for a chance of 1/10 each, twice that of landmarks that are found or not
+/// independently of each other (e^-3).
 double Log10ChanceOfBare(const OverlapRegions& regions);
 
 }  // namespace lowlap

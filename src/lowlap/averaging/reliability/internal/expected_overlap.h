@@ -42,10 +42,10 @@ class OverlapPredictor {
   /// nullopt: a view has no pose, no intrinsic or too few landmarks.
   std::optional<ExpectedOverlap> Between(ViewId a, ViewId b) const;
 
-  /// Of the images of both, where they should show points of the other
-  /// (DivideOverlap), which lie where they see a surface to a fifth of its
-  /// distance: what lies behind a corner would leave them bare. None where
-  /// Between is nullopt.
+  /// In the images of both, the points of the other that it should show
+  /// (DivideOverlap, which takes `min_rate`), if they lie where it sees a
+  /// surface to a fifth of its distance: what lies behind a corner would leave
+  /// regions bare. None where Between is nullopt.
   OverlapRegions RegionsOf(ViewId a, ViewId b, double min_rate) const;
 
  private:
@@ -60,7 +60,7 @@ class OverlapPredictor {
     std::vector<SeenPoint> points;
     std::vector<double> depths;  // of the cells, by rows; NaN: not known
 
-    // To that factor.
+    // What is seen there is as far away, to that factor.
     bool SeesAt(const Vec2& pixel_px, double depth, double factor) const;
   };
   // A point of one camera that another one should see.

@@ -24,10 +24,10 @@ namespace lowlap {
 /// fifth, OverlapPredictor::RegionsOf), a fifth are bare, as many as by chance
 /// in one of a hundred scenes at most (Log10ChanceOfBare, times the pairs).
 struct LookAlikes {
-  /// Pairs of views of different groups that should share a fifth of what they
-  /// see.
+  /// Pairs of views of groups that are different, if they should share a fifth
+  /// of what they see.
   std::vector<ViewPair> different;
-  /// Relative poses that agree, between different groups.
+  /// Relative poses that agree, between groups that are different.
   std::vector<ViewPair> false_poses;
   /// If there are any, the views of all groups but the largest, or of all if
   /// that has no majority.
@@ -35,10 +35,11 @@ struct LookAlikes {
 };
 
 /// Of the pairs with a relative pose, and those compared in vain, as `overlaps`
-/// has them. Regions are as large as for three quarters of the rate at which
-/// the best quarter of the relative poses that agree find what they should, at
-/// most. Cost: pairs times 1,024 points; the same for any number of threads.
-/// Error: kCancelled.
+/// has them. The min_rate of the regions is three quarters of the found share
+/// that a quarter of the relative poses exceed, of those that agree and should
+/// share a fifth: on photographs the least is at 0.7 of that. Cost: pairs times
+/// 1,024 points, and the views times the relative poses; the same for any
+/// number of threads. Error: kCancelled.
 Result<LookAlikes> FindLookAlikes(const Scene& scene,
                                   const PoseSummary& summary,
                                   const ExpectedOverlaps& overlaps,

@@ -130,8 +130,8 @@ Result<SolveResult> SolveWithout(const std::vector<ViewPair>& left_out,
   return result;
 }
 
-// Fewer views see different things at one place, and only doubtful ones are
-// lost.
+// Fewer pairs are of groups that see different things at one place, and only
+// doubtful views are lost.
 bool IsBetter(const SolveResult& again, const SolveResult& first) {
   const LookAlikes& found = *first.poses.look_alikes;
   const auto is_lost_without_doubt = [&](ViewId view) {

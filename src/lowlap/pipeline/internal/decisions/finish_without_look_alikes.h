@@ -15,9 +15,10 @@ namespace lowlap {
 /// the structure tells what a view should see. The scene is solved again from
 /// the composed start, as if their pairs had been compared in vain: what they
 /// outnumbered may hold the views together then. That is taken, and looked at
-/// again, if fewer pairs of views see different things at one place, and if no
-/// views are lost but those that were doubtful for it; else all stays as it
-/// was, and doubtful. Where none is found, nothing more is done.
+/// again, if fewer pairs are of groups that see different things at one place
+/// (LookAlikes::different), and if no views are lost but those that were
+/// doubtful for it; else all stays as it was, and doubtful. Where none is
+/// found, nothing more is done.
 ///
 /// `scene` holds the poses of `composed`; it gets poses, ratios and structure
 /// of the result, whose outliers name what was left out (kLookAlike). Errors:
