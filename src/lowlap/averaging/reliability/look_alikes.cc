@@ -70,18 +70,22 @@ class Groups {
 
   // The strongest link of groups that are not different, again and again.
   // `links`: the strongest first.
-  void Grow(std::vector<ViewPair> links) {
-    const auto is_joint = [&](const ViewPair& link) {
-      return group_of_.at(link.first) == group_of_.at(link.second);
+  void Grow(const std::vector<ViewPair>& links) {
+    std::vector<ViewPair> passed_over;
+    const auto next = [&] {
+      return std::find_if(
+          passed_over.begin(), passed_over.end(),
+          [&](const ViewPair& v) { return !AreJoint(v) && !AreApart(v); });
     };
-    for (;;) {
-      links.erase(std::remove_if(links.begin(), links.end(), is_joint),
-                  links.end());
-      const auto next =
-          std::find_if(links.begin(), links.end(),
-                       [&](const ViewPair& link) { return !AreApart(link); });
-      if (next == links.end()) return;
-      Join(group_of_.at(next->first), group_of_.at(next->second));
+    for (const ViewPair& link : links) {
+      if (AreJoint(link)) continue;
+      if (AreApart(link)) {
+        passed_over.push_back(link);
+        continue;
+      }
+      Join(link);
+      // With all their views, groups may be different no longer.
+      while (next() != passed_over.end()) Join(*next());
     }
   }
 
@@ -109,6 +113,10 @@ class Groups {
   }
 
  private:
+  bool AreJoint(const ViewPair& views) const {
+    return group_of_.at(views.first) == group_of_.at(views.second);
+  }
+
   bool AreDifferent(ViewId a, ViewId b) const {
     const auto of_a = common_.find(a);
     if (of_a == common_.end()) return false;
@@ -126,8 +134,10 @@ class Groups {
     common_[b][a] = common;
   }
 
-  // The second group becomes a part of the first.
-  void Join(ViewId first, ViewId second) {
+  // The group of the second view becomes a part of that of the first.
+  void Join(const ViewPair& link) {
+    const ViewId first = group_of_.at(link.first);
+    const ViewId second = group_of_.at(link.second);
     for (auto& entry : group_of_) {
       if (entry.second == second) entry.second = first;
     }
