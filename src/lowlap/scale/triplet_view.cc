@@ -1,6 +1,7 @@
 #include "lowlap/scale/triplet_view.h"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <string>
 #include <tuple>
@@ -116,6 +117,94 @@ void KeepLonger(const SeenView& view, FeatureIndex piece,
   }
 }
 
+// The relative poses of a triplet, from its middle view to the outer ones.
+struct TripletEdges {
+  const RelativePose* to_i = nullptr;
+  const RelativePose* to_k = nullptr;
+};
+
+Result<TripletEdges> FindEdges(const SceneFeatures& features,
+                               const ViewTriplet& views,
+                               const std::string& name) {
+  const Scene& scene = features.scene;
+  const TripletEdges edges = {scene.FindRelativePose(views.first, views.middle),
+                              scene.FindRelativePose(views.last, views.middle)};
+  for (const RelativePose* const edge : {edges.to_i, edges.to_k}) {
+    if (edge == nullptr || !features.HasAll(views)) {
+      return MakeError(ErrorCode::kInvalidArgument,
+                       name +
+                           ": a relative pose, or the normalised features "
+                           "of a view, are missing");
+    }
+    LOWLAP_RETURN_IF_ERROR(
+        CheckMatches(scene, *edge, edge->point_inliers, true));
+    LOWLAP_RETURN_IF_ERROR(
+        CheckMatches(scene, *edge, edge->line_inliers, false));
+  }
+  return edges;
+}
+
+std::vector<TripletPoint> PointsOf(const SeenView& i, const SeenView& j,
+                                   const SeenView& k,
+                                   const std::vector<MiddleMatch>& ij,
+                                   const std::vector<MiddleMatch>& jk) {
+  std::vector<TripletPoint> points;
+  points.reserve(std::min(ij.size(), jk.size()));
+  const auto is_valid = [](const Vec3& point) { return point.z() > 0; };
+  std::set<TripletPoint, ByPlaces> known;
+  Chain(ij, jk, j.features->points.size(),
+        [&](const MiddleMatch& match_ij, const MiddleMatch& match_jk) {
+          const TripletPoint point{match_ij.middle,
+                                   i.features->points[match_ij.neighbor],
+                                   j.features->points[match_ij.middle],
+                                   k.features->points[match_jk.neighbor]};
+          if (is_valid(point.in_i) && is_valid(point.in_j) &&
+              is_valid(point.in_k) && known.insert(point).second) {
+            points.push_back(point);
+          }
+        });
+  return points;
+}
+
+// By track; without one by the segment of the middle view.
+using LinesOfMiddle =
+    std::map<std::pair<LineTrackId, FeatureIndex>, LinePieces>;
+
+// `n`: of LinePieces::in_neighbor.
+void AddPieces(const SeenView& middle, const SeenView& neighbor, int n,
+               const std::vector<MiddleMatch>& matches, LinesOfMiddle* lines) {
+  for (const MiddleMatch& match : matches) {
+    const LineTrackId track = (*middle.line_tracks)[match.middle];
+    if ((*neighbor.line_tracks)[match.neighbor] != track) continue;
+    LinePieces& pieces =
+        (*lines)[{track, track == kInvalidId ? match.middle : 0}];
+    KeepLonger(middle, match.middle, &pieces.in_middle);
+    KeepLonger(neighbor, match.neighbor, &pieces.in_neighbor[n]);
+  }
+}
+
+void AddLines(const SeenView& i, const SeenView& j, const SeenView& k,
+              const std::vector<MiddleMatch>& ij,
+              const std::vector<MiddleMatch>& jk, TripletView* triplet) {
+  LinesOfMiddle lines;
+  AddPieces(j, i, 0, ij, &lines);
+  AddPieces(j, k, 1, jk, &lines);
+  for (const auto& [key, pieces] : lines) {
+    const auto& [in_i, in_k] = pieces.in_neighbor;
+    const ObservedSegment seen = j.Observe(pieces.in_middle);
+    if (in_i != kInvalidId) {
+      triplet->lines_ij.push_back({pieces.in_middle, seen, i.Observe(in_i)});
+    }
+    if (in_k != kInvalidId) {
+      triplet->lines_jk.push_back({pieces.in_middle, seen, k.Observe(in_k)});
+    }
+    if (in_i != kInvalidId && in_k != kInvalidId) {
+      triplet->lines.push_back(
+          {pieces.in_middle, i.Observe(in_i), seen, k.Observe(in_k)});
+    }
+  }
+}
+
 }  // namespace
 
 SceneFeatures::SceneFeatures(const Scene& of_scene) : scene(of_scene) {
@@ -145,48 +234,32 @@ bool SceneFeatures::HasAll(const ViewTriplet& views) const {
 
 Result<TripletView> MakeTripletView(const SceneFeatures& features,
                                     const ViewTriplet& views) {
-  const Scene& scene = features.scene;
   const std::string name = "triplet (" + std::to_string(views.first.value()) +
                            ", " + std::to_string(views.middle.value()) + ", " +
                            std::to_string(views.last.value()) + ")";
-  const Intrinsic* intrinsic = scene.FindIntrinsic(views.middle);
+  const Intrinsic* intrinsic = features.scene.FindIntrinsic(views.middle);
   if (intrinsic == nullptr) {
     return MakeError(ErrorCode::kInvalidArgument,
                      name + ": the middle view has no intrinsic");
   }
-  const ViewId outer[2] = {views.first, views.last};
-  const RelativePose* edges[2];
-  for (int n = 0; n < 2; ++n) {
-    edges[n] = scene.FindRelativePose(outer[n], views.middle);
-    if (edges[n] == nullptr || !features.HasAll(views)) {
-      return MakeError(ErrorCode::kInvalidArgument,
-                       name +
-                           ": a relative pose, or the normalised features "
-                           "of a view, are missing");
-    }
-    for (const bool points : {true, false}) {
-      LOWLAP_RETURN_IF_ERROR(CheckMatches(
-          scene, *edges[n],
-          points ? edges[n]->point_inliers : edges[n]->line_inliers, points));
-    }
-  }
+  LOWLAP_ASSIGN_OR_RETURN(const TripletEdges edges,
+                          FindEdges(features, views, name));
   const SeenView i(features, views.first), j(features, views.middle),
       k(features, views.last);
-  const auto from_middle = [&](int n, auto matches) {
-    return FromMiddle(edges[n]->*matches,
-                      edges[n]->views.first == views.middle);
+  const auto from_middle = [&](const RelativePose& edge, auto matches) {
+    return FromMiddle(edge.*matches, edge.views.first == views.middle);
   };
 
   TripletView triplet;
   triplet.views = views;
   triplet.geometry.cami_from_camj =
-      UnitTransform(*edges[0], views.middle, views.first);
+      UnitTransform(*edges.to_i, views.middle, views.first);
   triplet.geometry.camk_from_camj =
-      UnitTransform(*edges[1], views.middle, views.last);
+      UnitTransform(*edges.to_k, views.middle, views.last);
   triplet.geometry.focal_i_px = i.features->focal_px;
   triplet.geometry.focal_j_px = j.features->focal_px;
   triplet.geometry.focal_k_px = k.features->focal_px;
-  for (const RelativePose* edge : edges) {
+  for (const RelativePose* edge : {edges.to_i, edges.to_k}) {
     for (const TripletGeometry& geometry :
          PerturbPose(triplet.geometry, *edge, views)) {
       triplet.pose_perturbations.push_back(geometry);
@@ -194,51 +267,11 @@ Result<TripletView> MakeTripletView(const SceneFeatures& features,
   }
   triplet.image_area_px2 = intrinsic->ImageArea();
   triplet.image_diagonal_px = intrinsic->ImageDiagonal();
-
-  triplet.points.reserve(
-      std::min(edges[0]->point_inliers.size(), edges[1]->point_inliers.size()));
-  const auto is_valid = [](const Vec3& point) { return point.z() > 0; };
-  std::set<TripletPoint, ByPlaces> known;
-  Chain(from_middle(0, &RelativePose::point_inliers),
-        from_middle(1, &RelativePose::point_inliers), j.features->points.size(),
-        [&](const MiddleMatch& ij, const MiddleMatch& jk) {
-          const TripletPoint point{ij.middle, i.features->points[ij.neighbor],
-                                   j.features->points[ij.middle],
-                                   k.features->points[jk.neighbor]};
-          if (is_valid(point.in_i) && is_valid(point.in_j) &&
-              is_valid(point.in_k) && known.insert(point).second) {
-            triplet.points.push_back(point);
-          }
-        });
-
-  // By track; without one by the segment of the middle view.
-  std::map<std::pair<LineTrackId, FeatureIndex>, LinePieces> lines;
-  for (int n = 0; n < 2; ++n) {
-    const SeenView& neighbor = n == 0 ? i : k;
-    for (const MiddleMatch& match :
-         from_middle(n, &RelativePose::line_inliers)) {
-      const LineTrackId track = (*j.line_tracks)[match.middle];
-      if ((*neighbor.line_tracks)[match.neighbor] != track) continue;
-      LinePieces& pieces =
-          lines[{track, track == kInvalidId ? match.middle : 0}];
-      KeepLonger(j, match.middle, &pieces.in_middle);
-      KeepLonger(neighbor, match.neighbor, &pieces.in_neighbor[n]);
-    }
-  }
-  for (const auto& [key, pieces] : lines) {
-    const auto& [in_i, in_k] = pieces.in_neighbor;
-    const ObservedSegment seen = j.Observe(pieces.in_middle);
-    if (in_i != kInvalidId) {
-      triplet.lines_ij.push_back({pieces.in_middle, seen, i.Observe(in_i)});
-    }
-    if (in_k != kInvalidId) {
-      triplet.lines_jk.push_back({pieces.in_middle, seen, k.Observe(in_k)});
-    }
-    if (in_i != kInvalidId && in_k != kInvalidId) {
-      triplet.lines.push_back(
-          {pieces.in_middle, i.Observe(in_i), seen, k.Observe(in_k)});
-    }
-  }
+  triplet.points =
+      PointsOf(i, j, k, from_middle(*edges.to_i, &RelativePose::point_inliers),
+               from_middle(*edges.to_k, &RelativePose::point_inliers));
+  AddLines(i, j, k, from_middle(*edges.to_i, &RelativePose::line_inliers),
+           from_middle(*edges.to_k, &RelativePose::line_inliers), &triplet);
   return triplet;
 }
 

@@ -1,6 +1,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdint>
+
 #include "lowlap/averaging/reliability/internal/find_reliability_warnings.h"
 
 namespace lowlap {

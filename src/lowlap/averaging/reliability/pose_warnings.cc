@@ -115,6 +115,123 @@ std::string CauseOf(WarningReason reason) {
   return "";
 }
 
+PoseWarning WarningOf(const std::vector<ViewId>& unplaced,
+                      const Writer& writer) {
+  const std::string cause =
+      "Not placed, since no reliable relative pose and scale joins them to the "
+      "others";
+  return {cause + ": " + writer.Names(unplaced) + ".", unplaced, cause};
+}
+
+PoseWarning WarningOf(const ContestedLink& link, const Writer& writer) {
+  return {"Doubtful: only the relative pose " + writer.Pairs({link.edge}) +
+              " places " + writer.Names(link.views) +
+              ", and it is contradicted by " +
+              writer.Pairs(link.contradictions) + ", which have less evidence.",
+          link.views,
+          "Doubtful, since one relative pose alone places them, and others "
+          "contradict it"};
+}
+
+PoseWarning WarningOf(const Contest& contest, const Writer& writer) {
+  return {"Doubtful: " + writer.Names(contest.views) + ": only " +
+              writer.Pairs(contest.links) +
+              " join them to the others, and are contradicted by " +
+              writer.Pairs(contest.contradictions) +
+              ", whose evidence comes near theirs or exceeds it.",
+          contest.views,
+          "Doubtful, since what contradicts the links to the others has "
+          "evidence near theirs, or more"};
+}
+
+PoseWarning WarningOf(const LoopClosing& loop, std::size_t num_loops,
+                      const Writer& writer) {
+  const std::string use = loop.left_out ? "the one of least evidence, " +
+                                              writer.Pairs({*loop.left_out}) +
+                                              ", was left out: "
+                                        : "all are used: ";
+  return {"Doubtful: a loop of " + std::to_string(loop.edges.size()) +
+              " relative poses does not close by " +
+              Format("%.2f", loop.closing_deg) + " degrees (" +
+              Format("%.2f", loop.expected_deg) +
+              " expected). Nothing tells which is wrong; " + use +
+              writer.Pairs(loop.edges) + ".",
+          loop.DoubtfulViews(),
+          "Doubtful: relative poses whose loops do not close, and nothing "
+          "tells which are wrong (" +
+              std::to_string(num_loops) + ")"};
+}
+
+PoseWarning WarningOf(const ReliabilityWarning& doubt, const Writer& writer) {
+  const std::string cause = CauseOf(doubt.reason);
+  return {"Doubtful: " + writer.Names(doubt.views) + ": " + cause +
+              writer.Details(doubt) + ".",
+          doubt.views, "Doubtful, since " + cause};
+}
+
+// Of relative poses or ratios, if there are any; no views are named.
+void AddCounted(const std::string& what, std::size_t count,
+                const std::string& names, std::vector<PoseWarning>* warnings) {
+  if (count == 0) return;
+  const std::string cause = what + " (" + std::to_string(count) + ")";
+  warnings->push_back(
+      {cause + (names.empty() ? "" : ": " + names) + ".", {}, cause});
+}
+
+void AddInUse(const PoseSummary& summary, const Writer& writer,
+              std::vector<PoseWarning>* warnings) {
+  AddCounted(
+      "Doubtful: scale ratios in use that chance explains as well, since "
+      "nothing else places one of their views",
+      summary.weak_ratios.size(), writer.Triplets(summary.weak_ratios),
+      warnings);
+  AddCounted("Of the " + std::to_string(summary.num_edges) +
+                 " relative poses in use, those that lie on no cycle, so "
+                 "that no other one can confirm them",
+             summary.unchecked.size(), "", warnings);
+  AddCounted(
+      "Relative poses in use though their directions contradict the solved "
+      "centres, since views would be lost without them",
+      summary.kept_outliers.size(),
+      writer.Pairs(PairsOf(summary.kept_outliers)), warnings);
+}
+
+void AddLeftOut(const PoseSummary& summary, const Writer& writer,
+                std::vector<PoseWarning>* warnings) {
+  AddCounted(
+      "Scale ratios left out because only without them the directions of the "
+      "relative poses agree",
+      summary.left_out_ratios.size(), writer.Triplets(summary.left_out_ratios),
+      warnings);
+  std::vector<ViewPair> replaced;
+  for (const ReplacedDirection& edge : summary.matches.replaced) {
+    replaced.push_back(edge.views);
+  }
+  AddCounted(
+      "Relative poses whose own matches contradict their directions and bear "
+      "out others, which took their place",
+      replaced.size(), writer.Pairs(replaced), warnings);
+  const auto add = [&](OutlierReason reason, const std::string& why) {
+    std::vector<ViewPair> pairs;
+    for (const OutlierEdge& edge : summary.outlier_edges) {
+      if (edge.reason == reason) pairs.push_back(edge.views);
+    }
+    AddCounted("Relative poses left out because " + why, pairs.size(),
+               writer.Pairs(pairs), warnings);
+  };
+  add(OutlierReason::kRotation, "their rotations contradict the others");
+  add(OutlierReason::kDirection,
+      "their directions contradict the solved centres");
+  add(OutlierReason::kContradicted,
+      "no cycle confirms them and what contradicts them has more evidence");
+  add(OutlierReason::kMatches, "their own matches contradict them");
+  add(OutlierReason::kOutweighed,
+      "third views bear out what contradicts them, and hardly them");
+  add(OutlierReason::kLookAlike,
+      "they join places that look alike: beside the matches, what both views "
+      "should see is missing");
+}
+
 }  // namespace
 
 std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
@@ -122,104 +239,22 @@ std::vector<PoseWarning> PoseWarningsByView(const PoseSummary& summary,
   const Writer writer(scene);
   std::vector<PoseWarning> warnings;
   if (!summary.unplaced.empty()) {
-    const std::string cause =
-        "Not placed, since no reliable relative pose and scale joins them to "
-        "the others";
-    warnings.push_back({cause + ": " + writer.Names(summary.unplaced) + ".",
-                        summary.unplaced, cause});
+    warnings.push_back(WarningOf(summary.unplaced, writer));
   }
   for (const ContestedLink& link : summary.contested) {
-    warnings.push_back(
-        {"Doubtful: only the relative pose " + writer.Pairs({link.edge}) +
-             " places " + writer.Names(link.views) +
-             ", and it is contradicted by " +
-             writer.Pairs(link.contradictions) + ", which have less evidence.",
-         link.views,
-         "Doubtful, since one relative pose alone places them, and others "
-         "contradict it"});
+    warnings.push_back(WarningOf(link, writer));
   }
   for (const Contest& contest : summary.contests) {
-    warnings.push_back({"Doubtful: " + writer.Names(contest.views) + ": only " +
-                            writer.Pairs(contest.links) +
-                            " join them to the others, and are contradicted "
-                            "by " +
-                            writer.Pairs(contest.contradictions) +
-                            ", whose evidence comes near theirs or exceeds it.",
-                        contest.views,
-                        "Doubtful, since what contradicts the links to the "
-                        "others has evidence near theirs, or more"});
+    warnings.push_back(WarningOf(contest, writer));
   }
   for (const LoopClosing& loop : summary.loops) {
-    warnings.push_back(
-        {"Doubtful: a loop of " + std::to_string(loop.edges.size()) +
-             " relative poses does not close by " +
-             Format("%.2f", loop.closing_deg) + " degrees (" +
-             Format("%.2f", loop.expected_deg) +
-             " expected). Nothing tells which is wrong; " +
-             (loop.left_out
-                  ? "the one of least evidence, " +
-                        writer.Pairs({*loop.left_out}) + ", was left out: "
-                  : std::string("all are used: ")) +
-             writer.Pairs(loop.edges) + ".",
-         loop.DoubtfulViews(),
-         "Doubtful: relative poses whose loops do not close, and nothing tells "
-         "which are wrong (" +
-             std::to_string(summary.loops.size()) + ")"});
+    warnings.push_back(WarningOf(loop, summary.loops.size(), writer));
   }
   for (const ReliabilityWarning& doubt : summary.reliability_warnings) {
-    const std::string cause = CauseOf(doubt.reason);
-    warnings.push_back({"Doubtful: " + writer.Names(doubt.views) + ": " +
-                            cause + writer.Details(doubt) + ".",
-                        doubt.views, "Doubtful, since " + cause});
+    warnings.push_back(WarningOf(doubt, writer));
   }
-  const auto add = [&](const std::string& what, std::size_t count,
-                       const std::string& names) {
-    if (count == 0) return;
-    const std::string cause = what + " (" + std::to_string(count) + ")";
-    warnings.push_back(
-        {cause + (names.empty() ? "" : ": " + names) + ".", {}, cause});
-  };
-  add("Doubtful: scale ratios in use that chance explains as well, since "
-      "nothing else places one of their views",
-      summary.weak_ratios.size(), writer.Triplets(summary.weak_ratios));
-  add("Of the " + std::to_string(summary.num_edges) +
-          " relative poses in use, those that lie on no cycle, so that no "
-          "other one can confirm them",
-      summary.unchecked.size(), "");
-  add("Relative poses in use though their directions contradict the solved "
-      "centres, since views would be lost without them",
-      summary.kept_outliers.size(),
-      writer.Pairs(PairsOf(summary.kept_outliers)));
-  add("Scale ratios left out because only without them the directions of the "
-      "relative poses agree",
-      summary.left_out_ratios.size(), writer.Triplets(summary.left_out_ratios));
-  std::vector<ViewPair> replaced;
-  for (const ReplacedDirection& edge : summary.matches.replaced) {
-    replaced.push_back(edge.views);
-  }
-  add("Relative poses whose own matches contradict their directions and bear "
-      "out others, which took their place",
-      replaced.size(), writer.Pairs(replaced));
-  const auto left_out = [&](OutlierReason reason, const std::string& why) {
-    std::vector<ViewPair> pairs;
-    for (const OutlierEdge& edge : summary.outlier_edges) {
-      if (edge.reason == reason) pairs.push_back(edge.views);
-    }
-    add("Relative poses left out because " + why, pairs.size(),
-        writer.Pairs(pairs));
-  };
-  left_out(OutlierReason::kRotation, "their rotations contradict the others");
-  left_out(OutlierReason::kDirection,
-           "their directions contradict the solved centres");
-  left_out(OutlierReason::kContradicted,
-           "no cycle confirms them and what contradicts them has more "
-           "evidence");
-  left_out(OutlierReason::kMatches, "their own matches contradict them");
-  left_out(OutlierReason::kOutweighed,
-           "third views bear out what contradicts them, and hardly them");
-  left_out(OutlierReason::kLookAlike,
-           "they join places that look alike: beside the matches, what both "
-           "views should see is missing");
+  AddInUse(summary, writer, &warnings);
+  AddLeftOut(summary, writer, &warnings);
   return warnings;
 }
 
