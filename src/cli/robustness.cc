@@ -196,7 +196,7 @@ void AddRobustness(CLI::App* program, Action* action) {
               "what is made of features that have nothing to do with each "
               "other");
   AddOption(command, "--scenes", flags->num_scenes,
-            "Simulations of each of its three families")
+            "Simulations of each of its families")
       .Must(Check::Positive())
       .ShowDefault()
       .Needs(trust);

@@ -18,6 +18,8 @@ namespace {
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::Field;
+using ::testing::IsEmpty;
+using ::testing::Not;
 using ::testing::StartsWith;
 
 RunContext Seeded(std::uint64_t seed) {
@@ -96,6 +98,21 @@ TEST(AlikeSides, ASolutionThatIsNoBetterLeavesTheFirst) {
           AllOf(Field(&ReliabilityWarning::reason, WarningReason::kLookAlikes),
                 Field(&ReliabilityWarning::views, found.doubtful),
                 Field(&ReliabilityWarning::missing, found.different))));
+}
+
+// Half as much is found of another session as of one's own.
+TEST(TwoSessions, AreOnePlace) {
+  constexpr std::uint64_t kSeed = 310;
+  const TrustScene drawn = DrawTrustScene(TrustFamily::kTwoSessions, kSeed);
+  EXPECT_THAT(drawn.likeness.second_session, Not(IsEmpty()));
+  EXPECT_THAT(drawn.Labels(), Contains("two sessions"));
+  const auto trial =
+      RunTrustTrial(TrustFamily::kTwoSessions, kSeed, Seeded(kSeed));
+  ASSERT_TRUE(trial);
+  for (const JudgedView& judged : trial->views) {
+    EXPECT_TRUE(judged.IsFirm()) << judged.view;
+    EXPECT_LT(judged.error, 0.01) << judged.view;
+  }
 }
 
 TEST(AlikeSides, ViewsThatAreLeftOutAreNotJudged) {

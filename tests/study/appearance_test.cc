@@ -26,9 +26,9 @@ struct Matches {
   int num_right = 0, num_false = 0;
 };
 
-Matches MatchesOf(const SyntheticScene& synthetic, ViewId first,
-                  ViewId second) {
-  const auto detected = DescribeFeatures(synthetic, 1, 0);
+Matches MatchesOf(const SyntheticScene& synthetic, ViewId first, ViewId second,
+                  const LikenessOptions& likeness = {}) {
+  const auto detected = DescribeFeatures(synthetic, likeness, 0);
   const PairMatches matches =
       MatchPair(detected.at(first), detected.at(second), MatchOptions());
   std::map<FeatureRef, PointTrackId> track_of;
@@ -59,12 +59,28 @@ TEST(DescribeFeatures, OppositeViewsMatchWhatLooksTheSame) {
 
 TEST(DescribeFeatures, WhatIsNotFoundLooksLikeNothingElse) {
   const SyntheticScene synthetic = House(0);
-  const auto found = DescribeFeatures(synthetic, 0, 0);
+  LikenessOptions likeness;
+  likeness.found_share = 0;
+  const auto found = DescribeFeatures(synthetic, likeness, 0);
   EXPECT_LT(MatchPair(found.at(0), found.at(1), MatchOptions()).points.size(),
             10u);
-  const auto again = DescribeFeatures(synthetic, 0, 0);
+  const auto again = DescribeFeatures(synthetic, likeness, 0);
   EXPECT_EQ(found.at(0).point_descriptors, again.at(0).point_descriptors);
   EXPECT_EQ(found.at(0).line_descriptors, again.at(0).line_descriptors);
+}
+
+TEST(DescribeFeatures, TwoSessionsFindWhatHasNotChanged) {
+  const SyntheticScene synthetic = House(0);
+  LikenessOptions likeness;
+  likeness.changed_share = 0.5;
+  likeness.second_session = {1, 2};
+  const int num_of_all = MatchesOf(synthetic, 0, 1).num_right;
+  const int num_of_both = MatchesOf(synthetic, 0, 1, likeness).num_right;
+  EXPECT_GT(num_of_both, 0.35 * num_of_all);
+  EXPECT_LT(num_of_both, 0.65 * num_of_all);
+  EXPECT_GT(MatchesOf(synthetic, 1, 2, likeness).num_right, 0.8 * num_of_all);
+  likeness.changed_share = 0;
+  EXPECT_EQ(MatchesOf(synthetic, 0, 1, likeness).num_right, num_of_all);
 }
 
 }  // namespace

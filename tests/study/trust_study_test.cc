@@ -274,9 +274,9 @@ TEST(TrustSummary, CountsCamerasByGradeAndError) {
 TEST(TrustSummary, ThePlotSaysHowManyCamerasABarStandsFor) {
   const auto plot = DrawFirmShare(Invented());
   ASSERT_TRUE(plot);
-  EXPECT_THAT(*plot, HasSubstr("0.5 to 1 % (1 of 2, 1 of 2, 0 of 0)"));
-  EXPECT_THAT(*plot, HasSubstr("20 to 50 % (1 of 2, 1 of 2, 0 of 0)"));
-  EXPECT_THAT(*plot, HasSubstr("over 100 % (0 of 0, 0 of 0, 0 of 0)"));
+  EXPECT_THAT(*plot, HasSubstr("0.5 to 1 % (1 of 2, 1 of 2, 0 of 0, 0 of 0)"));
+  EXPECT_THAT(*plot, HasSubstr("20 to 50 % (1 of 2, 1 of 2, 0 of 0, 0 of 0)"));
+  EXPECT_THAT(*plot, HasSubstr("over 100 % (0 of 0, 0 of 0, 0 of 0, 0 of 0)"));
 }
 
 // Pairs of views at one place, between which no ratio is meaningful.

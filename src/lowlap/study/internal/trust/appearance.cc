@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -72,6 +73,35 @@ Vec3 PlaceOf(const SyntheticLine& line) {
   return 0.5 * (line.start + line.end);
 }
 
+// Of one place, in the views of both sessions.
+class Place {
+ public:
+  // Drawn from `stream`, and what has changed from three times that.
+  Place(const LikenessOptions& likeness, std::uint64_t seed,
+        std::uint64_t stream, std::uint64_t id)
+      : likeness_(likeness), first_(DrawnFrom(seed, stream + id)) {
+    Random changes(seed, 3 * stream + id);
+    if (changes.Uniform() < likeness.changed_share) second_.emplace(&changes);
+  }
+
+  const Appearance& In(ViewId view) const {
+    const std::vector<ViewId>& second = likeness_.second_session;
+    const bool is_second =
+        std::find(second.begin(), second.end(), view) != second.end();
+    return is_second && second_ ? *second_ : first_;
+  }
+
+ private:
+  static Appearance DrawnFrom(std::uint64_t seed, std::uint64_t stream) {
+    Random random(seed, stream);
+    return Appearance(&random);
+  }
+
+  const LikenessOptions& likeness_;
+  Appearance first_;
+  std::optional<Appearance> second_;
+};
+
 // Calls describe(ref, ray, values) for all features of the tracks, with the
 // vector from the camera.
 template <class Id, class Shape, class Describe>
@@ -79,22 +109,23 @@ void DescribeTracks(const std::map<ViewId, Pose>& cameras,
                     const std::map<Id, Track>& tracks,
                     const std::map<Id, Shape>& shapes,
                     const std::vector<std::pair<Id, Id>>& alike,
-                    double found_share, std::uint64_t seed,
+                    const LikenessOptions& likeness, std::uint64_t seed,
                     std::uint64_t stream, const Describe& describe) {
   std::map<Id, Id> original_of;
   for (const auto& [first, second] : alike) original_of[second] = first;
   for (const auto& [id, shape] : shapes) {
     const auto original = original_of.find(id);
     const bool is_copy = original != original_of.end();
-    Random places(seed, stream + (is_copy ? original->second : id).value());
-    const Appearance appearance(&places);
+    const Place place(likeness, seed, stream,
+                      (is_copy ? original->second : id).value());
     Random random(seed, 2 * stream + id.value());
     for (const FeatureRef& ref : tracks.at(id)) {
       const Vec3 ray = PlaceOf(shape) - cameras.at(ref.view).center;
       Vec3 direction = ray.normalized();
       if (is_copy) direction = {-direction.x(), direction.y(), -direction.z()};
-      const bool is_found = random.Uniform() < found_share;
-      const Appearance& seen = is_found ? appearance : Appearance(&random);
+      const bool is_found = random.Uniform() < likeness.found_share;
+      const Appearance& seen =
+          is_found ? place.In(ref.view) : Appearance(&random);
       describe(ref, ray, seen.SeenFrom(direction, &random));
     }
   }
@@ -103,7 +134,8 @@ void DescribeTracks(const std::map<ViewId, Pose>& cameras,
 }  // namespace
 
 std::map<ViewId, DetectedFeatures> DescribeFeatures(
-    const SyntheticScene& synthetic, double found_share, std::uint64_t seed) {
+    const SyntheticScene& synthetic, const LikenessOptions& likeness,
+    std::uint64_t seed) {
   const Scene& scene = synthetic.scene;
   std::map<ViewId, DetectedFeatures> detected;
   for (const auto& [view, features] : scene.features) {
@@ -117,7 +149,7 @@ std::map<ViewId, DetectedFeatures> DescribeFeatures(
   }
   DescribeTracks(
       synthetic.true_poses, scene.point_tracks, synthetic.true_points,
-      synthetic.alike_points, found_share, seed, kPointStream,
+      synthetic.alike_points, likeness, seed, kPointStream,
       [&](const FeatureRef& ref, const Vec3& ray, const Values& values) {
         DetectedFeatures& of_view = detected[ref.view];
         of_view.keypoints[ref.feature].scale_px =
@@ -126,7 +158,7 @@ std::map<ViewId, DetectedFeatures> DescribeFeatures(
       });
   DescribeTracks(
       synthetic.true_poses, scene.line_tracks, synthetic.true_lines,
-      synthetic.alike_lines, found_share, seed, kLineStream,
+      synthetic.alike_lines, likeness, seed, kLineStream,
       [&](const FeatureRef& ref, const Vec3& /*ray*/, const Values& values) {
         detected[ref.view].line_descriptors[ref.feature] =
             LineDescriptorOf(values);

@@ -2,7 +2,6 @@
 
 #include "lowlap/core/internal/propagate.h"
 #include "lowlap/core/internal/random.h"
-#include "lowlap/study/internal/trust/appearance.h"
 #include "lowlap/study/internal/trust/spoil.h"
 
 namespace lowlap {
@@ -77,22 +76,50 @@ TrustScene DrawNoise(Random* random) {
   return scene;
 }
 
-TrustScene DrawAlikeSides(Random* random) {
+// What is matched by what looks the same has many features.
+TrustScene DrawWalk(SyntheticKind kind, Random* random) {
   TrustScene scene;
   SyntheticOptions& o = scene.options;
-  o.kind = SyntheticKind::kHouse;
+  o.kind = kind;
   o.pairs = "all";
   o.num_views = OneOf<int>({10, 12, 14, 16}, random);
   o.points_per_wall = OneOf<int>({120, 240, 480}, random);
   o.lines_per_wall = OneOf<int>({20, 50}, random);
   o.noise_px = OneOf<double>({0.5, 1}, random);
   o.box_offset_m = OneOf<double>({0.3, 0.8}, random);
-  o.alike_share = OneOf<double>({0, 0.15, 0.3, 0.5}, random);
-  scene.found_share = OneOf<double>({0.5, 0.8}, random);
+  return scene;
+}
+
+void LeaveOutViews(Random* random, TrustScene* scene) {
   for (int n = OneOf<int>({0, 2, 4}, random); n > 0; --n) {
-    scene.left_out.emplace_back(
-        random->Index(static_cast<std::uint32_t>(o.num_views)));
+    scene->left_out.emplace_back(
+        random->Index(static_cast<std::uint32_t>(scene->options.num_views)));
   }
+}
+
+TrustScene DrawAlikeSides(Random* random) {
+  TrustScene scene = DrawWalk(SyntheticKind::kHouse, random);
+  scene.options.alike_share = OneOf<double>({0, 0.15, 0.3, 0.5}, random);
+  scene.likeness.found_share = OneOf<double>({0.5, 0.8}, random);
+  LeaveOutViews(random, &scene);
+  return scene;
+}
+
+TrustScene DrawTwoSessions(Random* random) {
+  using Kind = SyntheticKind;
+  TrustScene scene =
+      DrawWalk(OneOf<Kind>({Kind::kHouse, Kind::kRoom}, random), random);
+  LikenessOptions& likeness = scene.likeness;
+  likeness.found_share = OneOf<double>({0.5, 0.8}, random);
+  likeness.changed_share = OneOf<double>({0.3, 0.5, 0.7}, random);
+  // One after the other, or mixed along the way.
+  const bool is_mixed = random->Uniform() < 0.5;
+  for (int n = 0; n < scene.options.num_views; ++n) {
+    const bool is_second =
+        is_mixed ? random->Uniform() < 0.5 : n >= scene.options.num_views / 2;
+    if (is_second) likeness.second_session.emplace_back(n);
+  }
+  LeaveOutViews(random, &scene);
   return scene;
 }
 
@@ -108,6 +135,8 @@ const char* TrustFamilyName(TrustFamily family) {
       return "noise";
     case TrustFamily::kAlikeSides:
       return "alike_sides";
+    case TrustFamily::kTwoSessions:
+      return "two_sessions";
   }
   return "";
 }
@@ -115,7 +144,7 @@ const char* TrustFamilyName(TrustFamily family) {
 const std::vector<TrustFamily>& AllTrustFamilies() {
   static const std::vector<TrustFamily> families = {
       TrustFamily::kWrongDirections, TrustFamily::kMixed,
-      TrustFamily::kAlikeSides, TrustFamily::kNoise};
+      TrustFamily::kAlikeSides, TrustFamily::kTwoSessions, TrustFamily::kNoise};
   return families;
 }
 
@@ -132,6 +161,7 @@ std::vector<std::string> TrustScene::Labels() const {
   add_if(options.wrong_point_share > 0, "wrong matches");
   add_if(has_look_alikes, "look-alikes");
   add_if(options.alike_share > 0, "alike sides");
+  add_if(likeness.changed_share > 0, "two sessions");
   add_if(!left_out.empty(), "missing views");
   add_if(focal_factor != 1, "wrong focal length");
   add_if(features == Features::kShuffled, "shuffled features");
@@ -153,6 +183,8 @@ TrustScene DrawTrustScene(TrustFamily family, std::uint64_t seed) {
         return DrawNoise(&random);
       case TrustFamily::kAlikeSides:
         return DrawAlikeSides(&random);
+      case TrustFamily::kTwoSessions:
+        return DrawTwoSessions(&random);
     }
     return TrustScene();
   };
@@ -180,9 +212,9 @@ Result<SyntheticScene> MakeTrustScene(const TrustScene& drawn,
     entry.second.fx_px *= drawn.focal_factor;
     entry.second.fy_px *= drawn.focal_factor;
   }
-  if (drawn.found_share < 1) {
+  if (drawn.likeness.found_share < 1) {
     const auto detected =
-        DescribeFeatures(made, drawn.found_share, drawn.options.seed);
+        DescribeFeatures(made, drawn.likeness, drawn.options.seed);
     made.scene = WithoutViews(made.scene, drawn.left_out);
     LOWLAP_RETURN_IF_ERROR(MatchAnew(detected, context, &made.scene));
   } else if (drawn.estimates_poses) {

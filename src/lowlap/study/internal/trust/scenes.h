@@ -6,6 +6,7 @@
 
 #include "lowlap/core/result.h"
 #include "lowlap/core/run_context.h"
+#include "lowlap/study/internal/trust/appearance.h"
 #include "lowlap/synthetic/synthetic_scene.h"
 
 namespace lowlap {
@@ -22,9 +23,12 @@ enum class TrustFamily {
   /// Walks around a house whose opposite sides are alike in part, some views
   /// missing; all pairs are matched by what looks the same.
   kAlikeSides,
+  /// Walks around a house or through a room on two days, or with two cameras,
+  /// which find little of what the other one sees; matched likewise.
+  kTwoSessions,
 };
 
-/// "wrong_directions", "mixed", "noise", "alike_sides".
+/// "wrong_directions", "mixed", "noise", "alike_sides", "two_sessions".
 const char* TrustFamilyName(TrustFamily family);
 const std::vector<TrustFamily>& AllTrustFamilies();
 
@@ -33,8 +37,8 @@ struct TrustScene {
   SyntheticOptions options;
   enum class Features { kKept, kShuffled, kDrawn } features = Features::kKept;
   bool has_look_alikes = false;
-  /// Of the features (DescribeFeatures); 1: they are matched as simulated.
-  double found_share = 1;
+  /// What looks the same; all: features are matched as simulated.
+  LikenessOptions likeness;
   std::vector<ViewId> left_out;
   /// Of the given to the true focal length.
   double focal_factor = 1;

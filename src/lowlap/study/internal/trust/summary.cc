@@ -17,7 +17,7 @@ namespace {
 const std::vector<TrustFamily>& FamiliesWithTruth() {
   static const std::vector<TrustFamily> families = {
       TrustFamily::kWrongDirections, TrustFamily::kMixed,
-      TrustFamily::kAlikeSides};
+      TrustFamily::kAlikeSides, TrustFamily::kTwoSessions};
   return families;
 }
 
