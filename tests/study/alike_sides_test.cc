@@ -60,6 +60,19 @@ TEST(AlikeSides, AHouseIsNotFolded) {
   EXPECT_EQ(made->scene.line_tracks, measured.line_tracks);
 }
 
+// Without the look-alikes found first, others hold one camera on the wrong side
+// still; they differ in few regions.
+TEST(AlikeSides, WhereSomeAreFoundOthersAreLookedFor) {
+  constexpr std::uint64_t kSeed = 119;
+  const auto trial =
+      RunTrustTrial(TrustFamily::kAlikeSides, kSeed, Seeded(kSeed));
+  ASSERT_TRUE(trial);
+  for (const JudgedView& judged : trial->views) {
+    EXPECT_LT(judged.error, 0.01) << judged.view;
+    EXPECT_TRUE(judged.IsFirm()) << judged.view;
+  }
+}
+
 TEST(AlikeSides, ASolutionThatIsNoBetterLeavesTheFirst) {
   constexpr std::uint64_t kSeed = 103;
   const auto made = MakeTrustScene(

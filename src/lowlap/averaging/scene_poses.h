@@ -81,7 +81,8 @@ struct PoseSummary {
   std::vector<Contest> contests;  // of placed views
   std::shared_ptr<const SolutionAgreement> agreement;
   FirmEvidence firm_evidence;
-  /// nullptr before FinishSolution; empty without structure.
+  /// Before FinishSolution those of an earlier solution, which is left for
+  /// their sake, or nullptr; empty without structure.
   std::shared_ptr<const LookAlikes> look_alikes;
   /// Triplets whose ratio chance explains as well, used since nothing else
   /// joins one of their views.

@@ -12,6 +12,7 @@ namespace lowlap {
 namespace {
 
 constexpr double kLeastRate = 1e-3;  // has no effect
+constexpr double kChance = 2 * kChanceOfBare;
 
 // 1,000 landmarks anywhere in a square, found with a chance by their place.
 std::vector<ExpectedSighting> Square(
@@ -35,7 +36,7 @@ TEST(DivideOverlap, FewRegionsAreBareHoweverFewLandmarksAreFound) {
         DivideOverlap(Square([&](const Vec2&) { return chance; }), kLeastRate);
     EXPECT_GT(regions.num, 150 * chance) << chance;
     EXPECT_LT(ShareOfBare(regions), 0.1) << chance;
-    EXPECT_GT(Log10ChanceOfBare(regions), -1) << chance;
+    EXPECT_GT(Log10ChanceOfBare(regions, kChance), -1) << chance;
   }
 }
 
@@ -45,22 +46,23 @@ TEST(DivideOverlap, WhereNothingIsFoundRegionsAreBare) {
         Square([&](const Vec2& at) { return at.x() < 1000 * part ? 0.4 : 0; }),
         kLeastRate);
     EXPECT_NEAR(ShareOfBare(regions), 1 - part, 0.15) << part;
-    EXPECT_LT(Log10ChanceOfBare(regions), -2) << part;
+    EXPECT_LT(Log10ChanceOfBare(regions, kChance), -2) << part;
   }
 }
 
 TEST(DivideOverlap, ARateThatFallsLeavesNoRegionBare) {
   const OverlapRegions regions = DivideOverlap(
       Square([](const Vec2& at) { return 0.8 - 0.6e-3 * at.x(); }), kLeastRate);
-  EXPECT_GT(Log10ChanceOfBare(regions), -1);
+  EXPECT_GT(Log10ChanceOfBare(regions, kChance), -1);
 }
 
 // Half of the image, of which hardly anything is found.
 TEST(DivideOverlap, WhatOthersFindTellsMore) {
   const std::vector<ExpectedSighting> expected =
       Square([](const Vec2& at) { return at.x() < 500 ? 0.02 : 0; });
-  EXPECT_GT(Log10ChanceOfBare(DivideOverlap(expected, kLeastRate)), -2);
-  EXPECT_LT(Log10ChanceOfBare(DivideOverlap(expected, 0.4)), -10);
+  EXPECT_GT(Log10ChanceOfBare(DivideOverlap(expected, kLeastRate), kChance),
+            -2);
+  EXPECT_LT(Log10ChanceOfBare(DivideOverlap(expected, 0.4), kChance), -10);
   // At two thirds of that rate few are bare.
   EXPECT_LT(
       ShareOfBare(DivideOverlap(Square([](const Vec2&) { return 0.27; }), 0.4)),
@@ -82,7 +84,7 @@ TEST(DivideOverlap, HasNoRegionsWhereHardlyAnythingIsFound) {
   expected[0].is_found = expected[1].is_found = true;
   EXPECT_EQ(DivideOverlap(expected, kLeastRate).num, 0);
   EXPECT_EQ(DivideOverlap({}, kLeastRate).num, 0);
-  EXPECT_EQ(Log10ChanceOfBare({}), 0);
+  EXPECT_EQ(Log10ChanceOfBare({}, kChance), 0);
   // All in one place.
   for (ExpectedSighting& seen : expected) seen.is_found = true;
   EXPECT_EQ(DivideOverlap(expected, kLeastRate).num_bare, 0);

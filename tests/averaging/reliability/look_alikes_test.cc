@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 
 #include "averaging/reliability/cameras_in_a_row.h"
 #include "lowlap/core/internal/random.h"
@@ -104,7 +105,9 @@ TEST(FindLookAlikes, OnePairIsNotBelievedAgainstAllOthers) {
       seen.erase(std::find_if(seen.begin(), seen.end(), is_of(7)));
     }
   }
-  EXPECT_LT(Log10ChanceOfBare(OverlapPredictor(scene).RegionsOf(4, 7, 0)), -3);
+  EXPECT_LT(Log10ChanceOfBare(OverlapPredictor(scene).RegionsOf(4, 7, 0),
+                              2 * kChanceOfBare),
+            -3);
   const auto found = Find(scene, {});
   EXPECT_THAT(found.different, IsEmpty());
   EXPECT_THAT(found.false_poses, IsEmpty());
@@ -147,6 +150,22 @@ TEST(FindLookAlikes, TheStrongestRelativePoseMayBeFalse) {
   EXPECT_EQ(Find(scene, {}).false_poses.size(), 5u * 3);
   scene.relative_poses.at({2, 6}).weakness = PoseWeakness::kRepeats;
   EXPECT_EQ(Find(scene, {}).false_poses.size(), 5u * 3);
+}
+
+// A small part of the walls differs.
+TEST(FindLookAlikes, WhereSomeAreKnownLessTellsOthers) {
+  LookAlikes before;
+  before.false_poses = {{0, 1}};
+  PoseSummary summary;
+  summary.look_alikes = std::make_shared<LookAlikes>(before);
+  const Scene nearly_alike = SceneOfTwoWalls(5, 17);
+  EXPECT_THAT(Find(nearly_alike, {}).false_poses, IsEmpty());
+  EXPECT_EQ(Find(nearly_alike, summary).false_poses.size(), 5u * 3);
+  const Scene one_wall = SceneOfTwoWalls(kNumCameras, 8);
+  EXPECT_THAT(Find(one_wall, summary).false_poses, IsEmpty());
+  // None were found before.
+  summary.look_alikes = std::make_shared<LookAlikes>();
+  EXPECT_THAT(Find(nearly_alike, summary).false_poses, IsEmpty());
 }
 
 TEST(FindLookAlikes, OnlyWhatIsInUseIsFalse) {

@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kFoundPerRegion = 3;
 constexpr int kMaxDivisions = 4;
-constexpr double kChanceOfBare = 0.1;
 
 using Iterator = std::vector<ExpectedSighting>::iterator;
 
@@ -68,8 +67,8 @@ OverlapRegions DivideOverlap(std::vector<ExpectedSighting> expected,
   return division.regions;
 }
 
-double Log10ChanceOfBare(const OverlapRegions& regions) {
-  return Log10BinomialTail(regions.num, regions.num_bare, kChanceOfBare);
+double Log10ChanceOfBare(const OverlapRegions& regions, double chance_of_bare) {
+  return Log10BinomialTail(regions.num, regions.num_bare, chance_of_bare);
 }
 
 }  // namespace lowlap

@@ -17,8 +17,11 @@ namespace {
 constexpr double kMinShareOfAlike = 0.2;
 constexpr double kShareOfRate = 0.75;
 constexpr double kMaxLog10Nfa = -2;
-// Regions of pairs of the same views tell the same thing several times.
-constexpr double kMinShareOfBare = 0.2;
+// Regions of pairs of the same views tell the same thing several times: many
+// have to be bare, against the chance of it.
+constexpr double kMinBareToChance = 2;
+// What hides a part of one view leaves regions of all its pairs bare.
+constexpr double kChanceOfBareUnlessKnown = 2 * kChanceOfBare;
 
 // That should share enough to be told apart.
 std::vector<ViewPair> SharingPairs(const ExpectedOverlaps& overlaps) {
@@ -56,8 +59,9 @@ class Groups {
  public:
   // `regions`: of `pairs`.
   Groups(const ViewGraph& links, const std::vector<ViewPair>& pairs,
-         const std::vector<OverlapRegions>& regions)
-      : log10_num_pairs_(std::log10(static_cast<double>(pairs.size()))) {
+         const std::vector<OverlapRegions>& regions, double chance_of_bare)
+      : log10_num_pairs_(std::log10(static_cast<double>(pairs.size()))),
+        chance_of_bare_(chance_of_bare) {
     for (const ViewPair& views : links.pairs()) {
       for (const ViewId view : {views.first, views.second}) {
         group_of_.emplace(view, view);
@@ -129,8 +133,9 @@ class Groups {
     common.regions += regions;
     const OverlapRegions& all = common.regions;
     common.is_different =
-        all.num_bare >= kMinShareOfBare * all.num &&
-        log10_num_pairs_ + Log10ChanceOfBare(all) <= kMaxLog10Nfa;
+        all.num_bare >= kMinBareToChance * chance_of_bare_ * all.num &&
+        log10_num_pairs_ + Log10ChanceOfBare(all, chance_of_bare_) <=
+            kMaxLog10Nfa;
     common_[b][a] = common;
   }
 
@@ -152,6 +157,7 @@ class Groups {
   // Of two groups, by either.
   std::map<ViewId, std::map<ViewId, Common>> common_;
   double log10_num_pairs_;
+  double chance_of_bare_;
 };
 
 // The strongest first.
@@ -169,15 +175,31 @@ std::vector<ViewPair> ByEvidence(const Scene& scene, const ViewGraph& links) {
   return sorted;
 }
 
+// What the regions of the sharing pairs tell, each of which is bare by chance.
+LookAlikes TellApart(const Scene& scene, const ViewGraph& agreeing,
+                     const std::vector<ViewPair>& sharing,
+                     const std::vector<OverlapRegions>& regions,
+                     double chance_of_bare) {
+  Groups groups(agreeing, sharing, regions, chance_of_bare);
+  groups.Grow(ByEvidence(scene, agreeing));
+  const auto are_apart = [&](const ViewPair& v) { return groups.AreApart(v); };
+  LookAlikes found;
+  std::copy_if(sharing.begin(), sharing.end(),
+               std::back_inserter(found.different), are_apart);
+  std::copy_if(agreeing.pairs().begin(), agreeing.pairs().end(),
+               std::back_inserter(found.false_poses), are_apart);
+  if (!found.false_poses.empty()) found.doubtful = groups.ViewsOfOthers();
+  return found;
+}
+
 }  // namespace
 
 Result<LookAlikes> FindLookAlikes(const Scene& scene,
                                   const PoseSummary& summary,
                                   const ExpectedOverlaps& overlaps,
                                   const RunContext& context) {
-  LookAlikes found;
   const std::vector<ViewPair> sharing = SharingPairs(overlaps);
-  if (sharing.empty()) return found;
+  if (sharing.empty()) return LookAlikes();
   const ViewGraph agreeing = AgreeingPoses(scene, summary);
   const double min_rate = kShareOfRate * UsualRate(sharing, overlaps, agreeing);
   const OverlapPredictor predictor(scene);
@@ -187,15 +209,18 @@ Result<LookAlikes> FindLookAlikes(const Scene& scene,
         regions[n] =
             predictor.RegionsOf(sharing[n].first, sharing[n].second, min_rate);
       }));
-  Groups groups(agreeing, sharing, regions);
-  groups.Grow(ByEvidence(scene, agreeing));
-  const auto are_apart = [&](const ViewPair& v) { return groups.AreApart(v); };
-  std::copy_if(sharing.begin(), sharing.end(),
-               std::back_inserter(found.different), are_apart);
-  std::copy_if(agreeing.pairs().begin(), agreeing.pairs().end(),
-               std::back_inserter(found.false_poses), are_apart);
-  if (!found.false_poses.empty()) found.doubtful = groups.ViewsOfOthers();
-  return found;
+  const auto tell_apart = [&](double chance_of_bare) {
+    return TellApart(scene, agreeing, sharing, regions, chance_of_bare);
+  };
+  LookAlikes found;
+  const bool are_known = summary.look_alikes != nullptr &&
+                         !summary.look_alikes->false_poses.empty();
+  if (!are_known) {
+    found = tell_apart(kChanceOfBareUnlessKnown);
+    if (found.false_poses.empty()) return found;
+  }
+  LookAlikes more = tell_apart(kChanceOfBare);
+  return more.false_poses.empty() ? found : more;
 }
 
 }  // namespace lowlap

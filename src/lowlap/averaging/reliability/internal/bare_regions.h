@@ -40,10 +40,12 @@ struct OverlapRegions {
 OverlapRegions DivideOverlap(std::vector<ExpectedSighting> expected,
                              double min_rate);
 
+/// That of a region where landmarks are found or not independently of each
+/// other, and as many as the regions are made for: e^-3.
+inline constexpr double kChanceOfBare = 0.05;
+
 /// log10 of the chance that as many of the regions are bare where the views see
-/// one place, and find there what the regions are made for: the binomial tail
-/// for a chance of 1/10 each, twice that of landmarks that are found or not
-/// independently of each other (e^-3).
-double Log10ChanceOfBare(const OverlapRegions& regions);
+/// one place: the binomial tail for `chance_of_bare` each.
+double Log10ChanceOfBare(const OverlapRegions& regions, double chance_of_bare);
 
 }  // namespace lowlap

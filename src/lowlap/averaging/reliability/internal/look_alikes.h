@@ -22,7 +22,9 @@ namespace lowlap {
 /// evidence first, unless the groups that one joins are different: of the
 /// regions of all that they should both see (of pairs that should share a
 /// fifth, OverlapPredictor::RegionsOf), a fifth are bare, as many as by chance
-/// in one of a hundred scenes at most (Log10ChanceOfBare, times the pairs).
+/// in one of a hundred scenes at most (Log10ChanceOfBare, times the pairs), a
+/// chance of 2 kChanceOfBare each. Where there are look-alikes there are others
+/// like them: if any are found, a tenth is enough, and that chance itself.
 struct LookAlikes {
   /// Pairs of views of groups that are different, if they should share a fifth
   /// of what they see.
@@ -35,11 +37,12 @@ struct LookAlikes {
 };
 
 /// Of the pairs with a relative pose, and those compared in vain, as `overlaps`
-/// has them. The min_rate of the regions is three quarters of the found share
-/// that a quarter of the relative poses exceed, of those that agree and should
-/// share a fifth: on photographs the least is at 0.7 of that. Cost: pairs times
-/// 1,024 points, and the views times the relative poses; the same for any
-/// number of threads. Error: kCancelled.
+/// has them. `summary.look_alikes`: those of an earlier solution, if any. The
+/// min_rate of the regions is three quarters of the found share that a quarter
+/// of the relative poses exceed, of those that agree and should share a fifth:
+/// on photographs the least is at 0.7 of that. Cost: pairs times 1,024 points,
+/// and the views times the relative poses; the same for any number of threads.
+/// Error: kCancelled.
 Result<LookAlikes> FindLookAlikes(const Scene& scene,
                                   const PoseSummary& summary,
                                   const ExpectedOverlaps& overlaps,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -55,7 +56,9 @@ std::vector<RelativePose> OpenPoses(const Scene& scene) {
   return open;
 }
 
+// `known`: look-alikes of an earlier solution, or nullptr.
 Result<SolveResult> Finish(ComposedSolution composed,
+                           const std::shared_ptr<const LookAlikes>& known,
                            const SolveOptions& options,
                            const RunContext& context, StageLog* stages,
                            Scene* scene) {
@@ -66,6 +69,7 @@ Result<SolveResult> Finish(ComposedSolution composed,
   result.poses = std::move(composed.poses);
   LOWLAP_RETURN_IF_ERROR(DecideHypothesesByStructure(
       composed.start.rotations, options, context, stages, scene, &result));
+  result.poses.look_alikes = known;
   LOWLAP_RETURN_IF_ERROR(
       FinishSolution(scene, options, context, stages, &result));
   return result;
@@ -78,8 +82,10 @@ struct Restart {
   SolveStart start;
 };
 
-// `left_out`, sorted, have no part in it, as if they had been compared in vain.
+// `left_out`, sorted, have no part in it, as if they had been compared in vain;
+// the last of them are of `known`.
 Result<SolveResult> SolveWithout(const std::vector<ViewPair>& left_out,
+                                 const std::shared_ptr<const LookAlikes>& known,
                                  const Restart& restart,
                                  const SolveOptions& options,
                                  const RunContext& context, StageLog* stages,
@@ -111,7 +117,8 @@ Result<SolveResult> SolveWithout(const std::vector<ViewPair>& left_out,
         SettleContests(options, context, stages, scene, &composed));
     composed.start.motions = restart.start.motions;
     composed.start.reconsidered = restart.start.reconsidered;
-    auto result = Finish(std::move(composed), options, context, stages, scene);
+    auto result =
+        Finish(std::move(composed), known, options, context, stages, scene);
     ratios = scene->scale_ratios;
     return result;
   };
@@ -154,8 +161,8 @@ Result<SolveResult> FinishWithoutLookAlikes(ComposedSolution composed,
                                             StageLog* stages, Scene* scene) {
   const Restart restart = {SolvedParts(*scene), OpenPoses(*scene),
                            composed.start};
-  LOWLAP_ASSIGN_OR_RETURN(auto result, Finish(std::move(composed), options,
-                                              context, stages, scene));
+  LOWLAP_ASSIGN_OR_RETURN(auto result, Finish(std::move(composed), nullptr,
+                                              options, context, stages, scene));
   std::vector<ViewPair> left_out;
   while (!result.poses.look_alikes->false_poses.empty()) {
     const std::vector<ViewPair>& found = result.poses.look_alikes->false_poses;
@@ -168,8 +175,8 @@ Result<SolveResult> FinishWithoutLookAlikes(ComposedSolution composed,
     const SolvedParts solved(*scene);
     const std::map<ViewPair, RelativePose> relative_poses =
         scene->relative_poses;
-    auto again =
-        SolveWithout(left_out, restart, options, context, stages, scene);
+    auto again = SolveWithout(left_out, result.poses.look_alikes, restart,
+                              options, context, stages, scene);
     if (!again && again.error().code == ErrorCode::kCancelled) return again;
     if (!again || !IsBetter(*again, result)) {
       context.Log(LogLevel::kInfo, "no better without " + poses);
