@@ -63,6 +63,23 @@ TEST(BarPlotTest, BarsAreAsLongAsTheirValues) {
   }
 }
 
+TEST(BarPlotTest, LongNamesOfGroupsAreNotCutOff) {
+  BarPlot plot = TwoByTwo();
+  plot.groups[0] =
+      "up to 0.1 % (2103 of 2110, 1510 of 1600, 4000 of 5000, 8000 of 8000)";
+  const auto svg = DrawBarPlot(plot);
+  ASSERT_TRUE(svg);
+  const std::regex name("<text x=\"([0-9.]+)\"[^>]*>up to");
+  std::smatch found;
+  ASSERT_TRUE(std::regex_search(*svg, found, name));
+  constexpr double kMinCharacterWidth = 6.5;  // at 13 px
+  EXPECT_GT(std::atof(found[1].str().c_str()),
+            kMinCharacterWidth * static_cast<double>(plot.groups[0].size()));
+  // Only names that leave nothing for the bars are.
+  plot.groups[0] = std::string(300, 'm');
+  EXPECT_GT(BarWidths(*DrawBarPlot(plot))[2], 150);
+}
+
 TEST(BarPlotTest, LogarithmicBarsDifferByEqualLengthsForEqualFactors) {
   BarPlot plot = TwoByTwo();
   plot.value.scale = AxisScale::kLog10;

@@ -148,7 +148,10 @@ Result<std::string> DrawBarPlot(const BarPlot& plot) {
   for (const std::string& group : plot.groups) {
     left = std::max(left, TextWidth(group));
   }
-  left = std::min(left, kWidth / 3) + kPadding + 8;
+  constexpr double kBar = 15, kGroupGap = 10, kValueRoom = 70;
+  const double right = kWidth - kPadding - kValueRoom;
+  // The bars keep a quarter.
+  left = std::min(left + kPadding + 8, right - kWidth / 4);
   for (const BarSeries& series : plot.series) {
     if (series.values.size() != plot.groups.size()) {
       return MakeError(ErrorCode::kInvalidArgument,
@@ -165,8 +168,6 @@ Result<std::string> DrawBarPlot(const BarPlot& plot) {
   LOWLAP_ASSIGN_OR_RETURN(const auto range,
                           AxisRange::Make(plot.value, values));
 
-  constexpr double kBar = 15, kGroupGap = 10, kValueRoom = 70;
-  const double right = kWidth - kPadding - kValueRoom;
   const auto x_of = [&](double value) {
     return left + (right - left) * std::clamp(range.Position(value), 0.0, 1.0);
   };
