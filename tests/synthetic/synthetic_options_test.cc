@@ -55,6 +55,8 @@ TEST(SyntheticOptions, EveryBadValueIsNamed) {
   expect_named("twin_baseline_m",
                [](Options* o) { o->twin_baseline_m = -0.1; });
   expect_named("wall_bulge_m", [](Options* o) { o->wall_bulge_m = -0.1; });
+  expect_named("section_m", [](Options* o) { o->section_m = 0; });
+  expect_named("section_m", [=](Options* o) { o->section_m = nan; });
   expect_named("box_offset_m", [=](Options* o) { o->box_offset_m = nan; });
   expect_named("width_px", [](Options* o) { o->width_px = 0; });
   expect_named("focal_px", [](Options* o) { o->focal_px = 0; });

@@ -65,7 +65,6 @@ std::vector<Feature> Alike(const std::vector<Wall>& walls,
       Feature copy = carry(alike[n]);
       copy.wall = static_cast<int>(w);
       copy.alike = static_cast<int>(n);
-      alike[n].alike = static_cast<int>(alike.size());
       alike.push_back(std::move(copy));
     }
   }

@@ -126,20 +126,23 @@ void AddCollinearCameras(const SyntheticOptions& options, Random* random,
   }
 }
 
-// Sections of 5 m, 2.4 m wide and 2.6 m high; the direction changes slightly
-// from section to section: floor and ceiling are one plane each, the side walls
-// are not.
+// Sections, 2.4 m wide and 2.6 m high; the direction changes slightly from
+// section to section: floor and ceiling are one plane each, the side walls are
+// not. Where sections look the same it does not change.
 void AddCorridor(const SyntheticOptions& options, Random* random,
                  World* world) {
-  constexpr double kSection = 5.0, kHalfWidth = 1.2, kStep = 0.8;
-  constexpr int kFloorPlane = 2, kCeilingPlane = 3;  // after two side walls
+  constexpr double kHalfWidth = 1.2, kStep = 0.8, kTurn_deg = 4.0;
+  constexpr int kNumWalls = 4;  // of a section
+  const double length = options.section_m;
+  const bool is_straight = options.alike_share > 0;
   const int sections =
-      static_cast<int>(std::ceil((kStep * options.num_views + 10) / kSection));
+      static_cast<int>(std::ceil((kStep * options.num_views + 10) / length));
   std::vector<Vec3> axis = {Vec3::Zero()};
   for (int s = 0; s < sections; ++s) {
-    const double heading = RadFromDeg(random->Uniform(-4.0, 4.0));
+    const double heading = RadFromDeg(random->Uniform(-kTurn_deg, kTurn_deg));
     const Vec3 along(std::sin(heading), 0, std::cos(heading));
-    const Vec3 end = axis.back() + kSection * along;
+    const Vec3 end =
+        axis.back() + length * (is_straight ? Vec3(Vec3::UnitZ()) : along);
     axis.push_back(end);
   }
   for (int s = 0; s < sections; ++s) {
@@ -147,16 +150,25 @@ void AddCorridor(const SyntheticOptions& options, Random* random,
     const Vec3 right = Vec3::UnitY().cross(along).normalized() * kHalfWidth;
     const Vec3 up(0, -2.6, 0), floor(0, 1.4, 0);
     const Vec3 inside = a + 0.5 * along;
-    const int left_wall =
-        world->AddWall(a - right + floor, along, up, inside, 0.7);
-    const int right_wall =
-        world->AddWall(a + right + floor, along, up, inside, 0.7);
-    const int floor_wall =
-        world->AddWall(a - right + floor, along, 2 * right, inside, 0.7,
-                       s == 0 ? -1 : kFloorPlane);
+    // Planes of the first section have the indices of its walls.
+    const auto plane_of_first = [&](int wall) { return s == 0 ? -1 : wall; };
+    const auto side_plane = [&](int wall) {
+      return is_straight ? plane_of_first(wall) : -1;
+    };
+    const int left_wall = world->AddWall(a - right + floor, along, up, inside,
+                                         0.7, side_plane(0));
+    const int right_wall = world->AddWall(a + right + floor, along, up, inside,
+                                          0.7, side_plane(1));
+    const int floor_wall = world->AddWall(a - right + floor, along, 2 * right,
+                                          inside, 0.7, plane_of_first(2));
     const int ceiling_wall =
         world->AddWall(a - right + floor + up, along, 2 * right, inside, 0.5,
-                       s == 0 ? -1 : kCeilingPlane);
+                       plane_of_first(3));
+    if (is_straight && s > 0) {
+      for (int n = 0; n < kNumWalls; ++n) {
+        world->walls[kNumWalls * s + n].alike_wall = n;
+      }
+    }
     const Vec3 left_low = a - right + floor, right_low = a + right + floor;
     AddEdge(left_low, left_low + along, left_wall, floor_wall, world);
     AddEdge(right_low, right_low + along, right_wall, floor_wall, world);
@@ -168,12 +180,12 @@ void AddCorridor(const SyntheticOptions& options, Random* random,
   for (int i = 0; i < options.num_views; ++i) {
     const double distance = kStep * (i + random->Uniform(-0.2, 0.2)) + 0.4;
     const int s =
-        std::clamp(static_cast<int>(distance / kSection), 0, sections - 1);
-    const Vec3 along = (axis[s + 1] - axis[s]) / kSection;
+        std::clamp(static_cast<int>(distance / length), 0, sections - 1);
+    const Vec3 along = (axis[s + 1] - axis[s]) / length;
     const Vec3 right = Vec3::UnitY().cross(along);
     const double sideways = random->Uniform(-0.5, 0.5);
     const double below = random->Uniform(-0.2, 0.2);
-    const Vec3 center = axis[s] + (distance - kSection * s) * along +
+    const Vec3 center = axis[s] + (distance - length * s) * along +
                         sideways * right + Vec3(0, below, 0);
     // Slowly from the left wall to the right and back.
     const double yaw = RadFromDeg(30.0) * std::sin(0.4 * i);

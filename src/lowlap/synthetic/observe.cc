@@ -67,15 +67,25 @@ Track AddMatches(const std::map<ViewId, std::vector<FeatureIndex>>& features,
 
 // The tracks of features that look the same, which `tracks` has by feature.
 template <class Feature, class Id>
-std::vector<std::pair<Id, Id>> AlikeTracks(
-    const std::vector<Feature>& features,
+std::vector<AlikeTracks<Id>> TracksThatLookTheSame(
+    const std::vector<Wall>& walls, const std::vector<Feature>& features,
     const std::vector<std::vector<Id>>& tracks) {
-  std::vector<std::pair<Id, Id>> alike;
+  struct Seen {
+    Id track;
+    Mat3 axes;
+  };
+  std::map<int, Seen> first_of;  // by the feature that the others are copies of
+  std::vector<AlikeTracks<Id>> alike;
   for (std::size_t i = 0; i < features.size(); ++i) {
-    const int copy = features[i].alike;
-    if (copy <= static_cast<int>(i)) continue;
-    for (const Id first : tracks[i]) {
-      for (const Id second : tracks[copy]) alike.emplace_back(first, second);
+    const int original =
+        features[i].alike >= 0 ? features[i].alike : static_cast<int>(i);
+    const Mat3 axes = walls[features[i].wall].Axes();
+    for (const Id track : tracks[i]) {
+      const auto [it, is_first] =
+          first_of.try_emplace(original, Seen{track, axes});
+      if (is_first || features[i].alike < 0) continue;
+      const Seen& first = it->second;
+      alike.push_back({first.track, track, first.axes.transpose() * axes});
     }
   }
   return alike;
@@ -148,7 +158,8 @@ void ObservePoints(const SyntheticOptions& options, const World& world,
       ++id;
     }
   }
-  synthetic->alike_points = AlikeTracks(world.points, tracks);
+  synthetic->alike_points =
+      TracksThatLookTheSame(world.walls, world.points, tracks);
 }
 
 void ObserveLines(const SyntheticOptions& options, const World& world,
@@ -186,7 +197,8 @@ void ObserveLines(const SyntheticOptions& options, const World& world,
       ++id;
     }
   }
-  synthetic->alike_lines = AlikeTracks(world.lines, tracks);
+  synthetic->alike_lines =
+      TracksThatLookTheSame(world.walls, world.lines, tracks);
 }
 
 }  // namespace lowlap

@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "lowlap/core/internal/propagate.h"
@@ -93,6 +94,11 @@ Status SyntheticOptions::Validate() const {
   }
   if (!IsPositive(focal_px)) {
     return Invalid("focal_px must be finite and positive");
+  }
+  // Less, and the sections are as many as the points.
+  constexpr double kMinSection_m = 0.1;
+  if (!(std::isfinite(section_m) && section_m >= kMinSection_m)) {
+    return Invalid("section_m must be finite and at least 0.1");
   }
   return {};
 }

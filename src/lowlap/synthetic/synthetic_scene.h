@@ -4,7 +4,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "lowlap/core/result.h"
@@ -16,7 +15,7 @@ namespace lowlap {
 /// cloud are made of walls that carry points and lines.
 enum class SyntheticKind {
   kRoom,      // a crooked box of 6 x 4.5 x 2.7 m, cameras on a loop inside it
-  kCorridor,  // 5 m of walls per section; cameras walk along it and turn
+  kCorridor,  // walls in sections; cameras walk along it and turn
   kRing,      // cameras on a circle look at boxes in its middle
   kHouse,  // cameras walk around a house of 8 x 6 x 4 m, without surroundings
   kCloud,  // the room without walls: all is strewn over the space before them
@@ -52,8 +51,12 @@ struct SyntheticOptions {
   double off_line_m = 0.0;
   /// kTwins: distance of an odd view from the one before it, in metres.
   double twin_baseline_m = 0.0;
+  /// kCorridor: length of a section of its walls, in metres.
+  double section_m = 5.0;
   /// kHouse: the part of every side, from its left end, that looks the same as
-  /// that of the opposite side.
+  /// that of the opposite side. kCorridor: the part of every section that looks
+  /// the same as that of the others, floor and ceiling included, as doors and
+  /// lamps do; the corridor is straight then.
   double alike_share = 0.0;
 
   /// How far the middle of every wall bows out: part of a cylinder, whose only
@@ -119,6 +122,15 @@ struct SyntheticLine {
   std::vector<int> planes;
 };
 
+/// Tracks of two places that look the same.
+template <class Id>
+struct AlikeTracks {
+  Id first;
+  Id second;
+  /// Carries what is around the second place to what is around the first.
+  Mat3 first_from_second = Mat3::Identity();
+};
+
 /// What a scene file would hold after the two-view step (views, intrinsics,
 /// features, relative poses, tracks; nothing solved), and the truth beside it.
 struct SyntheticScene {
@@ -130,10 +142,10 @@ struct SyntheticScene {
   /// By track; a wrong track has no entry.
   std::map<PointTrackId, Vec3> true_points;
   std::map<LineTrackId, SyntheticLine> true_lines;
-  /// Tracks of two places that look the same (alike_share), which no match
-  /// joins: a half turn about the world's y axis carries one to the other.
-  std::vector<std::pair<PointTrackId, PointTrackId>> alike_points;
-  std::vector<std::pair<LineTrackId, LineTrackId>> alike_lines;
+  /// What looks the same (alike_share), and no match joins: of the places of
+  /// one look the first track with each of the others.
+  std::vector<AlikeTracks<PointTrackId>> alike_points;
+  std::vector<AlikeTracks<LineTrackId>> alike_lines;
   /// n . X + d = 0 with |n| = 1, by plane id.
   std::vector<Vec4> planes;
 

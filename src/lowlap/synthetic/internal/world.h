@@ -20,7 +20,8 @@ struct Wall {
   double bulge = 0;             // SyntheticOptions::wall_bulge_m
   double box_offset = 0;        // SyntheticOptions::box_offset_m
   int box_plane = -1;           // of the box's front
-  int alike_wall = -1;          // of the same shape, what is there is here too
+  int alike_wall = -1;  // before this one and of the same shape: what is
+                        // there is here, too
 
   Vec3 At(double a, double b) const { return origin + a * u + b * v; }
   /// The box covers the middle three fifths in both directions.
@@ -33,12 +34,20 @@ struct Wall {
         (HasBoxAt(a, b) ? box_offset : 0) - 4 * bulge * a * (1 - a);
     return At(a, b) + before * inward;
   }
+  /// Rows: along u, across it, and inward.
+  Mat3 Axes() const {
+    Mat3 axes;
+    axes.row(0) = u.normalized();
+    axes.row(1) = inward.cross(u).normalized();
+    axes.row(2) = inward;
+    return axes;
+  }
 };
 
 struct WorldPoint {
   Vec3 position = Vec3::Zero();
   int wall = 0;
-  int alike = -1;  // index of the point that looks the same
+  int alike = -1;  // index of the point that it is a copy of
 };
 
 struct WorldLine {
@@ -46,7 +55,7 @@ struct WorldLine {
   Vec3 end = Vec3::Zero();
   int wall = 0;             // decides which cameras face it
   std::vector<int> planes;  // as SyntheticLine::planes
-  int alike = -1;           // index of the line that looks the same
+  int alike = -1;           // index of the line that it is a copy of
 };
 
 /// What there is to see, and from where.

@@ -108,21 +108,21 @@ template <class Id, class Shape, class Describe>
 void DescribeTracks(const std::map<ViewId, Pose>& cameras,
                     const std::map<Id, Track>& tracks,
                     const std::map<Id, Shape>& shapes,
-                    const std::vector<std::pair<Id, Id>>& alike,
+                    const std::vector<AlikeTracks<Id>>& alike,
                     const LikenessOptions& likeness, std::uint64_t seed,
                     std::uint64_t stream, const Describe& describe) {
-  std::map<Id, Id> original_of;
-  for (const auto& [first, second] : alike) original_of[second] = first;
+  std::map<Id, const AlikeTracks<Id>*> original_of;
+  for (const AlikeTracks<Id>& both : alike) original_of[both.second] = &both;
   for (const auto& [id, shape] : shapes) {
     const auto original = original_of.find(id);
     const bool is_copy = original != original_of.end();
     const Place place(likeness, seed, stream,
-                      (is_copy ? original->second : id).value());
+                      (is_copy ? original->second->first : id).value());
     Random random(seed, 2 * stream + id.value());
     for (const FeatureRef& ref : tracks.at(id)) {
       const Vec3 ray = PlaceOf(shape) - cameras.at(ref.view).center;
       Vec3 direction = ray.normalized();
-      if (is_copy) direction = {-direction.x(), direction.y(), -direction.z()};
+      if (is_copy) direction = original->second->first_from_second * direction;
       const bool is_found = random.Uniform() < likeness.found_share;
       const Appearance& seen =
           is_found ? place.In(ref.view) : Appearance(&random);

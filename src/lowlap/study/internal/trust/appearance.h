@@ -21,8 +21,8 @@ struct LikenessOptions {
 
 /// The features of a simulated scene with descriptors, as if they were those of
 /// photographs. Every place has an appearance of its own, drawn at random, or
-/// that of a place that looks the same (SyntheticScene::alike_points), half
-/// turned. It changes with the direction that it is seen from:
+/// that of a place that looks the same (SyntheticScene::alike_points), turned
+/// with it. It changes with the direction that it is seen from:
 ///
 ///   value = base + gradient . direction + noise,
 ///

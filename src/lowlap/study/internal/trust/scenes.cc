@@ -105,6 +105,18 @@ TrustScene DrawAlikeSides(Random* random) {
   return scene;
 }
 
+TrustScene DrawAlikeSections(Random* random) {
+  TrustScene scene = DrawWalk(SyntheticKind::kCorridor, random);
+  SyntheticOptions& o = scene.options;
+  o.points_per_wall = OneOf<int>({30, 60, 120}, random);
+  o.section_m = OneOf<double>({1.5, 2.5, 4}, random);
+  o.box_offset_m = OneOf<double>({0.1, 0.3}, random);
+  o.alike_share = OneOf<double>({0, 0.3, 0.6, 0.9}, random);
+  scene.likeness.found_share = OneOf<double>({0.5, 0.8}, random);
+  LeaveOutViews(random, &scene);
+  return scene;
+}
+
 TrustScene DrawTwoSessions(Random* random) {
   using Kind = SyntheticKind;
   TrustScene scene =
@@ -137,6 +149,8 @@ const char* TrustFamilyName(TrustFamily family) {
       return "alike_sides";
     case TrustFamily::kTwoSessions:
       return "two_sessions";
+    case TrustFamily::kAlikeSections:
+      return "alike_sections";
   }
   return "";
 }
@@ -144,7 +158,8 @@ const char* TrustFamilyName(TrustFamily family) {
 const std::vector<TrustFamily>& AllTrustFamilies() {
   static const std::vector<TrustFamily> families = {
       TrustFamily::kWrongDirections, TrustFamily::kMixed,
-      TrustFamily::kAlikeSides, TrustFamily::kTwoSessions, TrustFamily::kNoise};
+      TrustFamily::kAlikeSides,      TrustFamily::kAlikeSections,
+      TrustFamily::kTwoSessions,     TrustFamily::kNoise};
   return families;
 }
 
@@ -160,7 +175,9 @@ std::vector<std::string> TrustScene::Labels() const {
   add_if(options.wrong_pose_share > 0, "wrong relative poses");
   add_if(options.wrong_point_share > 0, "wrong matches");
   add_if(has_look_alikes, "look-alikes");
-  add_if(options.alike_share > 0, "alike sides");
+  add_if(options.alike_share > 0, options.kind == SyntheticKind::kCorridor
+                                      ? "alike sections"
+                                      : "alike sides");
   add_if(likeness.changed_share > 0, "two sessions");
   add_if(!left_out.empty(), "missing views");
   add_if(focal_factor != 1, "wrong focal length");
@@ -185,6 +202,8 @@ TrustScene DrawTrustScene(TrustFamily family, std::uint64_t seed) {
         return DrawAlikeSides(&random);
       case TrustFamily::kTwoSessions:
         return DrawTwoSessions(&random);
+      case TrustFamily::kAlikeSections:
+        return DrawAlikeSections(&random);
     }
     return TrustScene();
   };

@@ -26,9 +26,13 @@ enum class TrustFamily {
   /// Walks around a house or through a room on two days, or with two cameras,
   /// which find little of what the other one sees; matched likewise.
   kTwoSessions,
+  /// Walks along a corridor whose sections are alike in part, some views
+  /// missing; matched likewise.
+  kAlikeSections,
 };
 
-/// "wrong_directions", "mixed", "noise", "alike_sides", "two_sessions".
+/// "wrong_directions", "mixed", "noise", "alike_sides", "two_sessions",
+/// "alike_sections".
 const char* TrustFamilyName(TrustFamily family);
 const std::vector<TrustFamily>& AllTrustFamilies();
 
