@@ -10,6 +10,7 @@
 #include "lowlap/two_view/internal/search/refine_relative_pose.h"
 #include "support/matchers.h"
 #include "tests/matching/pattern_view.h"
+#include "tests/two_view/copied_pair.h"
 #include "tests/two_view/tiled_pair.h"
 #include "tests/two_view/two_view_scene.h"
 
@@ -191,6 +192,33 @@ TEST(EstimatePair, IsNotWeakWhereTheOthersAgreeOnAMotionOfTheirOwn) {
   EXPECT_EQ(WeaknessOfPose(pair, matches), std::nullopt);
   EXPECT_EQ(WeaknessOfPose(pair, WithWrong(matches, kOthers, kOthers / 2)),
             PoseWeakness::kRepeats);
+}
+
+// The pair as it is detected, and matched right.
+std::optional<PoseWeakness> WeaknessOfPose(const testing::CopiedPair& pair) {
+  const auto measure = [](const testing::PatternView& view,
+                          DetectedFeatures* detected) {
+    detected->keypoints = view.keypoints;
+    detected->point_descriptors = view.descriptors;
+    ViewMeasurements measured;
+    measured.features = view.features;
+    measured.detected = detected;
+    measured.image_size_px = Vec2(1600, 1200);
+    return measured;
+  };
+  DetectedFeatures detected1, detected2;
+  const PairEstimate estimate = EstimatePair(
+      {3, 8}, measure(pair.view1, &detected1), measure(pair.view2, &detected2),
+      {pair.pose.point_inliers, {}}, {}, 1);
+  EXPECT_TRUE(estimate.pose) << estimate.reason;
+  return estimate.pose->weakness;
+}
+
+TEST(EstimatePair, IsWeakWhereWhatLooksAlikeBearsOutAnotherMotion) {
+  EXPECT_EQ(WeaknessOfPose(testing::CopiedPair(testing::Door)),
+            PoseWeakness::kRepeats);
+  EXPECT_EQ(WeaknessOfPose(testing::CopiedPair(testing::Anything)),
+            std::nullopt);
 }
 
 TEST(EstimatePair, SaysWhyThereIsNoPose) {

@@ -30,7 +30,8 @@ enum class PoseWeakness {
   kMatchesSideBySide,
   /// What surrounds its matches does not match.
   kSurroundings,
-  /// Nearly all that bears it out repeats within its photographs.
+  /// Nearly all that bears it out repeats within its photographs, or what looks
+  /// the same elsewhere bears out another motion.
   kRepeats,
 };
 

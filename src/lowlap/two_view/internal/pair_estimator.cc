@@ -1,6 +1,7 @@
 #include "lowlap/two_view/internal/pair_estimator.h"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
@@ -11,6 +12,7 @@
 #include "lowlap/scene/features.h"
 #include "lowlap/scene/internal/pixel_unit.h"
 #include "lowlap/scene/validation.h"
+#include "lowlap/two_view/internal/evidence/rival_motion.h"
 #include "lowlap/two_view/internal/evidence/surroundings.h"
 #include "lowlap/two_view/internal/search/kept_covariance.h"
 #include "lowlap/two_view/internal/search/same_pose.h"
@@ -20,6 +22,11 @@ namespace {
 
 // What is rarer is not by chance.
 constexpr double kMaxLog10Chance = -3;
+// Of a pattern some copies are missed (RepeatedPattern), and agree as well: an
+// eighth of the evidence for false poses of equal windows, where a third and
+// more of it is left for right ones. What bears out another motion has no more
+// than a ninth of the evidence for right poses of photographs.
+constexpr double kMinShareOfEvidence = 0.25;
 
 // Adds the matches whose points have none yet.
 void AddMatches(const std::vector<FeatureMatch>& extra,
@@ -132,14 +139,29 @@ bool MostOfTheRestAgrees(const std::vector<FeatureMatch>& matches,
   return Log10BinomialTail(num, num_agreeing, 0.5) < kMaxLog10Chance;
 }
 
+// Whether places that look alike, of what is not known to repeat, bear out
+// another motion nearly as well.
+bool HasRivalMotion(const RelativePose& pose, const ViewMeasurements& first,
+                    const ViewMeasurements& second) {
+  std::vector<FeatureMatch> others;
+  std::copy_if(pose.point_inliers.begin(), pose.point_inliers.end(),
+               std::back_inserter(others), [&](const FeatureMatch& match) {
+                 return !first.repeats.HasPoint(match.first) &&
+                        !second.repeats.HasPoint(match.second);
+               });
+  const auto view = [](const ViewMeasurements& of_view) {
+    const DetectedFeatures& detected = *of_view.detected;
+    return PointView{detected.keypoints, detected.point_descriptors,
+                     of_view.features};
+  };
+  return Log10NfaOfRivalMotion(view(first), view(second), pose, others) <
+         kMinShareOfEvidence * pose.log10_nfa;
+}
+
 std::optional<PoseWeakness> WeaknessOf(const TwoViewResult& result,
                                        const PairMatches& putative,
                                        const ViewMeasurements& first,
                                        const ViewMeasurements& second) {
-  // Of a pattern some copies are missed (RepeatedPattern), and agree as well:
-  // an eighth of the evidence for false poses of equal windows, where a third
-  // and more of it is left for right ones.
-  constexpr double kMinShareOfEvidence = 0.25;
   if (!(result.scattered_log10_nfa < 0)) {
     return PoseWeakness::kMatchesSideBySide;
   }
@@ -153,6 +175,9 @@ std::optional<PoseWeakness> WeaknessOf(const TwoViewResult& result,
   }
   // Without them, features may be those with matches only.
   const bool has_all = first.detected != nullptr && second.detected != nullptr;
+  if (has_all && HasRivalMotion(result.pose, first, second)) {
+    return PoseWeakness::kRepeats;
+  }
   if (has_all && Log10ChanceOfSurroundings(first.features, second.features,
                                            result.pose) < kMaxLog10Chance) {
     return PoseWeakness::kSurroundings;
