@@ -113,6 +113,40 @@ TEST(AlikeSides, ASolutionThatIsNoBetterLeavesTheFirst) {
                 Field(&ReliabilityWarning::missing, found.different))));
 }
 
+// Between sections 0 to 3 and 4 on; what contradicts that says that some of the
+// relative poses between them are of another section.
+TEST(AlikeSections, ACorridorIsNotFolded) {
+  constexpr std::uint64_t kSeed = 103;
+  const TrustScene drawn = DrawTrustScene(TrustFamily::kAlikeSections, kSeed);
+  ASSERT_GT(drawn.options.alike_share, 0.5);
+  EXPECT_THAT(drawn.Labels(), Contains("alike sections"));
+  const auto trial =
+      RunTrustTrial(TrustFamily::kAlikeSections, kSeed, Seeded(kSeed));
+  ASSERT_TRUE(trial);
+  for (const JudgedView& judged : trial->views) {
+    EXPECT_TRUE(judged.IsPlaced()) << judged.view;
+    EXPECT_LT(judged.error, 0.01) << judged.view;
+  }
+}
+
+// Nine tenths of it are alike: as good as all.
+TEST(AlikeSections, WhatCannotBeToldIsDoubtful) {
+  constexpr std::uint64_t kSeed = 108;
+  ASSERT_GT(
+      DrawTrustScene(TrustFamily::kAlikeSections, kSeed).options.alike_share,
+      0.8);
+  const auto trial =
+      RunTrustTrial(TrustFamily::kAlikeSections, kSeed, Seeded(kSeed));
+  ASSERT_TRUE(trial);
+  int num_wrong = 0;
+  for (const JudgedView& judged : trial->views) {
+    if (judged.error < 0.05) continue;
+    ++num_wrong;
+    EXPECT_FALSE(judged.IsFirm()) << judged.view;
+  }
+  EXPECT_GT(num_wrong, 0);
+}
+
 // Half as much is found of another session as of one's own.
 TEST(TwoSessions, AreOnePlace) {
   constexpr std::uint64_t kSeed = 310;

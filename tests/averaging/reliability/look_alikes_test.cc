@@ -168,6 +168,25 @@ TEST(FindLookAlikes, WhereSomeAreKnownLessTellsOthers) {
   EXPECT_THAT(Find(nearly_alike, summary).false_poses, IsEmpty());
 }
 
+// The same, where another relative pose between the walls is in the way.
+TEST(FindLookAlikes, WhereOthersContradictLessTells) {
+  const auto find_without = [](std::uint32_t alike, const ViewPair& rejected,
+                               double log10_nfa) {
+    Scene scene = SceneOfTwoWalls(5, alike);
+    scene.relative_poses.at(rejected).log10_nfa = log10_nfa;
+    PoseSummary summary;
+    summary.outlier_edges = {{rejected, OutlierReason::kDirection, 90}};
+    return Find(scene, summary).false_poses;
+  };
+  constexpr std::uint32_t kNearlyAll = 17;
+  EXPECT_EQ(find_without(kNearlyAll, {0, 5}, -500).size(), 5u * 3 - 1);
+  EXPECT_THAT(find_without(kNearlyAll, {0, 5}, -5), IsEmpty());
+  // Within a group it says nothing of the other one.
+  EXPECT_THAT(find_without(kNearlyAll, {0, 4}, -500), IsEmpty());
+  // One wall stays one.
+  EXPECT_THAT(find_without(20, {0, 5}, -500), IsEmpty());
+}
+
 TEST(FindLookAlikes, OnlyWhatIsInUseIsFalse) {
   PoseSummary summary;
   summary.outlier_edges = {{{0, 7}, OutlierReason::kRotation, 90}};

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <map>
 
 #include "lowlap/averaging/centers/internal/evidence.h"
@@ -17,6 +16,9 @@ namespace {
 constexpr double kMinShareOfAlike = 0.2;
 constexpr double kShareOfRate = 0.75;
 constexpr double kMaxLog10Nfa = -2;
+// Of relative poses that contradict the solution, against those in use.
+constexpr double kMinShareOfContested = 0.25;
+constexpr double kMaxLog10NfaOfContested = -1;
 // Regions of pairs of the same views tell the same thing several times: many
 // have to be bare, against the chance of it.
 constexpr double kMinBareToChance = 2;
@@ -48,27 +50,51 @@ double UsualRate(const std::vector<ViewPair>& pairs,
   return *quarter;
 }
 
-// What two groups should both see.
+// What two groups should both see, and the evidence of the relative poses
+// between them.
 struct Common {
   OverlapRegions regions;
-  bool is_different = false;
+  double in_use = 0, rejected = 0;
+
+  bool IsContested() const { return rejected > kMinShareOfContested * in_use; }
+  Common& operator+=(const Common& other) {
+    regions += other.regions;
+    in_use += other.in_use;
+    rejected += other.rejected;
+    return *this;
+  }
+};
+
+// What is known before groups grow.
+struct Findings {
+  EvidenceOfPairs in_use, rejected;
+  std::vector<ViewPair> sharing;
+  std::vector<OverlapRegions> regions;  // of the sharing pairs
 };
 
 // Views that grow together along links.
 class Groups {
  public:
-  // `regions`: of `pairs`.
-  Groups(const ViewGraph& links, const std::vector<ViewPair>& pairs,
-         const std::vector<OverlapRegions>& regions, double chance_of_bare)
-      : log10_num_pairs_(std::log10(static_cast<double>(pairs.size()))),
+  Groups(const Findings& findings, double chance_of_bare)
+      : log10_num_pairs_(
+            std::log10(static_cast<double>(findings.sharing.size()))),
         chance_of_bare_(chance_of_bare) {
-    for (const ViewPair& views : links.pairs()) {
-      for (const ViewId view : {views.first, views.second}) {
+    for (const auto& entry : findings.in_use) {
+      for (const ViewId view : {entry.first.first, entry.first.second}) {
         group_of_.emplace(view, view);
       }
     }
-    for (std::size_t n = 0; n < pairs.size(); ++n) {
-      Add(pairs[n].first, pairs[n].second, regions[n]);
+    const auto add = [&](const ViewPair& views, const Common& common) {
+      Add(views.first, views.second, common);
+    };
+    for (std::size_t n = 0; n < findings.sharing.size(); ++n) {
+      add(findings.sharing[n], {findings.regions[n]});
+    }
+    for (const auto& [views, evidence] : findings.in_use) {
+      add(views, {{}, evidence});
+    }
+    for (const auto& [views, evidence] : findings.rejected) {
+      add(views, {{}, 0, evidence});
     }
   }
 
@@ -117,6 +143,11 @@ class Groups {
   }
 
  private:
+  struct Judged {
+    Common common;
+    bool is_different = false;
+  };
+
   bool AreJoint(const ViewPair& views) const {
     return group_of_.at(views.first) == group_of_.at(views.second);
   }
@@ -128,15 +159,20 @@ class Groups {
     return found != of_a->second.end() && found->second.is_different;
   }
 
-  void Add(ViewId a, ViewId b, const OverlapRegions& regions) {
-    Common& common = common_[a][b];
-    common.regions += regions;
+  bool AreDifferent(const Common& common) const {
+    const bool is_contested = common.IsContested();
+    const double chance = is_contested ? kChanceOfBare : chance_of_bare_;
     const OverlapRegions& all = common.regions;
-    common.is_different =
-        all.num_bare >= kMinBareToChance * chance_of_bare_ * all.num &&
-        log10_num_pairs_ + Log10ChanceOfBare(all, chance_of_bare_) <=
-            kMaxLog10Nfa;
-    common_[b][a] = common;
+    return all.num_bare >= kMinBareToChance * chance * all.num &&
+           log10_num_pairs_ + Log10ChanceOfBare(all, chance) <=
+               (is_contested ? kMaxLog10NfaOfContested : kMaxLog10Nfa);
+  }
+
+  void Add(ViewId a, ViewId b, const Common& more) {
+    Judged& judged = common_[a][b];
+    judged.common += more;
+    judged.is_different = AreDifferent(judged.common);
+    common_[b][a] = judged;
   }
 
   // The group of the second view becomes a part of that of the first.
@@ -146,28 +182,42 @@ class Groups {
     for (auto& entry : group_of_) {
       if (entry.second == second) entry.second = first;
     }
-    for (const auto& [other, common] : common_[second]) {
+    for (const auto& [other, judged] : common_[second]) {
       common_[other].erase(second);
-      if (other != first) Add(first, other, common.regions);
+      if (other != first) Add(first, other, judged.common);
     }
     common_.erase(second);
   }
 
   std::map<ViewId, ViewId> group_of_;  // named by one of its views
   // Of two groups, by either.
-  std::map<ViewId, std::map<ViewId, Common>> common_;
+  std::map<ViewId, std::map<ViewId, Judged>> common_;
   double log10_num_pairs_;
   double chance_of_bare_;
 };
 
-// The strongest first.
-std::vector<ViewPair> ByEvidence(const Scene& scene, const ViewGraph& links) {
-  EvidenceOfPairs evidence;
-  for (const ViewPair& views : links.pairs()) {
-    const RelativePose& pose = scene.relative_poses.at(views);
-    evidence[views] = EvidenceOfNfa(pose.weakness ? 0 : pose.log10_nfa);
+double EvidenceOf(const RelativePose& pose) {
+  return EvidenceOfNfa(pose.weakness ? 0 : pose.log10_nfa);
+}
+
+// Of the relative poses that contradict the solution.
+EvidenceOfPairs RejectedEvidence(const Scene& scene,
+                                 const PoseSummary& summary) {
+  EvidenceOfPairs rejected;
+  for (const auto* edges : {&summary.outlier_edges, &summary.kept_outliers}) {
+    for (const OutlierEdge& edge : *edges) {
+      if (!edge.IsFalse() || edge.reason == OutlierReason::kLookAlike) continue;
+      rejected[edge.views] = EvidenceOf(scene.relative_poses.at(edge.views));
+    }
   }
-  std::vector<ViewPair> sorted = links.pairs();
+  return rejected;
+}
+
+// The strongest first.
+std::vector<ViewPair> ByEvidence(const EvidenceOfPairs& evidence) {
+  std::vector<ViewPair> sorted;
+  sorted.reserve(evidence.size());
+  for (const auto& entry : evidence) sorted.push_back(entry.first);
   std::stable_sort(sorted.begin(), sorted.end(),
                    [&](const ViewPair& a, const ViewPair& b) {
                      return evidence.at(a) > evidence.at(b);
@@ -175,19 +225,17 @@ std::vector<ViewPair> ByEvidence(const Scene& scene, const ViewGraph& links) {
   return sorted;
 }
 
-// What the regions of the sharing pairs tell, each of which is bare by chance.
-LookAlikes TellApart(const Scene& scene, const ViewGraph& agreeing,
-                     const std::vector<ViewPair>& sharing,
-                     const std::vector<OverlapRegions>& regions,
-                     double chance_of_bare) {
-  Groups groups(agreeing, sharing, regions, chance_of_bare);
-  groups.Grow(ByEvidence(scene, agreeing));
-  const auto are_apart = [&](const ViewPair& v) { return groups.AreApart(v); };
+// What the findings tell where each region is bare by chance.
+LookAlikes TellApart(const Findings& findings, double chance_of_bare) {
+  Groups groups(findings, chance_of_bare);
+  groups.Grow(ByEvidence(findings.in_use));
   LookAlikes found;
-  std::copy_if(sharing.begin(), sharing.end(),
-               std::back_inserter(found.different), are_apart);
-  std::copy_if(agreeing.pairs().begin(), agreeing.pairs().end(),
-               std::back_inserter(found.false_poses), are_apart);
+  for (const ViewPair& views : findings.sharing) {
+    if (groups.AreApart(views)) found.different.push_back(views);
+  }
+  for (const auto& entry : findings.in_use) {
+    if (groups.AreApart(entry.first)) found.false_poses.push_back(entry.first);
+  }
   if (!found.false_poses.empty()) found.doubtful = groups.ViewsOfOthers();
   return found;
 }
@@ -198,28 +246,31 @@ Result<LookAlikes> FindLookAlikes(const Scene& scene,
                                   const PoseSummary& summary,
                                   const ExpectedOverlaps& overlaps,
                                   const RunContext& context) {
-  const std::vector<ViewPair> sharing = SharingPairs(overlaps);
+  Findings findings;
+  findings.sharing = SharingPairs(overlaps);
+  const std::vector<ViewPair>& sharing = findings.sharing;
   if (sharing.empty()) return LookAlikes();
   const ViewGraph agreeing = AgreeingPoses(scene, summary);
+  for (const ViewPair& views : agreeing.pairs()) {
+    findings.in_use[views] = EvidenceOf(scene.relative_poses.at(views));
+  }
+  findings.rejected = RejectedEvidence(scene, summary);
   const double min_rate = kShareOfRate * UsualRate(sharing, overlaps, agreeing);
   const OverlapPredictor predictor(scene);
-  std::vector<OverlapRegions> regions(sharing.size());
+  findings.regions.resize(sharing.size());
   LOWLAP_RETURN_IF_ERROR(
       ParallelFor(context, "bare regions", sharing.size(), [&](std::size_t n) {
-        regions[n] =
+        findings.regions[n] =
             predictor.RegionsOf(sharing[n].first, sharing[n].second, min_rate);
       }));
-  const auto tell_apart = [&](double chance_of_bare) {
-    return TellApart(scene, agreeing, sharing, regions, chance_of_bare);
-  };
   LookAlikes found;
   const bool are_known = summary.look_alikes != nullptr &&
                          !summary.look_alikes->false_poses.empty();
   if (!are_known) {
-    found = tell_apart(kChanceOfBareUnlessKnown);
+    found = TellApart(findings, kChanceOfBareUnlessKnown);
     if (found.false_poses.empty()) return found;
   }
-  LookAlikes more = tell_apart(kChanceOfBare);
+  LookAlikes more = TellApart(findings, kChanceOfBare);
   return more.false_poses.empty() ? found : more;
 }
 

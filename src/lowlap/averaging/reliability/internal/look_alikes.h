@@ -24,7 +24,10 @@ namespace lowlap {
 /// fifth, OverlapPredictor::RegionsOf), a fifth are bare, as many as by chance
 /// in one of a hundred scenes at most (Log10ChanceOfBare, times the pairs), a
 /// chance of 2 kChanceOfBare each. Where there are look-alikes there are others
-/// like them: if any are found, a tenth is enough, and that chance itself.
+/// like them: if any are found, a tenth is enough, and that chance itself. So
+/// they are where relative poses that contradict the solution join the groups,
+/// with more than a quarter of the evidence of those in use: one or the other
+/// joins look-alikes, and what one of ten scenes has by chance is enough there.
 struct LookAlikes {
   /// Pairs of views of groups that are different, if they should share a fifth
   /// of what they see.
