@@ -379,7 +379,7 @@ TEST_F(Cli, AStudyOfTrustIsWrittenAndNotRepeated) {
   const std::string cameras = ReadText(Path("trust/cameras.csv"));
   EXPECT_THAT(cameras, HasSubstr("mixed,3,"));
   const Outcome again = Lowlap(study);
-  EXPECT_THAT(again.output, HasSubstr("5 trials are in trials.jsonl already"));
+  EXPECT_THAT(again.output, HasSubstr("6 trials are in trials.jsonl already"));
   EXPECT_EQ(ReadText(Path("trust/cameras.csv")), cameras);
   EXPECT_NE(Lowlap(study + " --quick").exit_code, 0);
 }
