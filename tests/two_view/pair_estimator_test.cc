@@ -195,11 +195,14 @@ TEST(EstimatePair, IsNotWeakWhereTheOthersAgreeOnAMotionOfTheirOwn) {
 }
 
 // The pair as it is detected, and matched right.
-std::optional<PoseWeakness> WeaknessOfPose(const testing::CopiedPair& pair) {
-  const auto measure = [](const testing::PatternView& view,
-                          DetectedFeatures* detected) {
-    detected->keypoints = view.keypoints;
-    detected->point_descriptors = view.descriptors;
+std::optional<PoseWeakness> WeaknessOfPose(const testing::CopiedPair& pair,
+                                           bool have_looks = true) {
+  const auto measure = [&](const testing::PatternView& view,
+                           DetectedFeatures* detected) {
+    if (have_looks) {
+      detected->keypoints = view.keypoints;
+      detected->point_descriptors = view.descriptors;
+    }
     ViewMeasurements measured;
     measured.features = view.features;
     measured.detected = detected;
@@ -218,6 +221,9 @@ TEST(EstimatePair, IsWeakWhereWhatLooksAlikeBearsOutAnotherMotion) {
   EXPECT_EQ(WeaknessOfPose(testing::CopiedPair(testing::Door)),
             PoseWeakness::kRepeats);
   EXPECT_EQ(WeaknessOfPose(testing::CopiedPair(testing::Anything)),
+            std::nullopt);
+  // Points of elsewhere, beside detected lines.
+  EXPECT_EQ(WeaknessOfPose(testing::CopiedPair(testing::Door), false),
             std::nullopt);
 }
 

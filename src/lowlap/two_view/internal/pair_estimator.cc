@@ -143,11 +143,16 @@ bool MostOfTheRestAgrees(const std::vector<FeatureMatch>& matches,
 // another motion nearly as well.
 bool HasRivalMotion(const RelativePose& pose, const ViewMeasurements& first,
                     const ViewMeasurements& second) {
+  // Points that were matched elsewhere have no look.
+  const auto is_asked = [](const ViewMeasurements& view, FeatureIndex point) {
+    return point < view.detected->keypoints.size() &&
+           !view.repeats.HasPoint(point);
+  };
   std::vector<FeatureMatch> others;
   std::copy_if(pose.point_inliers.begin(), pose.point_inliers.end(),
                std::back_inserter(others), [&](const FeatureMatch& match) {
-                 return !first.repeats.HasPoint(match.first) &&
-                        !second.repeats.HasPoint(match.second);
+                 return is_asked(first, match.first) &&
+                        is_asked(second, match.second);
                });
   const auto view = [](const ViewMeasurements& of_view) {
     const DetectedFeatures& detected = *of_view.detected;
